@@ -1,0 +1,77 @@
+"""Whose fault it is: every error the user can cause, with its exit code.
+
+A message says what was asked, ``name=value``, the rule, and what to do instead.
+Anything that is not a ``RoadproofError`` is our own fault and exits with 70.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+
+class RoadproofError(Exception):
+    """An error with a message for the user and an exit code; never shown as a stack trace."""
+
+    exit_code: ClassVar[int] = 70
+
+
+class UsageError(RoadproofError):
+    """The command line was wrong."""
+
+    exit_code = 2
+
+
+class InputError(RoadproofError):
+    """A file or a value that the user gave is wrong."""
+
+    exit_code = 3
+
+
+class MissingSolverError(RoadproofError):
+    """A solver that was asked for is not installed."""
+
+    exit_code = 4
+
+
+@dataclass(frozen=True)
+class Position:
+    """A place in a text; line and column count from 1."""
+
+    line: int
+    column: int
+
+
+class TextError(InputError):
+    """A mistake in a text of ours (a specification or a claim), shown with line, column and caret."""
+
+    def __init__(self, message: str, position: Position | None = None, hint: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.position = position
+        self.hint = hint
+        self.source = ""
+        self.text = ""
+
+    def locate(self, source: str, text: str) -> "TextError":
+        """Add where the text came from, unless a nearer reader has already said so."""
+        if not self.source:
+            self.source, self.text = source, text
+        return self
+
+    def __str__(self) -> str:
+        where = self.source or "input"
+        lines = [self.message]
+        if self.position is not None:
+            where = f"{where}, line {self.position.line}, column {self.position.column}"
+            source_lines = self.text.splitlines()
+            if 1 <= self.position.line <= len(source_lines):
+                lines += _excerpt(source_lines[self.position.line - 1], self.position.column)
+        if self.hint:
+            lines.append(self.hint)
+        return f"{where}: " + "\n".join(lines)
+
+
+def _excerpt(line: str, column: int, width: int = 100) -> list[str]:
+    """The guilty line, cut to ``width`` characters around the caret."""
+    start = max(0, min(column - 1 - width // 2, len(line) - width))
+    shown = line[start : start + width].replace("\t", " ")
+    return [f"  {shown}", "  " + " " * (column - 1 - start) + "^"]

@@ -1,0 +1,263 @@
+"""The formula tree: signal temporal logic over comparisons of terms.
+
+Sugar dies at construction: there is no implication node, and ``!=`` is a negated equality.
+``Named`` remembers which definition a sub-formula came from; it means what its body means.
+Quantifiers over lanes and lanelets stay in the tree until a road is chosen (``spec.bind``).
+
+Semantics (SPEC §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0.
+``Until(φ, J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Literal, TypeAlias, assert_never
+
+from roadproof.logic.node import node
+from roadproof.logic.terms import Number, Term, number
+
+Comparison: TypeAlias = Literal["<", "<=", ">", ">="]
+DomainKind: TypeAlias = Literal["lanes", "adjacent", "lanelets", "zone"]
+
+
+@node
+class Truth:
+    value: bool
+
+
+@node
+class Compare:
+    """``left op right``; strictness is exactly as written."""
+
+    left: Term
+    op: Comparison
+    right: Term
+
+
+@node
+class Occupies:
+    """occ(vehicle, lanelet): box and lanelet overlap with positive area (SPEC §4)."""
+
+    vehicle: str
+    lanelet: str
+
+
+@node
+class Domain:
+    """A finite set of road elements.
+
+    ``lanes``: all lanes; ``adjacent``: adjLanes(of); ``lanelets``: those of lane ``of``;
+    ``zone``: lanelets whose zone is ``of`` (main, merge or depart).
+    """
+
+    kind: DomainKind
+    of: str = ""
+
+
+@node
+class Some:
+    """Disjunction over a domain; false on an empty one."""
+
+    variable: str
+    domain: Domain
+    body: "Formula"
+
+
+@node
+class Every:
+    """Conjunction over a domain; true on an empty one."""
+
+    variable: str
+    domain: Domain
+    body: "Formula"
+
+
+@node
+class Not:
+    body: "Formula"
+
+
+@node
+class And:
+    parts: tuple["Formula", ...]
+
+
+@node
+class Or:
+    parts: tuple["Formula", ...]
+
+
+@node
+class Interval:
+    """Closed interval [low, high] of seconds; ``high`` None is unbounded.
+
+    Bounds have no signals: they are rationals, or symbolic in parameters for the prover.
+    """
+
+    low: Term
+    high: Term | None
+
+
+@node
+class Until:
+    left: "Formula"
+    interval: Interval
+    right: "Formula"
+
+
+@node
+class Eventually:
+    interval: Interval
+    body: "Formula"
+
+
+@node
+class Always:
+    interval: Interval
+    body: "Formula"
+
+
+@node
+class Named:
+    """An application of a definition, kept for reading and for opaque atoms; means ``body``."""
+
+    name: str
+    arguments: tuple[str, ...]
+    body: "Formula"
+
+
+State: TypeAlias = Truth | Compare | Occupies
+Formula: TypeAlias = (
+    Truth
+    | Compare
+    | Occupies
+    | Some
+    | Every
+    | Not
+    | And
+    | Or
+    | Until
+    | Eventually
+    | Always
+    | Named
+)
+
+TRUE = Truth(True)
+FALSE = Truth(False)
+ZERO: Number = number(0, (0, 1))
+FOREVER = Interval(ZERO, None)
+
+
+def negation(body: Formula) -> Formula:
+    """``not body``, without double negations."""
+    match body:
+        case Truth(value):
+            return Truth(not value)
+        case Not(inner):
+            return inner
+        case _:
+            return Not(body)
+
+
+def conjunction(*parts: Formula) -> Formula:
+    """All of ``parts``; of none it is true, of one that one."""
+    kept = tuple(p for p in parts if p != TRUE)
+    if FALSE in kept:
+        return FALSE
+    return TRUE if not kept else kept[0] if len(kept) == 1 else And(kept)
+
+
+def disjunction(*parts: Formula) -> Formula:
+    """Some of ``parts``; of none it is false, of one that one."""
+    kept = tuple(p for p in parts if p != FALSE)
+    if TRUE in kept:
+        return TRUE
+    return FALSE if not kept else kept[0] if len(kept) == 1 else Or(kept)
+
+
+def implication(premise: Formula, conclusion: Formula) -> Formula:
+    """``premise -> conclusion``."""
+    return disjunction(negation(premise), conclusion)
+
+
+def equivalence(left: Formula, right: Formula) -> Formula:
+    """``left <-> right``."""
+    return conjunction(implication(left, right), implication(right, left))
+
+
+def children(formula: Formula) -> tuple[Formula, ...]:
+    """The direct sub-formulas of ``formula``."""
+    match formula:
+        case Truth() | Compare() | Occupies():
+            return ()
+        case And(parts) | Or(parts):
+            return parts
+        case Until(left, _, right):
+            return (left, right)
+        case (
+            Not(body)
+            | Eventually(_, body)
+            | Always(_, body)
+            | Some(_, _, body)
+            | Every(_, _, body)
+            | Named(_, _, body)
+        ):
+            return (body,)
+        case _:
+            assert_never(formula)
+
+
+def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
+    """``formula`` with its direct sub-formulas replaced, in the order of ``children``."""
+    match formula:
+        case Truth() | Compare() | Occupies():
+            return formula
+        case And():
+            return And(new)
+        case Or():
+            return Or(new)
+        case Not():
+            return Not(new[0])
+        case Until(_, interval, _):
+            return Until(new[0], interval, new[1])
+        case Eventually(interval, _):
+            return Eventually(interval, new[0])
+        case Always(interval, _):
+            return Always(interval, new[0])
+        case Some(variable, domain, _):
+            return Some(variable, domain, new[0])
+        case Every(variable, domain, _):
+            return Every(variable, domain, new[0])
+        case Named(name, arguments, _):
+            return Named(name, arguments, new[0])
+        case _:
+            assert_never(formula)
+
+
+def subformulas(formula: Formula) -> Iterator[Formula]:
+    """Every distinct sub-formula once, parents before children."""
+    seen: set[Formula] = set()
+    waiting = [formula]
+    while waiting:
+        current = waiting.pop()
+        if current in seen:
+            continue
+        seen.add(current)
+        yield current
+        waiting.extend(reversed(children(current)))
+
+
+def is_state(formula: Formula) -> bool:
+    """Whether ``formula`` speaks about one instant only: no temporal operator inside."""
+    return not any(isinstance(f, Until | Eventually | Always) for f in subformulas(formula))
+
+
+def transform(formula: Formula, change: Callable[[Formula], Formula]) -> Formula:
+    """``formula`` rebuilt from its leaves up, ``change`` applied to every rebuilt node once."""
+    done: dict[Formula, Formula] = {}
+
+    def visit(current: Formula) -> Formula:
+        if current not in done:
+            parts = tuple(visit(child) for child in children(current))
+            done[current] = change(with_children(current, parts))
+        return done[current]
+
+    return visit(formula)

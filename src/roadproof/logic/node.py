@@ -1,0 +1,28 @@
+"""What all trees of this package are made of: frozen dataclasses that remember their hash.
+
+Identity is structure: two nodes are equal when they are built alike, whatever they are called.
+Formulas share sub-trees, so without the remembered hash every look-up would walk the whole tree.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar, dataclass_transform
+
+T = TypeVar("T")
+
+
+@dataclass_transform(frozen_default=True)
+def node(cls: type[T]) -> type[T]:
+    """Make ``cls`` a frozen dataclass whose hash is computed once per object."""
+    made = dataclass(frozen=True)(cls)
+    structural: Callable[[Any], int] = made.__hash__
+
+    def remembered(self: Any) -> int:
+        known: int | None = self.__dict__.get("_hash")
+        if known is None:
+            known = structural(self)
+            self.__dict__["_hash"] = known
+        return known
+
+    made.__hash__ = remembered  # type: ignore[method-assign,assignment]
+    return made

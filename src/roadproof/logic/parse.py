@@ -1,0 +1,340 @@
+"""Text to syntax tree. User text reaches nothing but this grammar: no eval, no sympify."""
+
+from fractions import Fraction
+from functools import cache
+from importlib import resources
+from typing import Any, Literal, cast
+
+from lark import Lark, Token, v_args
+from lark.exceptions import (
+    UnexpectedCharacters,
+    UnexpectedEOF,
+    UnexpectedInput,
+    UnexpectedToken,
+    VisitError,
+)
+from lark.tree import Meta
+from lark.visitors import Transformer_NonRecursive
+
+from roadproof.errors import Position, TextError
+from roadproof.logic import syntax
+from roadproof.logic.syntax import Expression, Statement
+
+DEEPEST_NESTING = 100
+LONGEST_EXPONENT = 30
+GREATEST_POWER = 8
+
+
+def parse_library(text: str, source: str) -> tuple[Statement, ...]:
+    """The statements of a specification file. Raises ``TextError``."""
+    statements = cast(tuple[Statement, ...], _parse(text, source, "library"))
+    for definition in _definitions(statements):
+        _check_depth(definition.body, definition.at, source, text)
+    return statements
+
+
+def parse_claim(text: str, source: str = "claim") -> syntax.Claim:
+    """A formula, with an optional ``given a, b: vehicle; L: lane:`` in front. Raises ``TextError``."""
+    claim = cast(syntax.Claim, _parse(text, source, "claim"))
+    _check_depth(claim.body, Position(1, 1), source, text)
+    return claim
+
+
+def _definitions(statements: tuple[Statement, ...]) -> list[syntax.Definition]:
+    found: list[syntax.Definition] = []
+    for statement in statements:
+        match statement:
+            case syntax.Definition():
+                found.append(statement)
+            case syntax.EachBlock() | syntax.SetBlock() | syntax.WhenBlock():
+                found += statement.definitions
+            case _:
+                pass
+    return found
+
+
+def _check_depth(body: Expression, at: Position, source: str, text: str) -> None:
+    deep = syntax.depth(body)
+    if deep > DEEPEST_NESTING:
+        raise TextError(
+            f"the formula is nested too deep: depth={deep}, at most {DEEPEST_NESTING} is allowed",
+            at,
+            "Give its parts names with def.",
+        ).locate(source, text)
+
+
+@cache
+def _parser(start: str) -> Lark:
+    grammar = resources.files("roadproof.logic").joinpath("grammar.lark").read_text("utf-8")
+    return Lark(
+        grammar,
+        start=start,
+        parser="lalr",
+        propagate_positions=True,
+        maybe_placeholders=True,
+    )
+
+
+def _parse(text: str, source: str, start: str) -> object:
+    try:
+        return _Build().transform(_parser(start).parse(text))
+    except UnexpectedInput as error:
+        raise _explain(error, text).locate(source, text) from None
+    except VisitError as error:
+        if isinstance(error.orig_exc, TextError):
+            raise error.orig_exc.locate(source, text) from None
+        raise
+    except TextError as error:
+        raise error.locate(source, text) from None
+
+
+_READABLE = {
+    "NAME": "a name",
+    "INDEXED": "a name",
+    "QUALIFIED": "a name",
+    "NUMBER": "a number",
+    "UNIT": "a unit (s, ms, m, m/s, km/h, m/s^2, unitless)",
+    "STRING": 'a "text"',
+    "LPAR": "(",
+    "RPAR": ")",
+    "LSQB": "[",
+    "RSQB": "]",
+    "LBRACE": "{",
+    "RBRACE": "}",
+    "COMMA": ",",
+    "COLON": ":",
+    "SEMICOLON": ";",
+    "VBAR": "|",
+    "EQUAL": "=",
+    "CIRCUMFLEX": "^",
+    "COMPARISON": "a comparison (<, <=, >, >=, =, !=)",
+    "PLUS": "+",
+    "MINUS": "-",
+    "TIMES": "*",
+    "DIVIDE": "/",
+    "INFINITY": "inf",
+    "$END": "the end",
+    "__ANON_0": ":=",
+}
+
+
+def _readable(names: set[str]) -> str:
+    shown = sorted({_READABLE.get(n, n.lower() if n.isalpha() else n) for n in names})
+    shown = [s for s in shown if not s.startswith("__")]
+    many = len(shown) > 8
+    return ", ".join(shown[:8]) + (", …" if many else "")
+
+
+def _explain(error: UnexpectedInput, text: str) -> TextError:
+    if isinstance(error, UnexpectedToken) and error.token.type != "$END":
+        expected = set(error.accepts or error.expected)
+        return TextError(
+            f"'{_short(str(error.token))}' cannot stand here",
+            Position(error.line, error.column),
+            f"Expected {_readable(expected)}.",
+        )
+    if isinstance(error, UnexpectedCharacters):
+        found = text[error.pos_in_stream] if error.pos_in_stream is not None else ""
+        expected = set(error.allowed or ())
+        return TextError(
+            f"the character {found!r} cannot stand here",
+            Position(error.line, error.column),
+            f"Expected {_readable(expected)}." if expected else "",
+        )
+    expected = set(error.expected) if isinstance(error, UnexpectedEOF | UnexpectedToken) else set()
+    lines = text.splitlines() or [""]
+    return TextError(
+        "the text ends too early",
+        Position(len(lines), len(lines[-1]) + 1),
+        f"Expected {_readable(expected)}." if expected else "",
+    )
+
+
+def _short(token: str) -> str:
+    return token if len(token) <= 30 else token[:30] + "…"
+
+
+def _at(meta: Meta) -> Position:
+    return Position(getattr(meta, "line", 1), getattr(meta, "column", 1))
+
+
+def _token_at(token: Token) -> Position:
+    return Position(token.line or 1, token.column or 1)
+
+
+def _rational(token: Token) -> Fraction:
+    exponent = token.lower().partition("e")[2]
+    if len(exponent) > 4 or abs(int(exponent or 0)) > LONGEST_EXPONENT or len(token) > 200:
+        raise TextError(
+            f"the number {_short(str(token))} is out of range: write at most 200 digits and an "
+            f"exponent between -{LONGEST_EXPONENT} and {LONGEST_EXPONENT}",
+            _token_at(token),
+        )
+    return Fraction(str(token))
+
+
+def _integer(token: Token, greatest: int) -> int:
+    value = _rational(token)
+    if value.denominator != 1 or value > greatest:
+        raise TextError(
+            f"{_short(str(token))} cannot stand here: use a whole number from 0 to {greatest}",
+            _token_at(token),
+        )
+    return int(value)
+
+
+def _doc(token: Token | None) -> str:
+    return "" if token is None else str(token)[1:-1]
+
+
+@v_args(meta=True)
+class _Build(Transformer_NonRecursive[Token, Any]):
+    """Parse tree to syntax tree, bottom up; not recursive, so that input cannot exhaust the stack."""
+
+    def literal(self, meta: Meta, items: list[Token]) -> Expression:
+        unit = str(items[1]) if len(items) > 1 and items[1] is not None else ""
+        return syntax.Literal_(_rational(items[0]), unit, _at(meta))
+
+    def true(self, meta: Meta, _: list[Token]) -> Expression:
+        return syntax.Literal_(True, "", _at(meta))
+
+    def false(self, meta: Meta, _: list[Token]) -> Expression:
+        return syntax.Literal_(False, "", _at(meta))
+
+    def name(self, meta: Meta, items: list[Token]) -> syntax.Name:
+        return syntax.Name(str(items[0]), _at(meta))
+
+    def call(self, meta: Meta, items: list[Any]) -> Expression:
+        arguments = tuple(i for i in items[1:] if i is not None)
+        return syntax.Call(str(items[0]), arguments, _at(meta))
+
+    def _binary(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Binary(cast(syntax.BinaryOperator, str(items[1])), items[0], items[2], _at(meta))
+
+    comparison = sum = product = _binary
+
+    def power(self, meta: Meta, items: list[Any]) -> Expression:
+        exponent = syntax.Literal_(Fraction(_integer(items[1], GREATEST_POWER)), "", _at(meta))
+        return syntax.Binary("^", items[0], exponent, _at(meta))
+
+    def minus(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Prefix("-", items[-1], _at(meta))
+
+    def negation(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Prefix("not", items[0], _at(meta))
+
+    def iff(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Binary("<->", items[0], items[1], _at(meta))
+
+    def implies(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Binary("->", items[0], items[1], _at(meta))
+
+    def _chain(self, meta: Meta, items: list[Any], op: Literal["and", "or"]) -> Expression:
+        return syntax.Chain(op, tuple(items), _at(meta))
+
+    def or_(self, meta: Meta, items: list[Any]) -> Expression:
+        return self._chain(meta, items, "or")
+
+    def and_(self, meta: Meta, items: list[Any]) -> Expression:
+        return self._chain(meta, items, "and")
+
+    def until(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Temporal("U", items[1], items[0], items[2], _at(meta))
+
+    def eventually(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Temporal("F", items[0], None, items[1], _at(meta))
+
+    def always(self, meta: Meta, items: list[Any]) -> Expression:
+        return syntax.Temporal("G", items[0], None, items[1], _at(meta))
+
+    def interval(self, meta: Meta, items: list[Any]) -> syntax.Bounds:
+        high = None if isinstance(items[1], Token) else items[1]
+        return syntax.Bounds(items[0], high, _at(meta))
+
+    def quantified(self, meta: Meta, items: list[Any]) -> Expression:
+        kind: Literal["some", "every"] = "some" if items[0] == "some" else "every"
+        return syntax.Quantified(kind, str(items[1]), items[2], items[3], _at(meta))
+
+    def domain_of(self, meta: Meta, items: list[Token]) -> syntax.Call:
+        inner = syntax.Name(str(items[1]), _token_at(items[1]))
+        return syntax.Call(str(items[0]), (inner,), _at(meta))
+
+    def group(self, meta: Meta, items: list[Token]) -> syntax.Group:
+        return syntax.Group(tuple(syntax.Name(str(t), _token_at(t)) for t in items), _at(meta))
+
+    def sort(self, _: Meta, items: list[Token]) -> str:
+        return str(items[0])
+
+    def binding(self, _: Meta, items: list[Any]) -> tuple[syntax.Binding, ...]:
+        *names, sort = items
+        return tuple(syntax.Binding(str(n), sort, _token_at(n)) for n in names)
+
+    def bindings(self, _: Meta, items: list[Any]) -> tuple[syntax.Binding, ...]:
+        return tuple(b for group in items if group is not None for b in group)
+
+    given = bindings
+
+    def claim(self, _: Meta, items: list[Any]) -> syntax.Claim:
+        return syntax.Claim(items[0] or (), items[1])
+
+    def signed(self, _: Meta, items: list[Any]) -> Fraction:
+        value = _rational(items[1])
+        return value if items[0] is None else -value
+
+    def bound(self, _: Meta, items: list[Token]) -> tuple[Token, str]:
+        return items[0], str(items[1])
+
+    def parameter(self, meta: Meta, items: list[Any]) -> Statement:
+        name, value, unit, bound, doc = items
+        if bound is not None and str(bound[0]) != str(name):
+            raise TextError(
+                f"'where {bound[0]}' speaks of another parameter than '{name}'",
+                _token_at(bound[0]),
+                f"Write where {name} {bound[1]} 0.",
+            )
+        comparison = "" if bound is None else bound[1]
+        return syntax.ParameterDeclaration(
+            str(name), value, str(unit), comparison, _doc(doc), _at(meta)
+        )
+
+    def option(self, meta: Meta, items: list[Any]) -> Statement:
+        *names, doc = items
+        values = tuple(str(v) for v in names[1:])
+        return syntax.OptionDeclaration(str(names[0]), values, _doc(doc), _at(meta))
+
+    def definition(self, meta: Meta, items: list[Any]) -> syntax.Definition:
+        name, bindings, doc, body = items
+        return syntax.Definition(str(name), bindings, _doc(doc), body, _token_at(name))
+
+    def range(self, _: Meta, items: list[Any]) -> tuple[int, ...]:
+        low = _integer(items[0], 10_000)
+        high = low if items[1] is None else _integer(items[1], 10_000)
+        if high < low or high - low > 1_000:
+            raise TextError(
+                f"the range {low}..{high} is empty or too long: write low..high, at most 1,000 apart",
+                _token_at(items[0]),
+            )
+        return tuple(range(low, high + 1))
+
+    def each(self, meta: Meta, items: list[Any]) -> Statement:
+        ranges = [i for i in items[1:] if isinstance(i, tuple)]
+        definitions = tuple(i for i in items[1:] if isinstance(i, syntax.Definition))
+        indices = tuple(index for r in ranges for index in r)
+        return syntax.EachBlock(str(items[0]), indices, definitions, _at(meta))
+
+    def set(self, meta: Meta, items: list[Any]) -> Statement:
+        name, parent, doc, *definitions = items
+        return syntax.SetBlock(
+            str(name), "" if parent is None else str(parent), _doc(doc), tuple(definitions), _at(meta)
+        )
+
+    def when(self, meta: Meta, items: list[Any]) -> Statement:
+        option, value, *definitions = items
+        return syntax.WhenBlock(str(option), str(value), tuple(definitions), _at(meta))
+
+    def library(self, _: Meta, items: list[Any]) -> tuple[Statement, ...]:
+        return tuple(items)
+
+
+setattr(_Build, "or", _Build.or_)
+setattr(_Build, "and", _Build.and_)

@@ -1,0 +1,111 @@
+"""Formulas to formulas with the same meaning, or with names replaced by values."""
+
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
+
+from roadproof.logic.formula import (
+    Always,
+    Compare,
+    Eventually,
+    Formula,
+    Interval,
+    Named,
+    Occupies,
+    Until,
+    subformulas,
+    transform,
+)
+from roadproof.logic.terms import (
+    Leaf,
+    Number,
+    Parameter,
+    Signal,
+    Size,
+    Term,
+    constant_value,
+    leaves,
+    replace_leaves,
+)
+
+
+def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
+    """``formula`` with ``change`` applied to both sides of every comparison and to every bound."""
+
+    def interval(old: Interval) -> Interval:
+        return Interval(change(old.low), None if old.high is None else change(old.high))
+
+    def visit(current: Formula) -> Formula:
+        match current:
+            case Compare(left, op, right):
+                return Compare(change(left), op, change(right))
+            case Until(left, bounds, right):
+                return Until(left, interval(bounds), right)
+            case Eventually(bounds, body):
+                return Eventually(interval(bounds), body)
+            case Always(bounds, body):
+                return Always(interval(bounds), body)
+            case _:
+                return current
+
+    return transform(formula, visit)
+
+
+def with_values(formula: Formula, values: Mapping[str, Fraction]) -> Formula:
+    """``formula`` with the named parameters replaced by numbers; others stay symbolic."""
+
+    def leaf(old: Leaf) -> Term:
+        if isinstance(old, Parameter) and old.name in values:
+            return Number(values[old.name], old.dimension)
+        return old
+
+    def fold(term: Term) -> Term:
+        return replace_leaves(term, leaf)
+
+    return map_terms(formula, fold)
+
+
+def without_names(formula: Formula) -> Formula:
+    """``formula`` with every ``Named`` node replaced by its body."""
+    return transform(formula, lambda f: f.body if isinstance(f, Named) else f)
+
+
+def terms_of(formula: Formula) -> Iterator[Term]:
+    """Both sides of every comparison and every interval bound."""
+    for current in subformulas(formula):
+        match current:
+            case Compare(left, _, right):
+                yield left
+                yield right
+            case Until(_, interval, _) | Eventually(interval, _) | Always(interval, _):
+                yield interval.low
+                if interval.high is not None:
+                    yield interval.high
+            case _:
+                pass
+
+
+def parameters_of(formula: Formula) -> tuple[str, ...]:
+    """Names of the parameters that occur, sorted."""
+    found = {leaf.name for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Parameter)}
+    return tuple(sorted(found))
+
+
+def vehicles_of(formula: Formula) -> tuple[str, ...]:
+    """Names of the vehicles that occur, sorted."""
+    found = {f.vehicle for f in subformulas(formula) if isinstance(f, Occupies)}
+    found |= {
+        leaf.vehicle for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Signal | Size)
+    }
+    return tuple(sorted(found))
+
+
+def bounds_of(interval: Interval) -> tuple[Fraction, Fraction | None]:
+    """Both ends of an interval as rationals; None is unbounded.
+
+    Raises ``ValueError`` where a bound still holds a parameter.
+    """
+    low = constant_value(interval.low)
+    high = None if interval.high is None else constant_value(interval.high)
+    if low is None or (interval.high is not None and high is None):
+        raise ValueError("an interval bound still holds a parameter: substitute values first")
+    return low, high

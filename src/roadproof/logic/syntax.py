@@ -1,0 +1,236 @@
+"""What the parser returns: the text as a tree, before names and units are understood.
+
+Terms and formulas are not yet told apart, since a call may be either. ``spec.elaborate`` does that.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from roadproof.errors import Position
+
+BinaryOperator: TypeAlias = Literal["+", "-", "*", "/", "^", "<", "<=", ">", ">=", "=", "!=", "->", "<->"]
+TemporalOperator: TypeAlias = Literal["F", "G", "U"]
+
+
+def _nowhere() -> Position:
+    return Position(0, 0)
+
+
+@dataclass(frozen=True)
+class Literal_:
+    """A number with an optional unit, or ``true`` / ``false``."""
+
+    value: Fraction | bool
+    unit: str = ""
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Name:
+    name: str
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Call:
+    """An application of a definition, a signal or a built-in function."""
+
+    name: str
+    arguments: tuple["Expression", ...]
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Prefix:
+    op: Literal["not", "-"]
+    body: "Expression"
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Binary:
+    op: BinaryOperator
+    left: "Expression"
+    right: "Expression"
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Chain:
+    """``and`` or ``or`` of two or more."""
+
+    op: Literal["and", "or"]
+    parts: tuple["Expression", ...]
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """``[low, high]``; ``high`` None is written ``inf``."""
+
+    low: "Expression"
+    high: "Expression | None"
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Temporal:
+    """``F``, ``G`` (``left`` None) or ``U``; ``bounds`` None is [0, inf]."""
+
+    op: TemporalOperator
+    bounds: Bounds | None
+    left: "Expression | None"
+    right: "Expression"
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Quantified:
+    """``some`` / ``every`` variable ``in`` domain.
+
+    The domain is ``lanes``, ``lanelets(L)``, ``zone(main)``, ``adjacentLanes(L)``, the name of a
+    group of vehicles, or ``{A, B}``.
+    """
+
+    kind: Literal["some", "every"]
+    variable: str
+    domain: "Name | Call | Group"
+    body: "Expression"
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Group:
+    """``{A, B}``: a finite set of vehicles."""
+
+    members: tuple[Name, ...]
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+Expression: TypeAlias = Literal_ | Name | Call | Prefix | Binary | Chain | Temporal | Quantified
+
+
+@dataclass(frozen=True)
+class Binding:
+    """A parameter of a definition: ``sort`` is vehicle, vehicles, lane, lanelet or a unit."""
+
+    name: str
+    sort: str
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A formula to be proved or exemplified, with the free names that it declares."""
+
+    given: tuple[Binding, ...]
+    body: Expression
+
+
+@dataclass(frozen=True)
+class ParameterDeclaration:
+    """``param name = value unit where name > 0 "doc"``; ``bound`` is one of >, >= (against 0) or ''."""
+
+    name: str
+    value: Fraction
+    unit: str
+    bound: str
+    doc: str
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class OptionDeclaration:
+    """``option name = first | second "doc"``; the first value is the default."""
+
+    name: str
+    values: tuple[str, ...]
+    doc: str
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class Definition:
+    name: str
+    parameters: tuple[Binding, ...]
+    doc: str
+    body: Expression
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class EachBlock:
+    """``each i in 1..8, 12 { … }``: the definitions once for every index, ``{i-8}`` replaced."""
+
+    variable: str
+    indices: tuple[int, ...]
+    definitions: tuple[Definition, ...]
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class SetBlock:
+    """``set name extends parent "doc" { … }``: definitions that replace those of the parent."""
+
+    name: str
+    parent: str
+    doc: str
+    definitions: tuple[Definition, ...]
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+@dataclass(frozen=True)
+class WhenBlock:
+    """``when option = value { … }``: definitions that hold for that value of the option."""
+
+    option: str
+    value: str
+    definitions: tuple[Definition, ...]
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
+Statement: TypeAlias = (
+    ParameterDeclaration | OptionDeclaration | Definition | EachBlock | SetBlock | WhenBlock
+)
+
+
+def parts(expression: Expression) -> tuple[Expression, ...]:
+    """The direct sub-expressions."""
+    match expression:
+        case Literal_() | Name():
+            return ()
+        case Call(_, arguments, _):
+            return arguments
+        case Prefix(_, body, _) | Quantified(_, _, _, body, _):
+            return (body,)
+        case Binary(_, left, right, _):
+            return (left, right)
+        case Chain(_, items, _):
+            return items
+        case Temporal(_, bounds, left, right, _):
+            inner: list[Expression] = [] if left is None else [left]
+            if bounds is not None:
+                inner += [bounds.low] if bounds.high is None else [bounds.low, bounds.high]
+            return (*inner, right)
+
+
+def depth(expression: Expression) -> int:
+    """How deep the tree is; iterative, since its purpose is to refuse trees that are too deep."""
+    deepest = 0
+    waiting = [(expression, 1)]
+    while waiting:
+        current, level = waiting.pop()
+        deepest = max(deepest, level)
+        waiting.extend((part, level + 1) for part in parts(current))
+    return deepest
+
+
+def walk(expression: Expression) -> Iterator[Expression]:
+    """Every sub-expression, parents first."""
+    waiting = [expression]
+    while waiting:
+        current = waiting.pop()
+        yield current
+        waiting.extend(reversed(parts(current)))

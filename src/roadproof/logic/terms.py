@@ -1,0 +1,233 @@
+"""Terms: real-valued expressions over vehicle signals, sizes and parameters, in SI units.
+
+A term is a tree of plain nodes. ``Inverse`` is 1/x with 1/0 = ∞ (paper, appendix *Robust
+Semantics*) and stands only alone on one side of a comparison; every other node is finite.
+A ``Quotient`` divides by a term without signals, so each term is a piecewise polynomial of signals.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
+from typing import Literal, TypeAlias, assert_never
+
+from roadproof.logic.node import node
+
+# Exponents of metre and second: (1, -2) is an acceleration.
+Dimension: TypeAlias = tuple[int, int]
+SignalName: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "a_lat"]
+SizeName: TypeAlias = Literal["length", "width"]
+
+SIGNAL_DIMENSIONS: Mapping[SignalName, Dimension] = {
+    "s": (1, 0),
+    "d": (1, 0),
+    "v_lon": (1, -1),
+    "v_lat": (1, -1),
+    "a_lon": (1, -2),
+    "a_lat": (1, -2),
+}
+SIZE_DIMENSIONS: Mapping[SizeName, Dimension] = {"length": (1, 0), "width": (1, 0)}
+
+
+@node
+class Number:
+    """A rational constant, with its dimension so that it can be printed with a unit."""
+
+    value: Fraction
+    dimension: Dimension = (0, 0)
+
+
+@node
+class Parameter:
+    """A named constant of the specification, such as ``rho``; the prover keeps it symbolic."""
+
+    name: str
+    dimension: Dimension = (0, 0)
+
+
+@node
+class Variable:
+    """A real number that a claim quantifies over (``given v: m/s: …``), the same at all times."""
+
+    name: str
+    dimension: Dimension = (0, 0)
+
+
+@node
+class Signal:
+    """A quantity of a vehicle that varies with time (SPEC §2: front-left corner, d to the left)."""
+
+    name: SignalName
+    vehicle: str
+
+
+@node
+class Size:
+    """A quantity of a vehicle that never varies, and is greater than zero."""
+
+    name: SizeName
+    vehicle: str
+
+
+@node
+class Sum:
+    terms: tuple["Term", ...]
+
+
+@node
+class Product:
+    factors: tuple["Term", ...]
+
+
+@node
+class Power:
+    base: "Term"
+    exponent: int
+
+
+@node
+class Quotient:
+    """``numerator / denominator``; the denominator has no signals and is not zero."""
+
+    numerator: "Term"
+    denominator: "Term"
+
+
+@node
+class Maximum:
+    terms: tuple["Term", ...]
+
+
+@node
+class Minimum:
+    terms: tuple["Term", ...]
+
+
+@node
+class Inverse:
+    """1/x, and ∞ where x = 0."""
+
+    term: "Term"
+
+
+Term: TypeAlias = (
+    Number
+    | Parameter
+    | Variable
+    | Signal
+    | Size
+    | Sum
+    | Product
+    | Power
+    | Quotient
+    | Maximum
+    | Minimum
+    | Inverse
+)
+Leaf: TypeAlias = Number | Parameter | Variable | Signal | Size
+
+
+def number(value: Fraction | int, dimension: Dimension = (0, 0)) -> Number:
+    """A rational constant."""
+    return Number(Fraction(value), dimension)
+
+
+def negate(term: Term) -> Term:
+    """``-term``, written as a product with -1."""
+    if isinstance(term, Number):
+        return Number(-term.value, term.dimension)
+    return Product((number(-1), term))
+
+
+def subtract(left: Term, right: Term) -> Term:
+    """``left - right``."""
+    return Sum((left, negate(right)))
+
+
+def children(term: Term) -> tuple[Term, ...]:
+    """The direct sub-terms of ``term``."""
+    match term:
+        case Number() | Parameter() | Variable() | Signal() | Size():
+            return ()
+        case Sum(terms) | Maximum(terms) | Minimum(terms):
+            return terms
+        case Product(factors):
+            return factors
+        case Power(base, _):
+            return (base,)
+        case Quotient(numerator, denominator):
+            return (numerator, denominator)
+        case Inverse(inner):
+            return (inner,)
+        case _:
+            assert_never(term)
+
+
+def leaves(term: Term) -> Iterator[Leaf]:
+    """Every leaf of ``term``, from left to right."""
+    if isinstance(term, Number | Parameter | Variable | Signal | Size):
+        yield term
+        return
+    for child in children(term):
+        yield from leaves(child)
+
+
+def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:
+    """``term`` with each leaf replaced by ``replace(leaf)``."""
+    match term:
+        case Number() | Parameter() | Variable() | Signal() | Size():
+            return replace(term)
+        case Sum(terms):
+            return Sum(tuple(replace_leaves(t, replace) for t in terms))
+        case Product(factors):
+            return Product(tuple(replace_leaves(f, replace) for f in factors))
+        case Power(base, exponent):
+            return Power(replace_leaves(base, replace), exponent)
+        case Quotient(numerator, denominator):
+            return Quotient(
+                replace_leaves(numerator, replace), replace_leaves(denominator, replace)
+            )
+        case Maximum(terms):
+            return Maximum(tuple(replace_leaves(t, replace) for t in terms))
+        case Minimum(terms):
+            return Minimum(tuple(replace_leaves(t, replace) for t in terms))
+        case Inverse(inner):
+            return Inverse(replace_leaves(inner, replace))
+        case _:
+            assert_never(term)
+
+
+def constant_value(term: Term) -> Fraction | None:
+    """The value of a term made of numbers only, else None.
+
+    >>> constant_value(Quotient(number(3), number(5)))
+    Fraction(3, 5)
+    """
+    match term:
+        case Number(value, _):
+            return value
+        case Parameter() | Variable() | Signal() | Size() | Inverse():
+            return None
+        case _:
+            values: list[Fraction] = []
+            for child in children(term):
+                value_of_child = constant_value(child)
+                if value_of_child is None:
+                    return None
+                values.append(value_of_child)
+    match term:
+        case Sum():
+            return sum(values, Fraction(0))
+        case Product():
+            product = Fraction(1)
+            for factor in values:
+                product *= factor
+            return product
+        case Power(_, exponent):
+            return values[0] ** exponent
+        case Quotient():
+            return None if values[1] == 0 else values[0] / values[1]
+        case Maximum():
+            return max(values)
+        case Minimum():
+            return min(values)
+        case _:
+            assert_never(term)

@@ -1,0 +1,297 @@
+"""Definitions, spec sets and options: what a specification file says, before anybody meets anybody.
+
+A set is a chain of overrides of named definitions; an option value is one more override. The
+definitions in force for a choice of set and options are a ``Specification``.
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from functools import cache
+from importlib import resources
+from pathlib import Path
+
+from roadproof.errors import InputError, Position, TextError, UsageError
+from roadproof.logic import syntax
+from roadproof.logic.parse import parse_library
+from roadproof.logic.syntax import (
+    Definition,
+    EachBlock,
+    Expression,
+    OptionDeclaration,
+    ParameterDeclaration,
+    SetBlock,
+    Statement,
+    WhenBlock,
+)
+
+LARGEST_FILE = 1_000_000
+_INDEX = re.compile(r"\{([^{}]*)\}")
+_INDEX_EXPRESSION = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:([+-])\s*(\d{1,4}))?\s*")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A specification text and where it came from, for error messages."""
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Library:
+    """Everything that specification files declare; names are unique in each mapping."""
+
+    parameters: Mapping[str, ParameterDeclaration]
+    options: Mapping[str, OptionDeclaration]
+    definitions: Mapping[str, Definition]
+    sets: Mapping[str, SetBlock]
+    variants: Mapping[tuple[str, str], tuple[Definition, ...]]
+    sources: Mapping[str, Source]
+
+    def select(
+        self, set_name: str = "base", options: Mapping[str, str] | None = None
+    ) -> "Specification":
+        """The definitions in force for a spec set and option values (defaults where not given).
+
+        Raises ``UsageError`` for a set, option or value that does not exist.
+        """
+        chosen = {name: declared.values[0] for name, declared in self.options.items()}
+        for name, value in (options or {}).items():
+            if name not in self.options:
+                raise UsageError(f"option {name}={value}: {unknown('option', name, self.options)}")
+            if value not in self.options[name].values:
+                allowed = " or ".join(self.options[name].values)
+                raise UsageError(f"option {name}={value}: the value must be {allowed}")
+            chosen[name] = value
+        definitions = dict(self.definitions)
+        for block in self._chain(set_name):
+            definitions |= {d.name: d for d in block.definitions}
+        for choice in chosen.items():
+            definitions |= {d.name: d for d in self.variants.get(choice, ())}
+        return Specification(self, set_name, chosen, definitions)
+
+    def _chain(self, set_name: str) -> list[SetBlock]:
+        """From the outermost ancestor to ``set_name``."""
+        if set_name not in self.sets:
+            raise UsageError(f"set={set_name}: {unknown('spec set', set_name, self.sets)}")
+        chain: list[SetBlock] = []
+        name = set_name
+        while name:
+            chain.append(self.sets[name])
+            name = self.sets[name].parent
+        return chain[::-1]
+
+
+@dataclass(frozen=True)
+class Specification:
+    """One spec set under one choice of options."""
+
+    library: Library
+    set_name: str
+    options: Mapping[str, str]
+    definitions: Mapping[str, Definition]
+
+    def in_set(self, set_name: str) -> "Specification":
+        """The same options under another set."""
+        return self if set_name == self.set_name else self.library.select(set_name, self.options)
+
+
+def unknown(what: str, name: str, known: Iterable[str]) -> str:
+    """A message for a name that does not exist, with the nearest that does."""
+    names = sorted(known)
+    near = get_close_matches(name, names, n=1, cutoff=0.6)
+    if near:
+        return f"there is no {what} '{name}'; did you mean '{near[0]}'?"
+    listed = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+    return f"there is no {what} '{name}'" + (f"; there are {listed}" if names else "")
+
+
+def read_specification(path: Path) -> Source:
+    """The text of a user's file. Raises ``InputError`` where it cannot be read as UTF-8 text."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    if len(data) > LARGEST_FILE:
+        raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: split it, or name another file")
+    try:
+        return Source(str(path), data.decode("utf-8"))
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path} is not UTF-8 text: byte {error.start} is 0x{data[error.start]:02x}; save it as UTF-8"
+        ) from None
+
+
+@cache
+def bundled_library() -> Library:
+    """The library that comes with roadproof: ``spec/library/*.spec``."""
+    folder = resources.files("roadproof.spec").joinpath("library")
+    files = sorted((f for f in folder.iterdir() if f.name.endswith(".spec")), key=lambda f: f.name)
+    return build_library([Source(f.name, f.read_text("utf-8")) for f in files])
+
+
+def load_library(paths: Iterable[Path] = ()) -> Library:
+    """The bundled library, with the users' files on top: their definitions replace or add."""
+    library = bundled_library()
+    extra = [read_specification(path) for path in paths]
+    return build_library(extra, library) if extra else library
+
+
+def build_library(sources: Iterable[Source], below: Library | None = None) -> Library:
+    """Put statements into their mappings. Raises ``TextError`` for duplicates and unknown names."""
+    building = _Building(below)
+    for source in sources:
+        statements = parse_library(source.text, source.name)
+        try:
+            building.add(statements, source)
+        except TextError as error:
+            raise error.locate(source.name, source.text) from None
+    return building.library()
+
+
+class _Building:
+    def __init__(self, below: Library | None) -> None:
+        self.parameters = dict(below.parameters) if below else {}
+        self.options = dict(below.options) if below else {}
+        self.definitions = dict(below.definitions) if below else {}
+        self.sets = dict(below.sets) if below else {}
+        self.variants = dict(below.variants) if below else {}
+        self.sources = dict(below.sources) if below else {}
+
+    def library(self) -> Library:
+        return Library(
+            self.parameters, self.options, self.definitions, self.sets, self.variants, self.sources
+        )
+
+    def add(self, statements: Iterable[Statement], source: Source) -> None:
+        fresh: set[tuple[str, str]] = set()
+        blocks: list[SetBlock | WhenBlock] = []
+        for statement in statements:
+            match statement:
+                case ParameterDeclaration():
+                    _once(fresh, "parameter", statement.name, statement.at)
+                    self.parameters[statement.name] = statement
+                case OptionDeclaration():
+                    _once(fresh, "option", statement.name, statement.at)
+                    self.options[statement.name] = statement
+                case Definition():
+                    self._define(statement, fresh, source)
+                case EachBlock():
+                    for definition in _instances(statement):
+                        self._define(definition, fresh, source)
+                case SetBlock() | WhenBlock():
+                    blocks.append(statement)
+        for block in blocks:
+            self._override(block, fresh, source)
+
+    def _define(self, definition: Definition, fresh: set[tuple[str, str]], source: Source) -> None:
+        _once(fresh, "definition", definition.name, definition.at)
+        if definition.name in BUILT_IN:
+            raise TextError(f"'{definition.name}' is built in and cannot be defined", definition.at)
+        self.definitions[definition.name] = definition
+        self.sources[_key(definition)] = source
+
+    def _override(
+        self, block: SetBlock | WhenBlock, fresh: set[tuple[str, str]], source: Source
+    ) -> None:
+        inside: set[tuple[str, str]] = set()
+        for definition in block.definitions:
+            _once(inside, "definition", definition.name, definition.at)
+            if definition.name not in self.definitions:
+                message = unknown("definition", definition.name, self.definitions)
+                raise TextError(f"an override needs something to replace: {message}", definition.at)
+            self.sources[_key(definition)] = source
+        if isinstance(block, SetBlock):
+            _once(fresh, "set", block.name, block.at)
+            if block.parent and block.parent not in self.sets:
+                raise TextError(unknown("spec set", block.parent, self.sets), block.at)
+            self.sets[block.name] = block
+        else:
+            if block.option not in self.options:
+                raise TextError(unknown("option", block.option, self.options), block.at)
+            if block.value not in self.options[block.option].values:
+                message = unknown(
+                    f"value of option {block.option}", block.value, self.options[block.option].values
+                )
+                raise TextError(message, block.at)
+            key = (block.option, block.value)
+            self.variants[key] = (*self.variants.get(key, ()), *block.definitions)
+
+
+# Names that mean something without a definition; spec.elaborate gives their meaning.
+BUILT_IN = frozenset(
+    {"s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "length", "width", "occ"}
+    | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
+)
+
+
+def _key(definition: Definition) -> str:
+    return f"{definition.name}:{definition.at.line}:{definition.at.column}"
+
+
+def source_of(library: Library, definition: Definition) -> Source:
+    """Where a definition was written."""
+    return library.sources.get(_key(definition), Source("", ""))
+
+
+def _once(fresh: set[tuple[str, str]], kind: str, name: str, at: Position) -> None:
+    if (kind, name) in fresh:
+        raise TextError(f"{kind} '{name}' is given twice", at, "Remove or rename one of the two.")
+    fresh.add((kind, name))
+
+
+def _instances(block: EachBlock) -> list[Definition]:
+    """The definitions of an ``each`` block, once for every index."""
+
+    def at_index(text: str, index: int, at: Position) -> str:
+        def value(found: re.Match[str]) -> str:
+            read = _INDEX_EXPRESSION.fullmatch(found[1])
+            if read is None or read[1] != block.variable:
+                raise TextError(
+                    f"'{{{found[1]}}}' is no index",
+                    at,
+                    f"Write {{{block.variable}}}, {{{block.variable}-8}} or the like.",
+                )
+            shift = int(read[3] or 0)
+            return str(index - shift if read[2] == "-" else index + shift)
+
+        return _INDEX.sub(value, text)
+
+    def rename(expression: Expression, index: int) -> Expression:
+        match expression:
+            case syntax.Call(name, arguments, at):
+                new = tuple(rename(a, index) for a in arguments)
+                return syntax.Call(at_index(name, index, at), new, at)
+            case syntax.Name(name, at):
+                return syntax.Name(at_index(name, index, at), at)
+            case syntax.Literal_():
+                return expression
+            case syntax.Prefix():
+                return replace(expression, body=rename(expression.body, index))
+            case syntax.Binary():
+                return replace(
+                    expression,
+                    left=rename(expression.left, index),
+                    right=rename(expression.right, index),
+                )
+            case syntax.Chain():
+                return replace(expression, parts=tuple(rename(p, index) for p in expression.parts))
+            case syntax.Quantified():
+                return replace(expression, body=rename(expression.body, index))
+            case syntax.Temporal():
+                left = None if expression.left is None else rename(expression.left, index)
+                return replace(expression, left=left, right=rename(expression.right, index))
+
+    return [
+        replace(
+            definition,
+            name=at_index(definition.name, index, definition.at),
+            doc=at_index(definition.doc, index, definition.at),
+            body=rename(definition.body, index),
+        )
+        for index in block.indices
+        for definition in block.definitions
+    ]

@@ -1,0 +1,50 @@
+"""What an answer promises, and the exit code that goes with it (docs/meaning.md)."""
+
+from collections.abc import Iterable
+from enum import IntEnum, StrEnum
+
+
+class Verdict(StrEnum):
+    """Answers to claims and to questions of existence. None of them leaves without evidence."""
+
+    PROVED = "PROVED"  # for all time; certificate
+    PROVED_BOUNDED = "PROVED-BOUNDED"  # up to a horizon, on a grid, within limits
+    REFUTED = "REFUTED"  # judged counterexample
+    VACUOUS = "VACUOUS"  # holds, but only because its premise never does
+    WITNESSED = "WITNESSED"  # judged drive
+    IMPOSSIBLE = "IMPOSSIBLE"  # a proof for all time that there is none
+    NONE_WITHIN = "NONE-WITHIN"  # none within horizon, grid and limits
+    UNKNOWN = "UNKNOWN"  # says why
+    CROSSCHECK_FAILED = "CROSSCHECK-FAILED"  # readers of the same formula disagree
+
+
+class ExitCode(IntEnum):
+    AS_EXPECTED = 0
+    USAGE = 2
+    BAD_INPUT = 3
+    MISSING_SOLVER = 4
+    UNEXPECTED = 10
+    UNKNOWN = 20
+    CROSSCHECK_FAILED = 30
+    OUR_FAULT = 70
+    INTERRUPTED = 130
+
+
+def exit_code(outcomes: Iterable[tuple[Verdict, Verdict]]) -> ExitCode:
+    """The exit code for (verdict, expected) pairs; the gravest wins, and a doubt is never 0.
+
+    >>> exit_code([(Verdict.PROVED, Verdict.PROVED), (Verdict.UNKNOWN, Verdict.PROVED)])
+    <ExitCode.UNKNOWN: 20>
+    """
+    worst = ExitCode.AS_EXPECTED
+    for verdict, expected in outcomes:
+        if verdict is Verdict.CROSSCHECK_FAILED:
+            found = ExitCode.CROSSCHECK_FAILED
+        elif verdict is Verdict.UNKNOWN:
+            found = ExitCode.UNKNOWN
+        elif verdict is not expected:
+            found = ExitCode.UNEXPECTED
+        else:
+            found = ExitCode.AS_EXPECTED
+        worst = max(worst, found)
+    return worst

@@ -1,0 +1,53 @@
+"""Straight roads of rectangular lanelets (SPEC §4; paper, appendix *Road Network*).
+
+Coordinates: s along the road in driving direction, d across it to the left, in metres.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+Zone: TypeAlias = Literal["main", "merge", "depart"]
+Attribute: TypeAlias = Literal["main", "merge", "departure"]
+
+
+@dataclass(frozen=True)
+class Lanelet:
+    """[s_low, s_high] × [d_right, d_left]; None in ``s`` is without bound."""
+
+    id: str
+    lane: str
+    zone: Zone
+    attribute: Attribute
+    s: tuple[Fraction | None, Fraction | None]
+    d: tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True)
+class Road:
+    """Lanelets and which lanes lie side by side (unordered pairs)."""
+
+    name: str
+    lanelets: tuple[Lanelet, ...]
+    adjacent: frozenset[frozenset[str]]
+
+    @property
+    def lanes(self) -> tuple[str, ...]:
+        """Names of the lanes, in the order of their lanelets."""
+        return tuple(dict.fromkeys(lanelet.lane for lanelet in self.lanelets))
+
+    def lanelets_of(self, lane: str) -> tuple[Lanelet, ...]:
+        return tuple(x for x in self.lanelets if x.lane == lane)
+
+    def lanelets_in(self, zone: str) -> tuple[Lanelet, ...]:
+        return tuple(x for x in self.lanelets if x.zone == zone)
+
+    def beside(self, lane: str) -> tuple[str, ...]:
+        """adjLanes(lane), in the order of ``lanes``."""
+        return tuple(x for x in self.lanes if x != lane and frozenset((x, lane)) in self.adjacent)
+
+
+def pairs(names: Iterable[tuple[str, str]]) -> frozenset[frozenset[str]]:
+    """Adjacent lanes as ``Road`` wants them."""
+    return frozenset(frozenset(pair) for pair in names)
