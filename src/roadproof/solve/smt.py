@@ -1,0 +1,149 @@
+"""The one home of z3 (and of cvc5): sessions that speak SMT-LIB 2 text.
+
+Everything that is asked of an SMT solver passes through here as text, so that any query can be
+written to a file and asked again of another program.
+"""
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from roadproof.errors import MissingSolverError
+
+Answer: TypeAlias = Literal["sat", "unsat", "unknown"]
+SExpression: TypeAlias = "str | list[SExpression]"
+
+
+class SolverError(RuntimeError):
+    """The solver refused what it was told: our fault, since we wrote it."""
+
+
+class Session:
+    """A z3 context that keeps declarations and assertions between calls."""
+
+    def __init__(self) -> None:
+        import z3
+
+        self._z3 = z3
+        self._context = z3.Context()
+        self.tell("(set-option :produce-models true)")
+
+    def tell(self, commands: str) -> str:
+        """Run SMT-LIB commands and return what they print. Raises ``SolverError``."""
+        try:
+            answer: str = self._z3.Z3_eval_smtlib2_string(self._context.ref(), commands)
+        except self._z3.Z3Exception as error:
+            raise SolverError(f"z3 refused: {error}") from None
+        if "(error" in answer:
+            raise SolverError(f"z3 refused: {answer.strip()}")
+        return answer
+
+    def check(self, assuming: Sequence[str] = (), timeout: float | None = None) -> Answer:
+        """``check-sat`` under Boolean constants or their negations; ``timeout`` in seconds."""
+        milliseconds = 0 if timeout is None else max(1, int(timeout * 1000))
+        limit = milliseconds or 4294967295
+        query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
+        return _answer(self.tell(f"(set-option :timeout {limit}){query}"))
+
+    def core(self) -> list[str]:
+        """The assumptions that the last ``unsat`` used."""
+        read = parse_sexpression(self.tell("(get-unsat-core)"))
+        return [x for x in read if isinstance(x, str)]
+
+    def values(self, expressions: Sequence[str]) -> list[Fraction | bool | None]:
+        """Values in the last model, in order; None for a number that is not rational."""
+        if not expressions:
+            return []
+        read = parse_sexpression(self.tell(f"(get-value ({' '.join(expressions)}))"))
+        return [read_value(pair[1]) for pair in read]
+
+
+def _answer(text: str) -> Answer:
+    words = text.split()
+    if "unsat" in words:
+        return "unsat"
+    return "sat" if "sat" in words else "unknown"
+
+
+def ask(script: str, solver: str = "z3", timeout: float | None = None) -> Answer:
+    """The answer of ``solver`` (z3 or cvc5) to a whole SMT-LIB script that ends in ``check-sat``.
+
+    Raises ``MissingSolverError`` where cvc5 is not installed.
+    """
+    if solver == "z3":
+        milliseconds = 4294967295 if timeout is None else max(1, int(timeout * 1000))
+        return _answer(Session().tell(f"(set-option :timeout {milliseconds})\n{script}"))
+    return _ask_cvc5(script, timeout)
+
+
+def _ask_cvc5(script: str, timeout: float | None) -> Answer:
+    try:
+        import cvc5
+    except ImportError:
+        raise MissingSolverError(
+            "solver=cvc5 is not installed: install roadproof[cvc5], or ask z3"
+        ) from None
+    solver = cvc5.Solver()
+    if timeout is not None:
+        solver.setOption("tlimit-per", str(max(1, int(timeout * 1000))))
+    symbols = cvc5.SymbolManager(solver)
+    parser = cvc5.InputParser(solver, symbols)
+    parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, script, "query")
+    printed: list[str] = []
+    while True:
+        command = parser.nextCommand()
+        if command.isNull():
+            return _answer(" ".join(printed))
+        printed.append(str(command.invoke(solver, symbols)))
+
+
+def parse_sexpression(text: str) -> list[SExpression]:
+    """The first parenthesised expression of ``text``."""
+    stack: list[list[SExpression]] = [[]]
+    for token in _tokens(text):
+        if token == "(":
+            stack.append([])
+        elif token == ")":
+            done = stack.pop()
+            stack[-1].append(done)
+        else:
+            stack[-1].append(token)
+    first = stack[0][0] if stack[0] else []
+    return first if isinstance(first, list) else [first]
+
+
+def _tokens(text: str) -> Iterable[str]:
+    quoted = False
+    word = ""
+    for character in text:
+        if quoted:
+            word += character
+            quoted = character != "|"
+        elif character in "() \t\r\n":
+            if word:
+                yield word
+            word = ""
+            if character in "()":
+                yield character
+        else:
+            word += character
+            quoted = character == "|"
+    if word:
+        yield word
+
+
+def read_value(value: SExpression) -> Fraction | bool | None:
+    """A solver's value as a rational or truth value; None where it is an irrational number."""
+    match value:
+        case "true" | "false":
+            return value == "true"
+        case str():
+            return Fraction(value)
+        case ["-", inner]:
+            read = read_value(inner)
+            return None if read is None else -Fraction(read)
+        case ["/", upper, lower]:
+            top, bottom = read_value(upper), read_value(lower)
+            return None if top is None or bottom is None else Fraction(top) / Fraction(bottom)
+        case _:
+            return None
