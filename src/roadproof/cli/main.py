@@ -1,0 +1,140 @@
+"""``roadproof SUBCOMMAND …``: finds the module of the sub-command, and turns errors into exit codes.
+
+Only the module that is asked for is imported. Each module has ``SUMMARY: str`` (a plain literal),
+``add_arguments(parser)`` and ``run(args) -> int``, where the integer is the exit code.
+"""
+
+import argparse
+import ast
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NoReturn
+
+from roadproof.errors import RoadproofError, UsageError
+from roadproof.verdict import ExitCode
+
+COMMANDS = {
+    "list": "roadproof.cli.list",
+    "show": "roadproof.cli.show",
+    "prove": "roadproof.cli.prove",
+    "check": "roadproof.cli.check",
+    "witness": "roadproof.cli.witness",
+    "compare": "roadproof.cli.compare",
+    "monitor": "roadproof.cli.monitor",
+    "evaluate": "roadproof.cli.evaluate",
+    "simulate": "roadproof.cli.simulate",
+}
+TRACEBACK = "ROADPROOF_TRACEBACK"
+
+_EXAMPLES = """\
+examples:
+  roadproof list                          what there is: scenarios, spec sets, options, parameters
+  roadproof show 4                        scenario 4 and the definitions it uses
+  roadproof show 4 --set ext --expand     the same as one formula
+  roadproof show 'F danger(SV,POV)' --format latex
+
+exit codes: 0 as expected, 10 refuted or unexpected, 20 unknown, 30 cross-check failed,
+            2 usage, 3 bad input, 4 missing solver, 70 our fault, 130 interrupted
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose mistakes are errors like all others."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message}; see {self.prog} --help")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command line and return its exit code; results on stdout, complaints on stderr."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        code = _run(arguments)
+        sys.stdout.flush()
+        return code
+    except RoadproofError as error:
+        return _complain(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        return _complain("interrupted", ExitCode.INTERRUPTED)
+    except BrokenPipeError:
+        # The reader has gone away; keep the interpreter from complaining when it flushes at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return ExitCode.AS_EXPECTED
+    except Exception as error:
+        if os.environ.get(TRACEBACK):
+            raise
+        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        return _complain(
+            f"this is our fault: {reason}\n"
+            f"Set {TRACEBACK}=1 to see where it happened, and report it with the command line.",
+            ExitCode.OUR_FAULT,
+        )
+
+
+def _run(arguments: list[str]) -> int:
+    parser = _Parser(
+        prog="roadproof",
+        description="Compiles driving scenarios to proofs, witnesses and monitors.",
+        epilog=_EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="store_true", help="print the version and exit")
+    asked = next((a for a in arguments if not a.startswith("-")), None)
+    commands = parser.add_subparsers(dest="command", metavar="SUBCOMMAND", parser_class=_Parser)
+    for name, file in _available():
+        summary = _summary(file)
+        command = commands.add_parser(
+            name,
+            help=summary,
+            description=summary,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        if name == asked:
+            import_module(COMMANDS[name]).add_arguments(command)
+    parsed = parser.parse_args(arguments)
+    if parsed.version:
+        return _print_version()
+    if parsed.command is None:
+        raise UsageError("name a sub-command; see roadproof --help")
+    code: int = import_module(COMMANDS[parsed.command]).run(parsed)
+    return code
+
+
+def _available() -> Iterator[tuple[str, Path]]:
+    """The sub-commands whose module is installed, with its file."""
+    for name, module in COMMANDS.items():
+        found = find_spec(module)
+        if found is not None and found.origin is not None:
+            yield name, Path(found.origin)
+
+
+def _summary(file: Path) -> str:
+    """The literal ``SUMMARY`` of a module, read without importing it: --help has to be quick."""
+    for statement in ast.parse(file.read_text("utf-8")).body:
+        match statement:
+            case (
+                ast.Assign(targets=[ast.Name(id="SUMMARY")], value=ast.Constant(value=str(text)))
+                | ast.AnnAssign(target=ast.Name(id="SUMMARY"), value=ast.Constant(value=str(text)))
+            ):
+                return text
+    raise AssertionError(f"{file} has no SUMMARY")
+
+
+def _print_version() -> int:
+    from importlib.metadata import version
+
+    print(f"roadproof {version('roadproof')}")
+    return ExitCode.AS_EXPECTED
+
+
+def _complain(message: str, code: int) -> int:
+    print(f"roadproof: {message}", file=sys.stderr)
+    return int(code)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

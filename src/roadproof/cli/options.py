@@ -1,0 +1,153 @@
+"""Options that several sub-commands share, and what they mean."""
+
+import argparse
+import json
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from roadproof.errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from roadproof.spec.library import Library, Specification
+
+_VALUE = re.compile(r"([+-]?\d{1,30}(?:\.\d{1,30})?(?:/\d{1,30})?)\s*([A-Za-z][A-Za-z/^0-9]*)?")
+
+
+def add_specification_options(parser: argparse.ArgumentParser, set_name: str | None = "base") -> None:
+    """``--set``, ``--option`` and ``--spec``; ``set_name`` is the default, None lets the caller choose."""
+    default = f" (default: {set_name})" if set_name else ""
+    parser.add_argument("--set", dest="set_name", metavar="S", default=set_name, help=f"spec set{default}")
+    parser.add_argument(
+        "--option",
+        dest="options",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="choose a reading, such as lateral_sign=literal; may be repeated",
+    )
+    parser.add_argument(
+        "--spec",
+        dest="specs",
+        metavar="FILE",
+        action="append",
+        type=Path,
+        default=[],
+        help="a specification file of yours, on top of the library; may be repeated",
+    )
+
+
+def add_parameter_option(parser: argparse.ArgumentParser) -> None:
+    """``--param``, whose values ``parameter_values`` understands."""
+    parser.add_argument(
+        "--param",
+        dest="params",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="value of a parameter, such as minDanger=0, rho=3/5 or 'rho=600 ms'; may be repeated",
+    )
+
+
+def add_json_option(parser: argparse.ArgumentParser) -> None:
+    """``--json FILE``, where - is stdout; see ``write_json``."""
+    parser.add_argument("--json", metavar="FILE", help="write the answer as JSON to FILE, or - for stdout")
+
+
+def load_library_of(args: argparse.Namespace) -> "Library":
+    """The bundled library with the files of ``--spec`` on top. Raises ``InputError``."""
+    from roadproof.spec.library import load_library
+
+    return load_library(args.specs)
+
+
+def select_specification(args: argparse.Namespace, library: "Library | None" = None) -> "Specification":
+    """The definitions in force under ``--set``, ``--option`` and ``--spec``. Raises ``InputError``."""
+    chosen = library or load_library_of(args)
+    return chosen.select(args.set_name or "base", dict(_assignments("--option", args.options)))
+
+
+def parameter_values(args: argparse.Namespace, library: "Library") -> dict[str, Fraction]:
+    """Every parameter's value in SI units: declared, or given with ``--param``.
+
+    A value without unit is in the unit of the declaration. Raises ``InputError`` for unknown names,
+    values that are no rational, units of another dimension, and values out of the declared bound.
+    """
+    from roadproof.spec.bind import default_values
+    from roadproof.spec.library import unknown
+
+    values = default_values(library)
+    for name, text in _assignments("--param", args.params):
+        if name not in library.parameters:
+            raise InputError(f"--param {name}={text}: {unknown('parameter', name, library.parameters)}")
+        declared = library.parameters[name]
+        value = _read_value(name, text, declared.unit)
+        if (declared.bound == ">" and value <= 0) or (declared.bound == ">=" and value < 0):
+            raise InputError(f"--param {name}={text}: the library demands {name} {declared.bound} 0")
+        values[name] = value
+    return values
+
+
+def _read_value(name: str, text: str, unit: str) -> Fraction:
+    from roadproof.spec.elaborate import UNITS
+    from roadproof.spec.library import unknown
+
+    read = _VALUE.fullmatch(text.strip())
+    if read is None:
+        raise InputError(
+            f"--param {name}={text}: this is no value; write a decimal or a fraction, with a unit if you "
+            f"like, such as {name}=0.6, {name}=3/5 or '{name}=0.6 {unit}'"
+        )
+    number, given = read[1], read[2] or unit
+    if given not in UNITS:
+        raise InputError(f"--param {name}={text}: {unknown('unit', given, UNITS)}")
+    if UNITS[given][1] != UNITS[unit][1]:
+        raise InputError(f"--param {name}={text}: {name} is in {unit}, which {given} does not measure")
+    top, _, bottom = number.partition("/")
+    if bottom and Fraction(bottom) == 0:
+        raise InputError(f"--param {name}={text}: the denominator is zero")
+    return Fraction(top) / Fraction(bottom or 1) * UNITS[given][0]
+
+
+def _assignments(option: str, texts: Iterable[str]) -> list[tuple[str, str]]:
+    """``NAME=VALUE`` texts as pairs. Raises ``UsageError`` where there is no ``=``."""
+    pairs: list[tuple[str, str]] = []
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip() or not value.strip():
+            raise UsageError(f"{option} {text}: write {option} NAME=VALUE")
+        pairs.append((name.strip(), value.strip()))
+    return pairs
+
+
+def write_json(data: Mapping[str, Any], target: str) -> None:
+    """``data`` as JSON to the file ``target``, or to stdout where it is ``-``. Raises ``InputError``."""
+    text = json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+    if target == "-":
+        sys.stdout.write(text)
+    else:
+        write_text(Path(target), text)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file whole or not at all: a reader never sees half of it. Raises ``InputError``."""
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists") from None
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except OSError as error:
+        os.unlink(temporary)
+        raise InputError(f"cannot write {path}: {error.strerror}") from None
+    except BaseException:
+        os.unlink(temporary)
+        raise
