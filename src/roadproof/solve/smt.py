@@ -26,7 +26,7 @@ class Session:
 
         self._z3 = z3
         self._context = z3.Context()
-        self.tell("(set-option :produce-models true)")
+        self.tell("(set-option :produce-models true)(set-option :produce-unsat-cores true)")
 
     def tell(self, commands: str) -> str:
         """Run SMT-LIB commands and return what they print. Raises ``SolverError``."""

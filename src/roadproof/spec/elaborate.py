@@ -418,17 +418,18 @@ class _Elaborator:
             )
         return t.Quotient(numerator, denominator)
 
-    def _is_positive(self, term: t.Term) -> bool:
-        """Whether ``term`` is greater than zero by its form alone."""
+    def _is_positive(self, term: t.Term, or_zero: bool = False) -> bool:
+        """Whether ``term`` is greater than zero (or not below it) by its form alone."""
         match term:
             case t.Number(value, _):
-                return value > 0
+                return value > 0 or (or_zero and value == 0)
             case t.Parameter(name, _):
-                return self.specification.library.parameters[name].bound == ">"
+                bound = self.specification.library.parameters[name].bound
+                return bound == ">" or (or_zero and bound == ">=")
             case t.Size():
                 return True
-            case t.Sum() | t.Product() | t.Power() | t.Quotient():
-                return all(self._is_positive(child) for child in t.children(term))
+            case t.Sum() | t.Product() | t.Power() | t.Quotient() | t.Maximum() | t.Minimum():
+                return all(self._is_positive(child, or_zero) for child in t.children(term))
             case _:
                 return False
 
@@ -459,6 +460,12 @@ class _Elaborator:
         if any(isinstance(leaf, t.Signal) for leaf in t.leaves(quantity.term)):
             raise TextError("an interval bound may not depend on a vehicle's motion", expression.at)
         value = t.constant_value(quantity.term)
+        if value is None and not self._is_positive(quantity.term, or_zero=True):
+            raise TextError(
+                "an interval bound may never be negative",
+                expression.at,
+                "Use numbers and parameters declared with where … >= 0, added or multiplied.",
+            )
         return quantity.term if value is None else t.Number(value, SECONDS)
 
     # --- quantifiers and built-in names ----------------------------------------------------------

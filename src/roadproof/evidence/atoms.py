@@ -1,0 +1,116 @@
+"""The opaque reading of a claim: state predicates become atoms, functions from time to truth.
+
+A definition whose body compares, occupies or quantifies is one atom (``aheadOf``, ``atLane``);
+definitions that only combine others (``danger``, ``accel``) are looked through. Two atoms are the
+same when their bodies are built alike, whatever they are called.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from roadproof.errors import InputError
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, Named
+from roadproof.logic.rewrite import terms_of, without_names
+from roadproof.logic.show import as_syntax, text
+from roadproof.logic.terms import Signal, leaves
+
+
+@dataclass
+class Atoms:
+    """The atoms met so far: from what they mean to what they are called."""
+
+    names: dict[Formula, str] = field(default_factory=dict)
+    named: dict[str, Formula] = field(default_factory=dict)
+
+    def atomise(self, formula: Formula) -> Formula:
+        """``formula`` with each atom as ``Named(unique text, (), meaning)`` and no other names.
+
+        The body of a quantifier over the road is left as it is, to be atomised at each instance.
+        """
+        done: dict[Formula, Formula] = {}
+
+        def visit(current: Formula) -> Formula:
+            if current not in done:
+                done[current] = self._atom(current) if is_atom(current) else descend(current)
+            return done[current]
+
+        def descend(current: Formula) -> Formula:
+            if isinstance(current, Named):
+                return visit(current.body)
+            if isinstance(current, f.Some | f.Every):
+                return current
+            return f.with_children(current, tuple(visit(c) for c in f.children(current)))
+
+        return visit(formula)
+
+    def meaning(self, name: str) -> Formula:
+        """What an atom says. Raises ``InputError`` for a name that no atom has."""
+        if name not in self.named:
+            raise InputError(f"'{name}' is no atom of the claim")
+        return self.named[name]
+
+    def _atom(self, formula: Formula) -> Named:
+        meaning = without_names(formula)
+        if meaning not in self.names:
+            shown = text(as_syntax(formula, expand=False))
+            name, count = shown, 1
+            while name in self.named:
+                count += 1
+                name = f"{shown} #{count}"
+            self.names[meaning] = name
+            self.named[name] = meaning
+        return Named(self.names[meaning], (), meaning)
+
+
+def is_atom(formula: Formula) -> bool:
+    """Whether ``formula`` is read as one opaque state predicate."""
+    match formula:
+        case f.Compare() | f.Occupies():
+            return True
+        case f.Some() | f.Every():
+            return f.is_state(formula)
+        case Named(_, _, body):
+            return f.is_state(body) and any(
+                isinstance(part, f.Compare | f.Occupies | f.Some | f.Every) for part in _combined(body)
+            )
+        case _:
+            return False
+
+
+def is_rigid(formula: Formula) -> bool:
+    """Whether time cannot change ``formula``: it speaks of parameters and variables only."""
+    if any(isinstance(part, f.Occupies | f.Some | f.Every) for part in f.subformulas(formula)):
+        return False
+    return not any(isinstance(leaf, Signal) for side in terms_of(formula) for leaf in leaves(side))
+
+
+def _combined(formula: Formula) -> Iterator[Formula]:
+    """What ``formula`` combines with not, and, or."""
+    if isinstance(formula, f.Not | f.And | f.Or):
+        for child in f.children(formula):
+            yield from _combined(child)
+    else:
+        yield formula
+
+
+def rename(formula: Formula, old: str, new: str) -> Formula:
+    """``formula`` with the lane or lanelet variable ``old`` called ``new`` (which is fresh)."""
+
+    def visit(current: Formula) -> Formula:
+        match current:
+            case f.Occupies(vehicle, lanelet) if lanelet == old:
+                return f.Occupies(vehicle, new)
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body) if domain.of == old:
+                return type(current)(variable, f.Domain(domain.kind, new), body)
+            case Named(name, arguments, body):
+                return Named(name, tuple(new if a == old else a for a in arguments), body)
+            case _:
+                return current
+
+    return f.transform(formula, visit)
+
+
+def membership(domain: f.Domain, element: str) -> str:
+    """A name for the fact that ``element`` belongs to ``domain``, which time does not change."""
+    return f"{element} in {domain.kind}({domain.of})"

@@ -1,0 +1,337 @@
+"""The ground query of a certificate, derived from the claim and a list of instances alone.
+
+The negated claim is read as a first-order sentence over real time (predicates as functions of
+time). Every existential gets a name of its own; every universal is replaced by the conjunction of
+its listed instances. Both steps only weaken the sentence, so when the result is unsatisfiable,
+the negated claim is, and the claim is valid on all traces (Herbrand). Lemmas are clauses that hold
+at every instant; each has a query of its own, about one instant, that must be unsatisfiable too.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias, assert_never
+
+from roadproof.errors import InputError
+from roadproof.evidence import state
+from roadproof.evidence.atoms import Atoms, is_rigid, membership, rename
+from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.show import as_syntax, text
+
+# What an instance says at a moment: its guards, and the body that they guard.
+Instance: TypeAlias = Callable[[Moment], tuple[list[str], str]]
+
+
+@dataclass(frozen=True)
+class Site:
+    """A quantifier met at a moment: ``formula`` in prefix form, its polarity, when it is read.
+
+    ``instance`` is set where the quantifier stands under an instance of a negated until.
+    """
+
+    formula: str
+    positive: bool
+    moment: str
+    instance: str = ""
+
+
+@dataclass(frozen=True)
+class Lemma:
+    """A clause over atoms that holds at every instant; ``moments`` are where the proof uses it."""
+
+    literals: tuple[tuple[str, bool], ...]
+    moments: tuple[str, ...]
+
+
+def prefix_form(formula: Formula) -> str:
+    """An atomised formula as text in which nothing is ambiguous."""
+    match formula:
+        case f.Truth(value):
+            return str(value).lower()
+        case f.Named(name, _, _):
+            return f"|{name}|"
+        case f.Not(body):
+            return f"(not {prefix_form(body)})"
+        case f.And(parts):
+            return f"(and {' '.join(map(prefix_form, parts))})"
+        case f.Or(parts):
+            return f"(or {' '.join(map(prefix_form, parts))})"
+        case f.Until(left, interval, right):
+            return f"(U {_window(interval)} {prefix_form(left)} {prefix_form(right)})"
+        case f.Eventually(interval, body):
+            return f"(F {_window(interval)} {prefix_form(body)})"
+        case f.Always(interval, body):
+            return f"(G {_window(interval)} {prefix_form(body)})"
+        case f.Some() | f.Every():
+            return f"({text(as_syntax(formula, expand=False))})"
+        case f.Compare() | f.Occupies():
+            raise ValueError("atomise the formula first")
+        case _:
+            assert_never(formula)
+
+
+def _window(interval: f.Interval) -> str:
+    high = "inf" if interval.high is None else str(moment_of(interval.high))
+    return f"[{moment_of(interval.low)}, {high}]"
+
+
+def derive_query(
+    claim: Formula,
+    atoms: Atoms,
+    instances: Mapping[Site, Sequence[str]],
+    names: Mapping[Site, str],
+    lemmas: Sequence[Lemma],
+    bounds: Mapping[str, str],
+) -> str:
+    """SMT-LIB script that is unsatisfiable only if ``claim``, atomised by ``atoms``, is valid at time 0.
+
+    ``instances`` lists for each universal the moments (or lanes) to try; ``names`` calls the
+    existentials that instances speak of. Raises ``InputError`` where an instance or a name belongs
+    to no quantifier that the claim meets.
+    """
+    derivation = _Derivation(atoms, instances, names)
+    goal = derivation.truth(claim, False, ZERO)
+    clauses = [
+        _join("or", [derivation.literal(name, positive, moment) for name, positive in lemma.literals])
+        for lemma in lemmas
+        for moment in map(read_moment, lemma.moments)
+    ]
+    derivation.refuse_strangers()
+    return "\n".join(
+        [
+            "(set-logic QF_UFLRA)",
+            *derivation.declarations(bounds),
+            *derivation.definitions,
+            f"(assert {goal})",
+            *(f"(assert {clause})" for clause in clauses),
+            "(check-sat)",
+            "",
+        ]
+    )
+
+
+def met_names(
+    claim: Formula, atoms: Atoms, instances: Mapping[Site, Sequence[str]], names: Mapping[Site, str]
+) -> dict[Site, str]:
+    """The entries of ``names`` whose quantifier is met when only ``instances`` are made."""
+    derivation = _Derivation(atoms, instances, names)
+    derivation.truth(claim, False, ZERO)
+    return {site: name for site, name in names.items() if site in derivation.met}
+
+
+def derive_lemma_query(
+    atoms: Atoms, literals: Sequence[tuple[str, bool]], bounds: Mapping[str, str]
+) -> str:
+    """SMT-LIB script about one instant that is unsatisfiable only if the clause always holds."""
+    meanings = [(atoms.meaning(name), positive) for name, positive in literals]
+    against = [state.state(f.negation(meaning) if positive else meaning) for meaning, positive in meanings]
+    return "\n".join(
+        [
+            "(set-logic QF_NRA)",
+            *state.declarations([meaning for meaning, _ in meanings], bounds),
+            *(f"(assert {literal})" for literal in against),
+            "(check-sat)",
+            "",
+        ]
+    )
+
+
+@dataclass
+class _Derivation:
+    known: Atoms
+    instances: Mapping[Site, Sequence[str]]
+    names: Mapping[Site, str]
+    definitions: list[str] = field(default_factory=list)
+    defined: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
+    atoms: set[str] = field(default_factory=set)
+    facts: set[str] = field(default_factory=set)
+    times: list[str] = field(default_factory=list)
+    moments: set[str] = field(default_factory=set)
+    met: set[Site] = field(default_factory=set)
+    fresh: int = 0
+
+    def truth(self, formula: Formula, positive: bool, moment: Moment) -> str:
+        """What follows from ``formula`` (or its negation) being true at ``moment``."""
+        match formula:
+            case f.Truth(value):
+                return "true" if value == positive else "false"
+            case f.Named(name, _, _):
+                return self.literal(name, positive, moment)
+            case f.Not(body):
+                return self.truth(body, not positive, moment)
+            case f.And(parts) | f.Or(parts):
+                word = "and" if isinstance(formula, f.And) == positive else "or"
+                return _join(word, [self.truth(part, positive, moment) for part in parts])
+            case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
+                return self._quantifier(formula, positive, moment)
+            case f.Compare() | f.Occupies():
+                raise ValueError("atomise the formula first")
+            case _:
+                assert_never(formula)
+
+    def literal(self, name: str, positive: bool, moment: Moment) -> str:
+        self.atoms.add(name)
+        if is_rigid(self.known.meaning(name)):
+            moment = ZERO
+        self.moments |= {part for part, _ in moment.parts}
+        applied = f"(|{name}| {moment.smt()})"
+        return applied if positive else f"(not {applied})"
+
+    def _quantifier(
+        self,
+        formula: f.Until | f.Eventually | f.Always | f.Some | f.Every,
+        positive: bool,
+        moment: Moment,
+    ) -> str:
+        key = (formula, positive, moment)
+        if key not in self.defined:
+            body = self._expand(formula, positive, moment)
+            self.defined[key] = f"q{len(self.definitions) + 1}"
+            self.definitions.append(f"(define-fun {self.defined[key]} () Bool {body})")
+        return self.defined[key]
+
+    def _expand(
+        self,
+        formula: f.Until | f.Eventually | f.Always | f.Some | f.Every,
+        positive: bool,
+        moment: Moment,
+    ) -> str:
+        site = Site(prefix_form(formula), positive, str(moment))
+        match formula:
+            case f.Eventually(interval, body) | f.Always(interval, body):
+                if isinstance(formula, f.Eventually) == positive:
+                    when = self._existential(site)
+                    return _join(
+                        "and", [*self._within(moment, interval, when), self.truth(body, positive, when)]
+                    )
+                return self._universal(
+                    site,
+                    lambda when: (self._within(moment, interval, when), self.truth(body, positive, when)),
+                )
+            case f.Until(left, interval, right) if positive:
+                end = self._existential(site)
+                before = self._universal(
+                    site,
+                    lambda when: (
+                        [self._at_most(moment + moment_of(interval.low), when), self._less(when, end)],
+                        self.truth(left, True, when),
+                    ),
+                )
+                return _join("and", [*self._within(moment, interval, end), self.truth(right, True, end), before])
+            case f.Until():
+                return self._universal(site, lambda when: self._until_fails(formula, site, moment, when))
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+                return self._road_quantifier(formula, site, variable, domain, body, positive, moment)
+            case _:
+                assert_never(formula)
+
+    def _until_fails(
+        self, formula: f.Until, site: Site, moment: Moment, when: Moment
+    ) -> tuple[list[str], str]:
+        """¬(φ U ψ): at each moment of the window ψ fails, or φ has failed before within it."""
+        failed = self._existential(Site(site.formula, False, site.moment, str(when)))
+        earlier = _join(
+            "and",
+            [
+                self._at_most(moment + moment_of(formula.interval.low), failed),
+                self._less(failed, when),
+                self.truth(formula.left, False, failed),
+            ],
+        )
+        guard = self._within(moment, formula.interval, when)
+        return guard, _join("or", [self.truth(formula.right, False, when), earlier])
+
+    def _road_quantifier(
+        self,
+        formula: Formula,
+        site: Site,
+        variable: str,
+        domain: f.Domain,
+        body: Formula,
+        positive: bool,
+        moment: Moment,
+    ) -> str:
+        def at_element(element: str) -> str:
+            instance = self.known.atomise(rename(body, variable, element))
+            return self.truth(instance, positive, moment)
+
+        if isinstance(formula, f.Some) == positive:
+            element = self._name(site)
+            return _join("and", [self._fact(domain, element), at_element(element)])
+        self.met.add(site)
+        return _join(
+            "and",
+            [f"(=> {self._fact(domain, e)} {at_element(e)})" for e in self.instances.get(site, ())],
+        )
+
+    def _fact(self, domain: f.Domain, element: str) -> str:
+        if domain.kind == "lanes":
+            return "true"
+        self.facts.add(membership(domain, element))
+        return f"|{membership(domain, element)}|"
+
+    def _name(self, site: Site) -> str:
+        self.met.add(site)
+        if site in self.names:
+            return self.names[site]
+        self.fresh += 1
+        return f"u{self.fresh}_"
+
+    def _existential(self, site: Site) -> Moment:
+        name = self._name(site)
+        self.times.append(name)
+        return at(name)
+
+    def _universal(self, site: Site, instance: Instance) -> str:
+        self.met.add(site)
+        clauses: list[str] = []
+        for text in self.instances.get(site, ()):
+            guard, body = instance(read_moment(text))
+            clauses.append(f"(=> {_join('and', guard)} {body})")
+        return _join("and", clauses)
+
+    def _within(self, start: Moment, interval: f.Interval, when: Moment) -> list[str]:
+        bounds = [self._at_most(start + moment_of(interval.low), when)]
+        if interval.high is not None:
+            bounds.append(self._at_most(when, start + moment_of(interval.high)))
+        return bounds
+
+    def _at_most(self, left: Moment, right: Moment) -> str:
+        self.moments |= {name for m in (left, right) for name, _ in m.parts}
+        return f"(<= {left.smt()} {right.smt()})"
+
+    def _less(self, left: Moment, right: Moment) -> str:
+        self.moments |= {name for m in (left, right) for name, _ in m.parts}
+        return f"(< {left.smt()} {right.smt()})"
+
+    def refuse_strangers(self) -> None:
+        """Every listed instance and name must belong to a quantifier that was met."""
+        for site in [*self.instances, *self.names]:
+            if site not in self.met:
+                raise InputError(
+                    f"an instance at moment {site.moment} belongs to no quantifier of the claim: "
+                    f"{site.formula[:120]}"
+                )
+        known = {*self.names.values()}
+        if len(known) != len(self.names):
+            raise InputError("two existentials of the certificate have the same name")
+
+    def declarations(self, bounds: Mapping[str, str]) -> list[str]:
+        parameters = sorted(self.moments & set(bounds))
+        strangers = self.moments - set(bounds) - set(self.times)
+        if strangers:
+            raise InputError(f"the moment '{min(strangers)}' is no time of the certificate and no parameter")
+        return [
+            *(f"(declare-const {name} Real)" for name in parameters),
+            *(f"(assert ({bounds[name]} {name} 0.0))" for name in parameters if bounds[name]),
+            *(f"(declare-const {name} Real)" for name in dict.fromkeys(self.times)),
+            *(f"(declare-const |{name}| Bool)" for name in sorted(self.facts)),
+            *(f"(declare-fun |{name}| (Real) Bool)" for name in sorted(self.atoms)),
+        ]
+
+
+def _join(word: str, parts: Sequence[str]) -> str:
+    if not parts:
+        return "true" if word == "and" else "false"
+    return parts[0] if len(parts) == 1 else f"({word} {' '.join(parts)})"

@@ -1,0 +1,128 @@
+"""Moments: affine sums of named times and parameters, such as ``t3 + minDanger``.
+
+They are what quantifiers over time are instantiated with, so they must print and read back alike.
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.errors import InputError
+from roadproof.logic import terms as t
+from roadproof.logic.terms import Term
+
+_PART = re.compile(r"([+-]?)\s*(?:(\d+(?:/\d+)?)\s*(?:\*\s*)?)?([A-Za-z_]\w*)?")
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Σ coefficient · name + constant; ``parts`` is sorted by name and has no zero coefficient."""
+
+    parts: tuple[tuple[str, Fraction], ...] = ()
+    constant: Fraction = Fraction(0)
+
+    def __add__(self, other: "Moment") -> "Moment":
+        return _combine(self, other, Fraction(1))
+
+    def __sub__(self, other: "Moment") -> "Moment":
+        return _combine(self, other, Fraction(-1))
+
+    def __str__(self) -> str:
+        shown = ""
+        for name, factor in self.parts:
+            shown += " - " if factor < 0 else " + " if shown else ""
+            shown += name if abs(factor) == 1 else f"{abs(factor)}*{name}"
+        if self.constant or not shown:
+            shown += " - " if self.constant < 0 else " + " if shown else ""
+            shown += str(abs(self.constant))
+        return shown.strip()
+
+    def value(self, values: Mapping[str, Fraction]) -> Fraction:
+        """The moment in seconds where each name has a value."""
+        return self.constant + sum((values[n] * k for n, k in self.parts), Fraction(0))
+
+    def smt(self) -> str:
+        """As an SMT-LIB term of sort Real."""
+        summands = [name if k == 1 else f"(* {rational(k)} {name})" for name, k in self.parts]
+        if self.constant or not summands:
+            summands.append(rational(self.constant))
+        return summands[0] if len(summands) == 1 else f"(+ {' '.join(summands)})"
+
+
+ZERO = Moment()
+
+
+def at(name: str) -> Moment:
+    """The moment called ``name``."""
+    return Moment(((name, Fraction(1)),))
+
+
+def _combine(left: Moment, right: Moment, sign: Fraction) -> Moment:
+    total = dict(left.parts)
+    for name, factor in right.parts:
+        total[name] = total.get(name, Fraction(0)) + sign * factor
+    kept = tuple(sorted((n, k) for n, k in total.items() if k))
+    return Moment(kept, left.constant + sign * right.constant)
+
+
+def rational(value: Fraction) -> str:
+    """A rational as SMT-LIB text."""
+    shown = f"{abs(value.numerator)}.0"
+    if value.denominator != 1:
+        shown = f"(/ {shown} {value.denominator}.0)"
+    return f"(- {shown})" if value < 0 else shown
+
+
+def moment_of(term: Term) -> Moment:
+    """An interval bound as a moment. Raises ``InputError`` where it is not affine in parameters."""
+    match term:
+        case t.Number(value, _):
+            return Moment((), value)
+        case t.Parameter(name, _):
+            return at(name)
+        case t.Sum(summands):
+            total = ZERO
+            for summand in summands:
+                total += moment_of(summand)
+            return total
+        case t.Product(factors):
+            scale, rest = Fraction(1), ZERO
+            open_factors = 0
+            for factor in factors:
+                constant = t.constant_value(factor)
+                if constant is None:
+                    open_factors, rest = open_factors + 1, moment_of(factor)
+                else:
+                    scale *= constant
+            if open_factors == 0:
+                return Moment((), scale)
+            if open_factors == 1:
+                return Moment(tuple((n, k * scale) for n, k in rest.parts if scale), rest.constant * scale)
+        case t.Quotient(numerator, denominator):
+            divisor = t.constant_value(denominator)
+            if divisor:
+                return moment_of(t.Product((t.Number(1 / divisor), numerator)))
+        case _:
+            pass
+    constant = t.constant_value(term)
+    if constant is not None:
+        return Moment((), constant)
+    raise InputError("an interval bound of a claim must be a sum of parameters and numbers")
+
+
+def read_moment(text: str) -> Moment:
+    """The inverse of ``str``. Raises ``InputError``."""
+    total, position = ZERO, 0
+    stripped = text.strip()
+    while position < len(stripped):
+        found = _PART.match(stripped, position)
+        if found is None or found.end() == position or (not found[2] and not found[3]):
+            raise InputError(f"'{text[:60]}' is no moment: write sums such as t3 + minDanger")
+        factor = Fraction(found[2] or 1) * (-1 if found[1] == "-" else 1)
+        piece = Moment(((found[3], factor),)) if found[3] else Moment((), factor)
+        total += piece
+        position = found.end()
+        while position < len(stripped) and stripped[position] == " ":
+            position += 1
+    return total

@@ -1,0 +1,231 @@
+"""The search for a proof or for a countermodel over finitely many moments.
+
+Model-based instantiation: the solver proposes a model of the ground clauses; universals that the
+model violates at a known moment are instantiated there; when none is left, the states at its
+moments are checked one by one, and what cannot be a state becomes a lemma; when all are states, the
+model is a candidate countermodel. When the clauses have no model, the claim is proved, and the
+instances are shrunk to those that are needed.
+"""
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.derivation import Lemma, Site
+from roadproof.evidence.times import ZERO, Moment, at, moment_of
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.prove.grounding import Grounding, Universal
+from roadproof.prove.states import StateChecker
+
+MOST_ROUNDS = 400
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What ``evidence.derivation`` needs to derive the ground query again."""
+
+    instances: Mapping[Site, tuple[str, ...]]
+    names: Mapping[Site, str]
+    lemmas: tuple[Lemma, ...]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model of all clauses: when the moments are, and which atoms are true there.
+
+    ``states`` gives each instant its atoms, and ``signals`` each instant a state in which they hold.
+    """
+
+    values: Mapping[str, Fraction]
+    states: Mapping[Fraction, Mapping[str, bool]]
+    signals: Mapping[Fraction, Mapping[str, Fraction]]
+
+
+@dataclass(frozen=True)
+class GaveUp:
+    reason: str
+
+
+class Search:
+    """One claim under attack. ``candidates()`` may be asked again after a candidate was refused."""
+
+    def __init__(
+        self,
+        claim: Formula,
+        atoms: Atoms,
+        bounds: Mapping[str, str],
+        defaults: Mapping[str, Fraction],
+        lanes: Sequence[str],
+        deadline: float,
+    ) -> None:
+        self.atoms = atoms
+        self.claim = claim
+        self.deadline = deadline
+        self.grounding = Grounding(atoms, dict(bounds), _free_prefix(bounds))
+        self.grounding.elements |= dict.fromkeys(lanes)
+        self.states = StateChecker(atoms, dict(bounds), defaults)
+        self.bound_moments = _bounds_of(claim)
+        self.spread = 0
+        self.grounding.demand(claim, False)
+
+    def run(self) -> Proof | Model | GaveUp:
+        """A proof, a candidate countermodel, or why neither was found in time."""
+        for _ in range(MOST_ROUNDS):
+            left = self.deadline - time.monotonic()
+            if left <= 0:
+                return GaveUp("the time is up")
+            answer = self.grounding.session.check(list(self.grounding.switches), timeout=left)
+            if answer == "unsat":
+                return self._shrink()
+            if answer == "unknown":
+                return GaveUp("z3 gave no answer to the ground query in the time left")
+            values = self._values()
+            if self._instantiate(values):
+                continue
+            states = self._states(values)
+            refused = self._lemmas(states, values)
+            if refused is None:
+                return Model(values, states, {v: self.states.signals(s) for v, s in states.items()})
+            if isinstance(refused, GaveUp):
+                return refused
+        return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation")
+
+    def widen(self) -> bool:
+        """Add moments between and around those known; False where that was done often enough."""
+        if self.spread >= 3:
+            return False
+        self.spread += 1
+        return True
+
+    # --- one round -------------------------------------------------------------------------------
+
+    def _values(self) -> dict[str, Fraction]:
+        """Values of all named times and parameters in the current model."""
+        grounding = self.grounding
+        names = [name for name in grounding.names.values() if at(name) in grounding.moments]
+        names += [name for name in grounding.bounds if name in grounding._declared]
+        read = grounding.session.values(names)
+        return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
+
+    def _pool(self, values: Mapping[str, Fraction]) -> list[Moment]:
+        """Known moments, simplest first; shifted by interval bounds once the search has widened."""
+        pool = dict(self.grounding.moments)
+        frontier = list(pool)
+        for _ in range(self.spread):
+            frontier = [
+                shifted
+                for moment in frontier
+                for bound in self.bound_moments
+                for shifted in (moment + bound, moment - bound)
+                if shifted not in pool and shifted.value(values) >= 0
+            ]
+            pool |= dict.fromkeys(frontier)
+        return list(pool)
+
+    def _instantiate(self, values: dict[str, Fraction]) -> bool:
+        """Instantiate what the model violates; whether there was anything."""
+        grounding = self.grounding
+        switches = [u.switch for u in (*grounding.universals, *grounding.road_universals)]
+        active = {s for s, on in zip(switches, grounding.session.values(switches), strict=True) if on}
+        wanted: list[tuple[Universal, Moment]] = []
+        for universal in grounding.universals:
+            if universal.switch in active:
+                wanted += [(universal, moment) for moment in self._missing(universal, values)]
+        flat = [(u, m, u.body(m)) for u, m in wanted if u.is_flat]
+        truths = grounding.session.values([body for _, _, body in flat])
+        chosen = [(u, m) for u, m in wanted if not u.is_flat]
+        chosen += [(u, m) for (u, m, _), true in zip(flat, truths, strict=True) if not true]
+        for universal, moment in chosen:
+            grounding.instantiate(universal, moment)
+        found = bool(chosen)
+        for road in list(grounding.road_universals):
+            if road.switch in active:
+                for element in [e for e in grounding.elements if e not in road.done]:
+                    grounding.instantiate_road(road, element)
+                    found = True
+        return found
+
+    def _missing(self, universal: Universal, values: dict[str, Fraction]) -> list[Moment]:
+        """One moment for each value inside the window at which there is no instance yet."""
+        seen = {moment.value(values) for moment in universal.done}
+        missing: list[Moment] = []
+        for moment in self._pool(values):
+            value = moment.value(values)
+            if value not in seen and universal.window.holds(value, values):
+                seen.add(value)
+                missing.append(moment)
+        return missing
+
+    def _states(self, values: dict[str, Fraction]) -> dict[Fraction, dict[str, bool]]:
+        """Which atoms the model makes true, by instant; atoms that it leaves open are not listed."""
+        applied = list(self.grounding.applied.items())
+        truths = self.grounding.session.values([text for _, text in applied])
+        states: dict[Fraction, dict[str, bool]] = {ZERO.value(values): {}}
+        for ((name, moment), _), true in zip(applied, truths, strict=True):
+            states.setdefault(moment.value(values), {})[name] = bool(true)
+        return dict(sorted(states.items()))
+
+    def _lemmas(
+        self, states: Mapping[Fraction, Mapping[str, bool]], values: dict[str, Fraction]
+    ) -> bool | GaveUp | None:
+        """Turn impossible states into lemmas; None where every state is possible."""
+        learnt = False
+        for instant, state in states.items():
+            clause = self.states.refute(state, self.deadline)
+            if isinstance(clause, str):
+                return GaveUp(clause)
+            if clause is not None:
+                learnt = True
+                for moment in self._moments_at(instant, values):
+                    self.grounding.add_lemma(clause, moment)
+        return True if learnt else None
+
+    def _moments_at(self, instant: Fraction, values: dict[str, Fraction]) -> list[Moment]:
+        moments = dict.fromkeys(m for _, m in self.grounding.applied if m.value(values) == instant)
+        return list(moments)
+
+    # --- a proof ---------------------------------------------------------------------------------
+
+    def _shrink(self) -> Proof:
+        """The clauses of the last refutation, each one needed."""
+        session = self.grounding.session
+        needed = session.core()
+        for switch in list(needed):
+            without = [s for s in needed if s != switch]
+            if session.check(without) == "unsat":
+                needed = without
+        instances: dict[Site, list[str]] = {}
+        lemmas: dict[tuple[tuple[str, bool], ...], list[str]] = {}
+        for switch in sorted(needed, key=lambda s: int(s[1:])):
+            used = self.grounding.switches[switch]
+            if isinstance(used, Lemma):
+                lemmas.setdefault(used.literals, []).extend(used.moments)
+            else:
+                instances.setdefault(used[0], []).append(used[1])
+        return Proof(
+            {site: tuple(texts) for site, texts in instances.items()},
+            self.grounding.names,
+            tuple(Lemma(literals, tuple(moments)) for literals, moments in lemmas.items()),
+        )
+
+
+def _bounds_of(formula: Formula) -> list[Moment]:
+    """The distinct interval bounds of a formula, but for zero."""
+    found: dict[Moment, None] = {}
+    for part in f.subformulas(formula):
+        if isinstance(part, f.Until | f.Eventually | f.Always):
+            for bound in (part.interval.low, part.interval.high):
+                if bound is not None:
+                    found[moment_of(bound)] = None
+    return [moment for moment in found if moment != ZERO]
+
+
+def _free_prefix(names: Mapping[str, str]) -> str:
+    """A prefix for the names of moments that starts no parameter."""
+    prefix = "t"
+    while any(name.startswith(prefix) for name in names):
+        prefix += "_"
+    return prefix
