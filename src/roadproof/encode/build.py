@@ -1,0 +1,123 @@
+"""A question to a problem: formula, road, vehicles and grid become columns, rows and a circuit."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+
+from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
+from roadproof.encode.facts import Quantity, facts_of
+from roadproof.encode.motion import Layout, Motions, encode_motions
+from roadproof.encode.place import be_in_lane, span, stay_apart, stay_on_road
+from roadproof.encode.polynomial import Fact, Polynomial, affine, variable
+from roadproof.encode.problem import ColumnFact, Problem
+from roadproof.encode.unroll import At, Grid, unroll
+from roadproof.logic.formula import Compare, Formula
+from roadproof.world.road import Road
+from roadproof.world.vehicle import Range, Vehicle
+
+# Stands for the time since the last sample while facts are made to hold for ever; columns count from 0.
+_LATER = -1
+
+
+@dataclass(frozen=True)
+class Manners:
+    """What is asked of a drive beside the formula; all of it is printed with a NONE-WITHIN.
+
+    ``natural``: start and end in a lane, straight on, within the vehicles' jumps of acceleration.
+    ``reach``: how far from the first vehicle's start the others may start, in m.
+    ``collisions``: whether boxes may overlap.
+    """
+
+    natural: bool = True
+    reach: Fraction = Fraction(150)
+    collisions: bool = False
+    off_centre: Fraction = Fraction(3, 10)
+
+
+def build_problem(
+    formula: Formula, road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, manners: Manners
+) -> tuple[Problem, Layout]:
+    """The problem whose solutions are the drives on ``grid`` that satisfy the bound ``formula``.
+
+    The first vehicle starts with its front at s = 0. Raises ``UsageError`` for interval bounds that
+    are no multiples of dt.
+    """
+    motions = _motions(road, vehicles, grid, manners)
+    layout = motions.layout
+    wanted = ground(unroll(formula, grid), vehicles, layout)
+    around = surroundings(road, vehicles, layout, manners)
+    return Problem(motions.columns, motions.rows, all_of([wanted, *around])), layout
+
+
+def _motions(road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, manners: Manners) -> Motions:
+    right, left = span(road)
+    starts: dict[str, Range] = {
+        name: (-manners.reach, manners.reach) if k else (Fraction(0), Fraction(0))
+        for k, name in enumerate(vehicles)
+    }
+    across: dict[str, Range] = {name: (right + v.width, left) for name, v in vehicles.items()}
+    return encode_motions(vehicles, grid, starts, across, manners.natural)
+
+
+def surroundings(
+    road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, manners: Manners
+) -> list[Circuit[ColumnFact]]:
+    """Conditions on where vehicles are that do not come from the formula."""
+    parts = [stay_on_road(layout, road, name, vehicle) for name, vehicle in vehicles.items()]
+    if not manners.collisions:
+        parts += [stay_apart(layout, a, b) for a, b in combinations(vehicles.items(), 2)]
+    if manners.natural:
+        parts += [
+            be_in_lane(layout, road, name, vehicle, step, manners.off_centre)
+            for name, vehicle in vehicles.items()
+            for step in (0, layout.grid.steps)
+        ]
+    return parts
+
+
+def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout) -> Circuit[ColumnFact]:
+    """A circuit of comparisons at samples as one of facts about columns."""
+    sizes = {(name, "length"): v.length for name, v in vehicles.items()}
+    sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
+    known: dict[Compare, Circuit[Fact[Quantity]]] = {}
+
+    def at(leaf: At) -> Circuit[ColumnFact]:
+        if leaf.atom not in known:
+            known[leaf.atom] = facts_of(leaf.atom, sizes)
+        if leaf.step < layout.grid.steps:
+            return replace_leaves(known[leaf.atom], lambda fact: Leaf(fact_at(fact, layout, leaf.step)))
+        return replace_leaves(known[leaf.atom], lambda fact: fact_for_ever(fact, layout))
+
+    return replace_leaves(circuit, at)
+
+
+def fact_at(fact: Fact[Quantity], layout: Layout, step: int) -> ColumnFact:
+    """A fact about signals as one about the columns of a sample."""
+    return Fact(fact.polynomial.substitute(lambda q: layout.state(q[0], q[1], step)), fact.strict)
+
+
+def fact_for_ever(fact: Fact[Quantity], layout: Layout) -> Circuit[ColumnFact]:
+    """Sufficient for a fact to hold at the last sample and ever after, when nobody accelerates.
+
+    Positions are then affine in the time since, so the polynomial is one in that time; it stays
+    where it should if it is there at once and no coefficient of a positive power is negative.
+    """
+    step = layout.grid.steps
+
+    def state(quantity: Quantity) -> Polynomial[int]:
+        vehicle, signal = quantity
+        now = layout.state(vehicle, signal, step)
+        if signal not in ("s", "d"):
+            return now
+        speed = layout.column(vehicle, {"s": "v_lon", "d": "v_lat"}[signal], step)
+        return now + variable(speed) * affine([(_LATER, Fraction(1))])
+
+    powers: dict[int, dict[tuple[int, ...], Fraction]] = {0: {}}
+    for monomial, factor in fact.polynomial.substitute(state).terms.items():
+        power = monomial.count(_LATER)
+        rest = tuple(v for v in monomial if v != _LATER)
+        powers.setdefault(power, {})[rest] = factor
+    return all_of(
+        Leaf(Fact(Polynomial(terms), fact.strict and power == 0)) for power, terms in sorted(powers.items())
+    )

@@ -1,0 +1,135 @@
+"""Where vehicles may be: on the road, apart from each other, and, for natural drives, in a lane."""
+
+from collections.abc import Iterable
+from fractions import Fraction
+from itertools import pairwise
+
+from roadproof.encode.circuit import Circuit, Leaf, all_of, any_of
+from roadproof.encode.motion import Layout
+from roadproof.encode.polynomial import Fact, Polynomial, affine, constant
+from roadproof.encode.problem import ColumnFact
+from roadproof.world.road import Lanelet, Road
+from roadproof.world.vehicle import Range, Vehicle
+
+# [from, to] along and [right, left] across; None is without bound.
+Rectangle = tuple[tuple[Fraction | None, Fraction | None], Range]
+
+
+def span(road: Road) -> Range:
+    """Right and left edge of the whole road."""
+    return min(x.d[0] for x in road.lanelets), max(x.d[1] for x in road.lanelets)
+
+
+def rectangles(lanelets: Iterable[Lanelet]) -> tuple[Rectangle, ...]:
+    """The greatest rectangles that a set of lanelets covers."""
+    kept = tuple(lanelets)
+    cuts = sorted({c for x in kept for c in x.s if c is not None})
+    ends: list[Fraction | None] = [None, *cuts, None]
+    columns = [_covered(kept, low, high) for low, high in pairwise(ends)]
+    found: list[Rectangle] = []
+    for first in range(len(columns)):
+        shared = columns[first]
+        for last in range(first, len(columns)):
+            shared = _overlaps(shared, columns[last])
+            found += [((ends[first], ends[last + 1]), d) for d in shared]
+    return tuple(r for r in found if not any(r != o and _inside(r, o) for o in found))
+
+
+def _covered(lanelets: Iterable[Lanelet], low: Fraction | None, high: Fraction | None) -> list[Range]:
+    here = sorted(
+        x.d
+        for x in lanelets
+        if (x.s[0] is None or (low is not None and x.s[0] <= low))
+        and (x.s[1] is None or (high is not None and x.s[1] >= high))
+    )
+    merged: list[Range] = []
+    for right, left in here:
+        if merged and right <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(left, merged[-1][1]))
+        else:
+            merged.append((right, left))
+    return merged
+
+
+def _overlaps(some: list[Range], others: list[Range]) -> list[Range]:
+    both = [(max(a[0], b[0]), min(a[1], b[1])) for a in some for b in others]
+    return [(right, left) for right, left in both if right < left]
+
+
+def _inside(small: Rectangle, large: Rectangle) -> bool:
+    (from_, to), (right, left) = small
+    (large_from, large_to), (large_right, large_left) = large
+    return (
+        (large_from is None or (from_ is not None and from_ >= large_from))
+        and (large_to is None or (to is not None and to <= large_to))
+        and large_right <= right
+        and left <= large_left
+    )
+
+
+def stay_on_road(layout: Layout, road: Road, name: str, vehicle: Vehicle) -> Circuit[ColumnFact]:
+    """Between two samples the box is inside one rectangle of the road; after the last one, for ever along."""
+    allowed = rectangles(road.lanelets)
+    conditions = []
+    for k in range(layout.grid.steps + 1):
+        ends = (k, min(k + 1, layout.grid.steps))
+        choices = []
+        for along, across in allowed:
+            if ends[0] == ends[1] and along[1] is not None:
+                continue
+            choices.append(
+                all_of(_box_inside(layout, name, vehicle, (along, across), e) for e in dict.fromkeys(ends))
+            )
+        conditions.append(any_of(choices))
+    return all_of(conditions)
+
+
+def _box_inside(layout: Layout, name: str, vehicle: Vehicle, place: Rectangle, step: int) -> Circuit[ColumnFact]:
+    (from_, to), (right, left) = place
+    s, d = layout.state(name, "s", step), layout.state(name, "d", step)
+    parts = [_at_least(d, right + vehicle.width), _at_least(d.scaled(Fraction(-1)), -left)]
+    if from_ is not None:
+        parts.append(_at_least(s, from_ + vehicle.length))
+    if to is not None:
+        parts.append(_at_least(s.scaled(Fraction(-1)), -to))
+    return all_of(parts)
+
+
+def _at_least(value: Polynomial[int], bound: Fraction) -> Circuit[ColumnFact]:
+    return Leaf(Fact(value + constant(-bound), False))
+
+
+def stay_apart(layout: Layout, first: tuple[str, Vehicle], second: tuple[str, Vehicle]) -> Circuit[ColumnFact]:
+    """Between two samples, one of four sides separates the boxes at both ends."""
+    (a, vehicle_a), (b, vehicle_b) = first, second
+    conditions = []
+    for k in range(layout.grid.steps):
+        sides = []
+        for signal, sizes in (("s", (vehicle_a.length, vehicle_b.length)), ("d", (vehicle_a.width, vehicle_b.width))):
+            for low, high, size in ((a, b, sizes[1]), (b, a, sizes[0])):
+                gaps = [
+                    affine(
+                        [(layout.column(high, signal, e), Fraction(1)), (layout.column(low, signal, e), Fraction(-1))],
+                        -size,
+                    )
+                    for e in (k, k + 1)
+                ]
+                sides.append(all_of(Leaf(Fact(gap, False)) for gap in gaps))
+        conditions.append(any_of(sides))
+    return all_of(conditions)
+
+
+def be_in_lane(
+    layout: Layout, road: Road, name: str, vehicle: Vehicle, step: int, off_centre: Fraction
+) -> Circuit[ColumnFact]:
+    """At a sample the box is in one lane, at most ``off_centre`` m from its centre line."""
+    choices = []
+    for lane in road.lanes:
+        for along, (right, left) in rectangles(road.lanelets_of(lane)):
+            slack = min(off_centre, (left - right - vehicle.width) / 2)
+            if slack < 0:
+                continue
+            middle = (right + left + vehicle.width) / 2
+            band = (middle - slack - vehicle.width, middle + slack)
+            choices.append(_box_inside(layout, name, vehicle, (along, band), step))
+    return any_of(choices)

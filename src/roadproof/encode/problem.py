@@ -1,0 +1,63 @@
+"""Everything that a solver needs, as plain data: columns, linear rows, and a circuit of facts."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TypeAlias
+
+from roadproof.encode.circuit import Circuit, all_of, nodes, Leaf
+from roadproof.encode.polynomial import Fact, Polynomial
+
+# A fact over column numbers.
+ColumnFact: TypeAlias = Fact[int]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A real unknown between two bounds."""
+
+    name: str
+    low: Fraction
+    high: Fraction
+
+
+@dataclass(frozen=True)
+class Row:
+    """low <= Σ coefficient · column <= high; None is without bound."""
+
+    terms: Mapping[int, Fraction]
+    low: Fraction | None
+    high: Fraction | None
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Find values of the columns within their bounds that satisfy every row and the circuit."""
+
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+    circuit: Circuit[ColumnFact]
+
+    def also(self, circuit: Circuit[ColumnFact]) -> "Problem":
+        """The same problem with one more condition."""
+        return Problem(self.columns, self.rows, all_of([self.circuit, circuit]))
+
+    def sizes(self) -> dict[str, int]:
+        """Numbers of columns, rows, circuit nodes and distinct facts."""
+        every = list(nodes(self.circuit))
+        return {
+            "columns": len(self.columns),
+            "rows": len(self.rows),
+            "nodes": len(every),
+            "facts": sum(isinstance(n, Leaf) for n in every),
+        }
+
+
+def row_of(polynomial: Polynomial[int], low: Fraction | None, high: Fraction | None) -> Row:
+    """A row from an affine polynomial between two bounds."""
+    shift = polynomial.constant
+    return Row(
+        {m[0]: c for m, c in polynomial.terms.items() if m},
+        None if low is None else low - shift,
+        None if high is None else high - shift,
+    )

@@ -1,0 +1,215 @@
+"""Roads and vehicles from TOML files; every contradiction is refused with file, name and rule.
+
+Numbers may be written as TOML numbers or as text (``"9/2"``) and are read exactly. Lanelets of a
+road: ``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, ``inf`` without bound) and
+``d = [right, left]``. Lanes that share a boundary are adjacent (SPEC §4).
+"""
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from importlib import resources
+from itertools import combinations, pairwise
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from roadproof.errors import InputError
+from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
+from roadproof.world.vehicle import Range, Vehicle
+
+LARGEST_MODEL = 1_000_000
+
+
+def models_folder() -> Path:
+    """Where the models that come with roadproof lie: in the package, or beside it in a checkout."""
+    packed = Path(str(resources.files("roadproof"))) / "models"
+    return packed if packed.is_dir() else Path(__file__).resolve().parents[3] / "models"
+
+
+def names_of(kind: str) -> tuple[str, ...]:
+    """The bundled models of a kind (``roads`` or ``vehicles``), sorted."""
+    return tuple(sorted(p.stem for p in (models_folder() / kind).glob("*.toml")))
+
+
+def load_road(name_or_path: str | Path) -> Road:
+    """A bundled road by name, or a user's by path. Raises ``InputError``."""
+    path, content = _read("roads", name_or_path)
+    _only(content, {"lanelet", "adjacent", "name"}, f"{path}")
+    entries = content.get("lanelet", [])
+    if not isinstance(entries, list) or not entries:
+        raise InputError(f"{path}: a road needs at least one [[lanelet]]")
+    lanelets = tuple(_lanelet(entry, f"{path}, lanelet {k + 1}") for k, entry in enumerate(entries))
+    check_lanelets(lanelets, str(path))
+    adjacent = shared_boundaries(lanelets)
+    if "adjacent" in content:
+        adjacent = _declared(content["adjacent"], adjacent, str(path))
+    return Road(str(content.get("name", path.stem)), lanelets, adjacent)
+
+
+def load_vehicle(name_or_path: str | Path) -> Vehicle:
+    """A bundled vehicle by name, or a user's by path. Raises ``InputError``."""
+    path, content = _read("vehicles", name_or_path)
+    fields = ("length", "width", "v_lon", "v_lat", "a_lon", "a_lat", "lateral_share", "jump_lon", "jump_lat")
+    _only(content, {*fields, "name"}, str(path))
+    for field in fields:
+        if field not in content:
+            raise InputError(f"{path}: '{field}' is missing; a vehicle has {', '.join(fields)}")
+    one = {k: _number(content[k], f"{path}, {k}") for k in fields if not isinstance(content[k], list)}
+    two = {k: _range(content[k], f"{path}, {k}") for k in fields if isinstance(content[k], list)}
+    for field in fields:
+        wanted = two if field in ("v_lon", "v_lat", "a_lon", "a_lat") else one
+        if field not in wanted:
+            raise InputError(f"{path}: {field} must be {'[low, high]' if wanted is two else 'one number'}")
+    for field, value in one.items():
+        if value <= 0:
+            raise InputError(f"{path}: {field}={value}, but it must be greater than 0")
+    if two["v_lon"][0] < 0:
+        raise InputError(f"{path}: v_lon starts at {two['v_lon'][0]}, but a vehicle never reverses: use 0 or more")
+    for field in ("a_lon", "a_lat", "v_lat"):
+        low, high = two[field]
+        if not low <= 0 <= high:
+            raise InputError(f"{path}: {field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on")
+    return Vehicle(str(content.get("name", path.stem)), **one, **two)  # type: ignore[arg-type]
+
+
+def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Mapping[str, Any]]:
+    path = Path(name_or_path)
+    bundled = models_folder() / kind / f"{name_or_path}.toml"
+    if path.suffix != ".toml" and not path.is_file():
+        if len(path.parts) != 1 or str(name_or_path) not in names_of(kind):
+            raise InputError(
+                f"there is no {kind[:-1]} '{name_or_path}'; there are {', '.join(names_of(kind))}, "
+                "or give the path of a .toml file"
+            )
+        path = bundled
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_MODEL + 1)
+        if len(data) > LARGEST_MODEL:
+            raise InputError(f"{path} is larger than {LARGEST_MODEL} bytes")
+        return path, tomllib.loads(data.decode("utf-8"), parse_float=_exact)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path} is not UTF-8 text") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"{path} is no TOML: {error}") from None
+
+
+def _exact(text: str) -> Fraction | float:
+    bare = text.replace("_", "")
+    if "inf" in bare or "nan" in bare:
+        return float(bare)
+    if abs(int(bare.lower().partition("e")[2] or 0)) > 30:
+        raise InputError(f"the number {text[:40]} is out of range: use exponents from -30 to 30")
+    return Fraction(bare)
+
+
+def _only(content: Mapping[str, Any], known: Iterable[str], where: str) -> None:
+    for key in content:
+        if key not in known:
+            raise InputError(f"{where}: '{key}' is unknown; there are {', '.join(sorted(known))}")
+
+
+def _number(value: object, where: str) -> Fraction:
+    if isinstance(value, str) and len(value) < 100:
+        try:
+            return Fraction(value)
+        except (ValueError, ZeroDivisionError):
+            pass
+    if isinstance(value, int | Fraction) and not isinstance(value, bool):
+        return Fraction(value)
+    raise InputError(f"{where}: {value!r} is no finite number")
+
+
+def _range(value: object, where: str) -> Range:
+    if not isinstance(value, list) or len(value) != 2:
+        raise InputError(f"{where}: {value!r} is no range; write [low, high]")
+    low, high = _number(value[0], where), _number(value[1], where)
+    if low >= high:
+        raise InputError(f"{where}: [{low}, {high}] is empty; the first number must be the smaller one")
+    return low, high
+
+
+def _lanelet(entry: Any, where: str) -> Lanelet:
+    fields = ("id", "lane", "zone", "attribute", "s", "d")
+    if not isinstance(entry, dict):
+        raise InputError(f"{where}: write it as [[lanelet]]")
+    _only(entry, fields, where)
+    for field in fields:
+        if field not in entry:
+            raise InputError(f"{where}: '{field}' is missing; a lanelet has {', '.join(fields)}")
+    for field, allowed in (("zone", get_args(Zone)), ("attribute", get_args(Attribute))):
+        if entry[field] not in allowed:
+            raise InputError(f"{where}: {field}={entry[field]!r}, but it must be one of {', '.join(allowed)}")
+    bounds = entry["s"]
+    if not isinstance(bounds, list) or len(bounds) != 2:
+        raise InputError(f"{where}: s={bounds!r} is no range; write [from, to], with -inf and inf without bound")
+    low = None if bounds[0] == float("-inf") else _number(bounds[0], f"{where}, s")
+    high = None if bounds[1] == float("inf") else _number(bounds[1], f"{where}, s")
+    if low is not None and high is not None and low >= high:
+        raise InputError(f"{where}: s=[{low}, {high}] is empty; the first number must be the smaller one")
+    zone, attribute = cast(Zone, entry["zone"]), cast(Attribute, entry["attribute"])
+    return Lanelet(
+        str(entry["id"]), str(entry["lane"]), zone, attribute, (low, high), _range(entry["d"], f"{where}, d")
+    )
+
+
+def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
+    """Raise ``InputError`` unless ids are unique and each lane is one chain with one attribute."""
+    seen: set[str] = set()
+    for lanelet in lanelets:
+        if lanelet.id in seen:
+            raise InputError(f"{where}: lanelet id '{lanelet.id}' is given twice")
+        seen.add(lanelet.id)
+    for lane in dict.fromkeys(x.lane for x in lanelets):
+        chain = sorted((x for x in lanelets if x.lane == lane), key=_begin)
+        for before, after in pairwise(chain):
+            if before.attribute != after.attribute:
+                raise InputError(
+                    f"{where}: lane '{lane}' has lanelets of attributes {before.attribute} and "
+                    f"{after.attribute}; a lane has one attribute"
+                )
+            if before.s[1] is None or after.s[0] is None or before.s[1] != after.s[0]:
+                raise InputError(
+                    f"{where}: in lane '{lane}', lanelet '{after.id}' does not begin where '{before.id}' ends"
+                )
+            if before.d[0] >= after.d[1] or after.d[0] >= before.d[1]:
+                raise InputError(
+                    f"{where}: in lane '{lane}', lanelets '{before.id}' and '{after.id}' do not meet across the road"
+                )
+
+
+def _begin(lanelet: Lanelet) -> tuple[bool, Fraction]:
+    return lanelet.s[0] is not None, lanelet.s[0] or Fraction(0)
+
+
+def shared_boundaries(lanelets: tuple[Lanelet, ...]) -> frozenset[frozenset[str]]:
+    """Pairs of lanes with lanelets that share a boundary line but do not overlap."""
+    found = [
+        (a.lane, b.lane)
+        for a, b in combinations(lanelets, 2)
+        if a.lane != b.lane and (a.d[1] == b.d[0] or b.d[1] == a.d[0]) and _alongside(a, b)
+    ]
+    return pairs(found)
+
+
+def _alongside(a: Lanelet, b: Lanelet) -> bool:
+    starts = [x.s[0] for x in (a, b) if x.s[0] is not None]
+    ends = [x.s[1] for x in (a, b) if x.s[1] is not None]
+    return not starts or not ends or max(starts) < min(ends)
+
+
+def _declared(
+    entries: object, geometric: frozenset[frozenset[str]], where: str
+) -> frozenset[frozenset[str]]:
+    if not isinstance(entries, list) or not all(isinstance(e, list) and len(e) == 2 for e in entries):
+        raise InputError(f"{where}: adjacent={entries!r}; write a list of pairs of lanes")
+    declared = pairs((str(a), str(b)) for a, b in entries)
+    for pair in sorted(declared ^ geometric, key=sorted):
+        names = " and ".join(sorted(pair))
+        said = "are declared adjacent but share no boundary" if pair in declared else (
+            "share a boundary but are not declared adjacent"
+        )
+        raise InputError(f"{where}: lanes {names} {said}; correct 'adjacent' or leave it out")
+    return declared
