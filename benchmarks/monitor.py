@@ -1,0 +1,168 @@
+"""How fast the monitor is: 7 scenarios over 32,398 traces of 375 samples, and ratios in one run.
+
+    python benchmarks/monitor.py [--traces N] [--samples N] [--threads N] [--json FILE]
+
+The traces are random pairs of cars that follow, approach and pass each other, lengths all equal (the
+worst case). Every sampled verdict and margin is compared with the plain recursive evaluator.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+
+from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.formula import Named
+from roadproof.logic.rewrite import with_values, without_names
+from roadproof.monitor import Batch, compile
+from roadproof.monitor.recursive import Reading, Trace, answer
+from roadproof.spec.bind import default_values
+from roadproof.spec.elaborate import apply_definition
+from roadproof.spec.library import bundled_library
+
+SCENARIOS = (1, 3, 4, 5, 6, 7, 8)
+LANE_WIDTH = 3.5
+
+
+def scenarios() -> dict[str, Formula]:
+    """Scenarios 1, 3 … 8 of the base set with the default parameters, lanes open."""
+    library = bundled_library()
+    specification = library.select("base")
+    values = default_values(library)
+    return {
+        f"scenario_{i}": with_values(apply_definition(specification, f"scenario_{i}").formula, values)
+        for i in SCENARIOS
+    }
+
+
+def random_batch(formulas: dict[str, Formula], traces: int, samples: int, seed: int) -> Batch:
+    """Pairs of cars on two lanes at 25 Hz with random accelerations and lane changes."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(samples)[:, None] / 25
+    signals = {}
+    for vehicle, ahead in (("SV", 0.0), ("POV", 1.0)):
+        v = rng.uniform(20, 35, traces)
+        a = rng.normal(0, 0.5, traces)
+        start = ahead * rng.uniform(-80, 80, traces)
+        lane, target = rng.integers(0, 2, (2, traces))
+        when = rng.uniform(0, samples / 25, traces)
+        progress = np.clip((time - when) / 4, 0, 1)
+        d = LANE_WIDTH * (lane + (target - lane) * progress) + rng.uniform(2.0, 3.3, traces)
+        signals["s", vehicle] = start + v * time + a * time**2 / 2
+        signals["v_lon", vehicle] = v + a * time
+        signals["d", vehicle] = d
+        signals["v_lat", vehicle] = np.gradient(d, 0.04, axis=0)
+        signals["a_lon", vehicle] = np.broadcast_to(a, time.shape[:1] + a.shape).copy()
+    sizes = {}
+    for vehicle in ("SV", "POV"):
+        sizes["length", vehicle] = rng.uniform(3.5, 6.0, traces)
+        sizes["width", vehicle] = rng.uniform(1.7, 2.1, traces)
+    in_lane = {
+        (vehicle, lane): (signals["d", vehicle] > lane * LANE_WIDTH)
+        & (signals["d", vehicle] - sizes["width", vehicle] < (lane + 1) * LANE_WIDTH)
+        for vehicle in ("SV", "POV")
+        for lane in (0, 1)
+    }
+    start_lane = in_lane["SV", 1][0]
+    given = {}
+    for formula in {x for root in formulas.values() for x in subformulas(root) if isinstance(x, Named)}:
+        vehicle = formula.arguments[0] if formula.arguments else ""
+        if formula.name == "onMainRoad":
+            given[formula] = np.ones((samples, traces), dtype=bool)
+        elif formula.name == "atLane":
+            here, beside = in_lane[vehicle, 1], in_lane[vehicle, 0]
+            own = np.where(start_lane, here, beside)
+            given[formula] = own if formula.arguments[1] == "L" else np.where(start_lane, beside, here)
+    # "some M in adjacentLanes(L)" has one member on two lanes
+    for formula in {x for root in formulas.values() for x in subformulas(root)}:
+        if type(formula).__name__ == "Some" and formula.domain.kind == "adjacent":
+            inner = formula.body
+            assert isinstance(inner, Named)
+            given[formula] = given[inner]
+    lengths = np.full(traces, samples)
+    return Batch(Fraction(1, 25), lengths, signals, sizes, given)
+
+
+def trace_of(batch: Batch, index: int) -> Trace:
+    length = int(batch.lengths[index])
+    return Trace(
+        batch.dt,
+        length,
+        {key: values[:length, index].tolist() for key, values in batch.signals.items()},
+        {key: float(values[index]) for key, values in batch.sizes.items()},
+        {formula: values[:length, index].tolist() for formula, values in batch.given.items()},
+    )
+
+
+def timed(what: Callable[[], object], repeat: int = 3) -> float:
+    best = float("inf")
+    for _ in range(repeat):
+        start = perf_counter()
+        what()
+        best = min(best, perf_counter() - start)
+    return best
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--traces", type=int, default=32_398)
+    parser.add_argument("--samples", type=int, default=375)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--recursive", type=int, default=6, help="traces for the recursive evaluator")
+    parser.add_argument("--json", type=Path)
+    options = parser.parse_args()
+
+    formulas = scenarios()
+    batch = random_batch(formulas, options.traces, options.samples, options.seed)
+    start = perf_counter()
+    monitor = compile(formulas)
+    figures = {"compile": perf_counter() - start}
+    figures["batch_checks"] = timed(
+        lambda: Batch(batch.dt, batch.lengths, batch.signals, batch.sizes, batch.given)
+    )
+    figures["observe"] = timed(lambda: monitor.observe(batch, threads=options.threads))
+    observation = monitor.observe(batch, threads=options.threads)
+    figures["boolean_after_packing"] = timed(lambda: monitor.evaluate(observation))
+    figures["boolean"] = timed(lambda: monitor.evaluate(batch, threads=options.threads))
+    figures["boolean_clip"] = timed(lambda: monitor.evaluate(batch, "clip", threads=options.threads))
+    figures["robustness_clip"] = timed(lambda: monitor.measure(batch, "clip", threads=options.threads), 2)
+    figures["robustness"] = timed(lambda: monitor.measure(batch, threads=options.threads), 2)
+
+    verdicts = monitor.evaluate(batch, threads=options.threads)
+    margins = monitor.measure(batch, threads=options.threads)
+    chosen = np.random.default_rng(options.seed).choice(options.traces, options.recursive, replace=False)
+    start = perf_counter()
+    expected = [[answer(x, trace_of(batch, i)) for x in formulas.values()] for i in chosen]
+    per_trace = (perf_counter() - start) / options.recursive
+    figures["recursive_scaled"] = per_trace * options.traces
+    for i, answers in zip(chosen, expected, strict=True):
+        reading = Reading(trace_of(batch, i))
+        for (name, formula), wanted in zip(formulas.items(), answers, strict=True):
+            found = verdicts.answers[name]
+            got = "true" if found.true[i] else "false" if found.false[i] else "undecided"
+            low = reading.margin(without_names(formula), 0, "strong")
+            if got != wanted or low != margins.margins[name].low[i]:
+                print(f"trace {i}, {name}: {got} where {wanted} was expected", file=sys.stderr)
+                return 30
+    figures["ratio_recursive_to_boolean"] = figures["recursive_scaled"] / figures["boolean"]
+    for name, value in figures.items():
+        print(f"{name:28s} {value:12.3f}{'' if name.startswith('ratio') else ' s'}")
+    for name, found in verdicts.answers.items():
+        print(
+            f"{name}: {found.true.sum()} true, {found.false.sum()} false, {found.undecided.sum()} undecided"
+        )
+    if options.json:
+        options.json.write_text(json.dumps(figures, indent=2) + "\n")
+    slow = figures["boolean"] > 0.6 or figures["robustness_clip"] > 3
+    print("targets: Boolean 0.6 s, robustness 3 s:", "missed" if slow else "met")
+    return 10 if slow else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,314 @@
+"""The monitor: formulas compiled once, evaluated over batches of recorded traces.
+
+All formulas of a monitor share what they have in common: sub-formulas are found by structure, not
+by the name of the definition that they come from.
+"""
+
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadproof.errors import InputError
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Compare, Formula, Named
+from roadproof.logic.rewrite import bounds_of, terms_of, without_names
+from roadproof.monitor.arithmetic import Program, margin_program
+from roadproof.monitor.batch import Array, Batch, Integers, inside
+from roadproof.monitor.boolean import BITS, TRUTH, observe_truth, pack, packed_inside, unpack
+from roadproof.monitor.robustness import (
+    MARGIN,
+    as_margin,
+    margin_inside,
+    observe_margins,
+    trace_blocks,
+)
+from roadproof.monitor.semantics import Evaluation, View
+
+Convention: TypeAlias = Literal["truncated", "clip"]
+When: TypeAlias = Literal["start", "all"]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is known of a formula: ``true`` for every continuation, ``false`` for every, or neither.
+
+    Shape (traces,) at the start of each trace, or (time, traces), where neither holds after the end.
+    """
+
+    true: NDArray[np.bool_]
+    false: NDArray[np.bool_]
+
+    @property
+    def undecided(self) -> NDArray[np.bool_]:
+        return ~(self.true | self.false)
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """Answers by the name of the formula, and of named sub-formulas at all samples if asked for."""
+
+    convention: Convention
+    answers: Mapping[str, Answer]
+    named: Mapping[Named, Answer]
+
+
+@dataclass(frozen=True)
+class Margin:
+    """The margin lies in [low, high] whatever comes after the trace; with ``clip`` they are equal.
+
+    Shape as in ``Answer``; NaN after the end of a trace.
+    """
+
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Margins:
+    convention: Convention
+    margins: Mapping[str, Margin]
+    named: Mapping[Named, Margin]
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Packed truth of state formulas over a batch: all that Boolean evaluation needs of it."""
+
+    dt: Fraction
+    lengths: Integers
+    samples: int
+    leaves: Mapping[Formula, Array]
+
+    def cut(self, lengths: Integers) -> "Observation":
+        """The same traces, each ending after its first ``lengths`` samples."""
+        if lengths.shape != self.lengths.shape or (lengths < 1).any() or (lengths > self.lengths).any():
+            raise InputError("a trace is cut to a length from 1 to the one it has")
+        return replace(self, lengths=lengths)
+
+
+@dataclass(frozen=True)
+class Monitor:
+    """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees."""
+
+    formulas: Mapping[str, Formula]
+    plain: Mapping[str, Formula]
+    named: Mapping[Named, Formula]
+    states: frozenset[Formula]
+
+    def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
+        """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
+        leaves: dict[Formula, Array] = {}
+        if known is not None:
+            if known.dt != batch.dt or not np.array_equal(known.lengths, batch.lengths):
+                raise InputError("an observation is only taken over for traces of the same dt and lengths")
+            leaves |= known.leaves
+        leaves |= {g: pack(values[: batch.samples]) for g, values in _given(batch).items()}
+        leaves |= observe_truth(tuple(self._comparisons(leaves)), batch, threads)
+        return Observation(batch.dt, batch.lengths, batch.samples, leaves)
+
+    def evaluate(
+        self,
+        batch: Batch | Observation,
+        semantics: Convention = "truncated",
+        at: When = "start",
+        starts: Integers | None = None,
+        named: bool = False,
+        threads: int = 1,
+    ) -> Verdicts:
+        """The answer to every formula at the start of each trace, or ``at`` all samples.
+
+        ``starts`` gives the sample at which each trace starts (0 if not given). With ``named``,
+        every named sub-formula is answered too, at all samples. Raises ``InputError`` for interval
+        bounds that are no multiple of the step, and for signals and lanes that the batch has not.
+        """
+        seen = self.observe(batch, threads=threads) if isinstance(batch, Batch) else batch
+        _check_starts(starts, seen.lengths)
+        shape = (seen.samples, -(-len(seen.lengths) // BITS))
+        end = packed_inside(seen.lengths, seen.samples)
+        evaluation = Evaluation(TRUTH, seen.leaves, end, seen.dt, shape, self.states)
+
+        def answer(formula: Formula, when: When) -> Answer:
+            strong, weak = (evaluation.value(formula, view) for view in _views(semantics))
+            true = _read_bits(strong, seen.lengths, when, starts)
+            return Answer(true, _read_bits(~weak, seen.lengths, when, starts))
+
+        return Verdicts(
+            semantics,
+            {name: answer(formula, at) for name, formula in self.plain.items()},
+            {name: answer(body, "all") for name, body in self.named.items()} if named else {},
+        )
+
+    def measure(
+        self,
+        batch: Batch,
+        semantics: Convention = "truncated",
+        at: When = "start",
+        starts: Integers | None = None,
+        named: bool = False,
+        threads: int = 1,
+        samples_in_block: int = 24_000,
+    ) -> Margins:
+        """The margin of every formula; arguments and errors as in ``evaluate``."""
+        _check_starts(starts, batch.lengths)
+        given = _given(batch)
+        comparisons = tuple(self._comparisons(given))
+        program = margin_program(comparisons)
+        margins = {name: _no_margin(batch, at) for name in self.plain}
+        named_margins = {name: _no_margin(batch, "all") for name in self.named} if named else {}
+
+        def measure_block(columns: slice) -> None:
+            evaluation = self._margin_evaluation(batch, given, comparisons, program, columns)
+            begin = None if starts is None else starts[columns]
+            for name, formula in self.plain.items():
+                _store(margins[name], evaluation, formula, semantics, batch, columns, at, begin)
+            for node, made in named_margins.items():
+                _store(made, evaluation, self.named[node], semantics, batch, columns, "all", begin)
+
+        with ThreadPoolExecutor(threads) as pool:
+            for _ in pool.map(measure_block, trace_blocks(batch, samples_in_block)):
+                pass
+        return Margins(semantics, margins, named_margins)
+
+    def _margin_evaluation(
+        self,
+        batch: Batch,
+        given: Mapping[Formula, Array],
+        comparisons: tuple[Compare, ...],
+        program: Program,
+        columns: slice,
+    ) -> Evaluation:
+        samples = int(batch.lengths[columns].max())
+        leaves: dict[Formula, Array] = {g: as_margin(v[:samples, columns]) for g, v in given.items()}
+        leaves |= observe_margins(comparisons, program, batch, columns)
+        shape = (samples, columns.stop - columns.start)
+        return Evaluation(MARGIN, leaves, margin_inside(batch, columns), batch.dt, shape, self.states)
+
+    def _comparisons(self, given: Mapping[Formula, Array]) -> Iterator[Compare]:
+        """Comparisons outside ``given``, each once. Raises ``InputError`` for an unknown lane predicate."""
+        seen: set[Formula] = set()
+        waiting = list(self.plain.values())
+        while waiting:
+            current = waiting.pop()
+            if current in seen or current in given:
+                continue
+            seen.add(current)
+            match current:
+                case Compare():
+                    yield current
+                case f.Occupies() | f.Some() | f.Every():
+                    raise InputError(
+                        f"the batch does not say where {_shown(current)} holds: "
+                        "add it to the given formulas of the batch, or bind the formula to a road"
+                    )
+                case _:
+                    waiting.extend(f.children(current))
+
+
+def compile(formulas: Mapping[str, Formula]) -> Monitor:
+    """A monitor for some formulas, by names of the caller's choice.
+
+    Every parameter must have its value (``with_values``); lanes may be open where the batch gives
+    the truth of the formulas that speak of them. Raises ``InputError``.
+    """
+    pool: dict[Formula, Formula] = {}
+
+    def share(formula: Formula) -> Formula:
+        plain = formula.body if isinstance(formula, Named) else formula
+        return pool.setdefault(plain, plain)
+
+    for name, formula in formulas.items():
+        _check_closed(name, formula)
+    plain = {name: f.transform(formula, share) for name, formula in formulas.items()}
+    nodes = dict.fromkeys(
+        node for x in formulas.values() for node in f.subformulas(x) if isinstance(node, Named)
+    )
+    named = {node: f.transform(node, share) for node in nodes}
+    states = frozenset(x for x in pool if f.is_state(x))
+    return Monitor(dict(formulas), plain, named, states)
+
+
+def _check_closed(name: str, formula: Formula) -> None:
+    for term in terms_of(formula):
+        for leaf in t.leaves(term):
+            if isinstance(leaf, t.Parameter | t.Variable):
+                raise InputError(
+                    f"{name}: a monitor needs numbers, but {leaf.name} has no value; substitute one first"
+                )
+    for part in f.subformulas(formula):
+        if isinstance(part, f.Until | f.Eventually | f.Always):
+            low, high = bounds_of(part.interval)
+            if low < 0 or (high is not None and high < low):
+                raise InputError(
+                    f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
+                )
+
+
+def _given(batch: Batch) -> dict[Formula, Array]:
+    return {without_names(formula): values for formula, values in batch.given.items()}
+
+
+def _shown(formula: Formula) -> str:
+    match formula:
+        case f.Occupies(vehicle, lanelet):
+            return f"occ({vehicle}, {lanelet})"
+        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+            return (
+                f"{type(formula).__name__.lower()} {variable} in {domain.kind}({domain.of}): {_shown(body)}"
+            )
+        case _:
+            return "…"
+
+
+def _views(convention: Convention) -> tuple[View, View]:
+    return (View.CLIP, View.CLIP) if convention == "clip" else (View.STRONG, View.WEAK)
+
+
+def _check_starts(starts: Integers | None, lengths: Integers) -> None:
+    if starts is None:
+        return
+    if starts.shape != lengths.shape or (starts < 0).any() or (starts >= lengths).any():
+        raise InputError("starts must name one sample inside each trace")
+
+
+def _read_bits(words: Array, lengths: Integers, when: When, starts: Integers | None) -> NDArray[np.bool_]:
+    traces = len(lengths)
+    if when == "all":
+        truth: NDArray[np.bool_] = unpack(words, traces) & inside(lengths, len(words))
+        return truth
+    if starts is None:
+        return unpack(words[:1], traces)[0].copy()
+    index = np.arange(traces)
+    bits = words[starts, index // BITS] >> (index % BITS).astype(np.uint64)
+    return np.asarray(bits & np.uint64(1), dtype=np.bool_)
+
+
+def _no_margin(batch: Batch, when: When) -> Margin:
+    shape = (batch.traces,) if when == "start" else (batch.samples, batch.traces)
+    return Margin(np.full(shape, np.nan), np.full(shape, np.nan))
+
+
+def _store(
+    margin: Margin,
+    evaluation: Evaluation,
+    formula: Formula,
+    convention: Convention,
+    batch: Batch,
+    columns: slice,
+    when: When,
+    starts: Integers | None,
+) -> None:
+    for view, made in zip(_views(convention), (margin.low, margin.high), strict=True):
+        values = evaluation.value(formula, view)
+        if when == "all":
+            belongs = inside(batch.lengths[columns], len(values))
+            made[: len(values), columns] = np.where(belongs, values, np.nan)
+        elif starts is None:
+            made[columns] = values[0]
+        else:
+            made[columns] = values[starts, np.arange(values.shape[1])]

@@ -1,0 +1,220 @@
+"""The definitions of SPEC §1, read out slowly: one trace, one sample, one view at a time.
+
+Everything faster is pinned against this file, so it shares neither arrays nor arithmetic with it.
+It remembers what it has already worked out, and does nothing else to be quick.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import inf
+from typing import Literal, TypeAlias, assert_never
+
+from roadproof.errors import InputError
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import bounds_of, without_names
+
+ReadAs: TypeAlias = Literal["strong", "weak", "clip"]
+Answer: TypeAlias = Literal["true", "false", "undecided"]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Samples 0 … length-1 of one trace, ``dt`` seconds apart; ``given`` is truth by structure."""
+
+    dt: Fraction
+    length: int
+    signals: Mapping[tuple[str, str], Sequence[float]]
+    sizes: Mapping[tuple[str, str], float]
+    given: Mapping[Formula, Sequence[bool]] = field(default_factory=dict)
+
+
+def answer(formula: Formula, trace: Trace, sample: int = 0, clip: bool = False) -> Answer:
+    """Whether ``formula`` holds at ``sample``: true for every continuation, false for none (SPEC §1).
+
+    With ``clip``, windows are cut at the last sample and the answer is never ``undecided``.
+    """
+    reading = Reading(trace)
+    if reading.holds(formula, sample, "clip" if clip else "strong"):
+        return "true"
+    return "undecided" if not clip and reading.holds(formula, sample, "weak") else "false"
+
+
+class Reading:
+    """Truth and margins of formulas over one trace."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+        self.given = {without_names(g): values for g, values in trace.given.items()}
+        self.truths: dict[tuple[Formula, int, ReadAs], bool] = {}
+        self.margins: dict[tuple[Formula, int, ReadAs], float] = {}
+
+    # --- truth ---------------------------------------------------------------------------------
+
+    def holds(self, formula: Formula, k: int, view: ReadAs) -> bool:
+        """Whether ``formula`` holds at sample ``k`` (inside the trace) in a view."""
+        key = (formula, k, view)
+        if key not in self.truths:
+            self.truths[key] = self._holds(formula, k, view)
+        return self.truths[key]
+
+    def _holds(self, formula: Formula, k: int, view: ReadAs) -> bool:
+        known = self._given(formula)
+        if known is not None:
+            return bool(known[k])
+        match formula:
+            case f.Truth(value):
+                return value
+            case f.Compare(left, op, right):
+                x, y = self.number(left, k), self.number(right, k)
+                return x < y if op == "<" else x <= y if op == "<=" else x > y if op == ">" else x >= y
+            case f.Not(body):
+                return not self.holds(body, k, _swapped(view))
+            case f.And(parts):
+                return all(self.holds(p, k, view) for p in parts)
+            case f.Or(parts):
+                return any(self.holds(p, k, view) for p in parts)
+            case f.Named(_, _, body):
+                return self.holds(body, k, view)
+            case f.Eventually(interval, body):
+                window, whole = self.window(interval, k)
+                found = any(self.holds(body, j, view) for j in window)
+                return found or (view == "weak" and not whole)
+            case f.Always(interval, body):
+                window, whole = self.window(interval, k)
+                kept = all(self.holds(body, j, view) for j in window)
+                return kept and (view != "strong" or whole)
+            case f.Until(left, interval, right):
+                window, whole = self.window(interval, k)
+                for j in window:
+                    if self.holds(right, j, view) and all(self.holds(left, i, view) for i in window if i < j):
+                        return True
+                return view == "weak" and not whole and all(self.holds(left, i, view) for i in window)
+            case f.Occupies() | f.Some() | f.Every():
+                raise _not_given(formula)
+            case _:
+                assert_never(formula)
+
+    # --- margins -------------------------------------------------------------------------------
+
+    def margin(self, formula: Formula, k: int, view: ReadAs) -> float:
+        """By how much ``formula`` holds at sample ``k`` in a view; -∞ to ∞."""
+        key = (formula, k, view)
+        if key not in self.margins:
+            self.margins[key] = self._margin(formula, k, view)
+        return self.margins[key]
+
+    def _margin(self, formula: Formula, k: int, view: ReadAs) -> float:
+        known = self._given(formula)
+        if known is not None:
+            return inf if known[k] else -inf
+        match formula:
+            case f.Truth(value):
+                return inf if value else -inf
+            case f.Compare(left, op, right):
+                x, y = self.number(left, k), self.number(right, k)
+                if x == y:
+                    return 0.0  # ∞ - ∞ too
+                return x - y if op in (">", ">=") else y - x
+            case f.Not(body):
+                return -self.margin(body, k, _swapped(view))
+            case f.And(parts):
+                return min(self.margin(p, k, view) for p in parts)
+            case f.Or(parts):
+                return max(self.margin(p, k, view) for p in parts)
+            case f.Named(_, _, body):
+                return self.margin(body, k, view)
+            case f.Eventually(interval, body):
+                window, whole = self.window(interval, k)
+                best = max((self.margin(body, j, view) for j in window), default=-inf)
+                return inf if view == "weak" and not whole else best
+            case f.Always(interval, body):
+                window, whole = self.window(interval, k)
+                worst = min((self.margin(body, j, view) for j in window), default=inf)
+                return -inf if view == "strong" and not whole else worst
+            case f.Until(left, interval, right):
+                window, whole = self.window(interval, k)
+                best = -inf
+                for j in window:
+                    before = (self.margin(left, i, view) for i in window if i < j)
+                    best = max(best, min(self.margin(right, j, view), min(before, default=inf)))
+                if view == "weak" and not whole:
+                    best = max(best, min((self.margin(left, i, view) for i in window), default=inf))
+                return best
+            case f.Occupies() | f.Some() | f.Every():
+                raise _not_given(formula)
+            case _:
+                assert_never(formula)
+
+    # --- windows, given formulas and numbers -----------------------------------------------------
+
+    def window(self, interval: f.Interval, k: int) -> tuple[range, bool]:
+        """Samples of the trace in k + interval, and whether these are all there are."""
+        low, high = bounds_of(interval)
+        first = k + self._steps(low)
+        if high is None:
+            return range(first, self.trace.length), False
+        last = k + self._steps(high)
+        return range(first, min(last, self.trace.length - 1) + 1), last < self.trace.length
+
+    def _steps(self, bound: Fraction) -> int:
+        count, rest = divmod(bound, self.trace.dt)
+        if rest:
+            raise InputError(f"the interval bound {bound} s is no multiple of dt={self.trace.dt} s")
+        return int(count)
+
+    def _given(self, formula: Formula) -> Sequence[bool] | None:
+        return self.given.get(without_names(formula)) if self.given else None
+
+    def number(self, term: t.Term, k: int) -> float:
+        """The value of ``term`` at sample ``k`` in floating-point arithmetic, from left to right."""
+        constant = t.constant_value(term)
+        if constant is not None:
+            return float(constant)
+        match term:
+            case t.Signal(name, vehicle):
+                return float(self.trace.signals[name, vehicle][k])
+            case t.Size(name, vehicle):
+                return float(self.trace.sizes[name, vehicle])
+            case t.Sum(terms):
+                first, *rest = self._numbers(terms, k)
+                for x in rest:
+                    first += x
+                return first
+            case t.Product(factors):
+                first, *rest = self._numbers(factors, k)
+                for x in rest:
+                    first *= x
+                return first
+            case t.Power(base, exponent):
+                factor = self.number(base, k)
+                power = factor if exponent else 1.0
+                for _ in range(exponent - 1):
+                    power *= factor
+                return power
+            case t.Quotient(numerator, denominator):
+                return self.number(numerator, k) / self.number(denominator, k)
+            case t.Maximum(terms):
+                return max(self._numbers(terms, k))
+            case t.Minimum(terms):
+                return min(self._numbers(terms, k))
+            case t.Inverse(inner):
+                x = self.number(inner, k)
+                return inf if x == 0 else 1.0 / x
+            case t.Number() | t.Parameter() | t.Variable():
+                raise InputError(f"a monitored formula has values for all its names, but {term} is open")
+            case _:
+                assert_never(term)
+
+    def _numbers(self, terms: Iterable[t.Term], k: int) -> list[float]:
+        return [self.number(x, k) for x in terms]
+
+
+def _swapped(view: ReadAs) -> ReadAs:
+    return {"strong": "weak", "weak": "strong", "clip": "clip"}[view]  # type: ignore[return-value]
+
+
+def _not_given(formula: Formula) -> InputError:
+    return InputError(f"{formula} is not given for this trace: bind the formula to a road first")
