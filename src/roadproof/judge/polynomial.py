@@ -1,0 +1,102 @@
+"""Polynomials in time with rational coefficients: integers over one common denominator.
+
+One denominator keeps numbers small and arithmetic quick: each operation reduces once.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import comb, gcd, lcm
+
+
+@dataclass(frozen=True, slots=True)
+class Polynomial:
+    """Σ numerators[i]·tⁱ / denominator, reduced; no trailing zero, so the zero polynomial is ()."""
+
+    numerators: tuple[int, ...]
+    denominator: int
+
+
+def polynomial(*coefficients: Fraction | int) -> Polynomial:
+    """From coefficients, lowest power first.
+
+    >>> polynomial(Fraction(1, 2), 0, Fraction(1, 3))
+    Polynomial(numerators=(3, 0, 2), denominator=6)
+    """
+    denominator = lcm(*(c.denominator for c in coefficients))
+    return _reduced([c.numerator * (denominator // c.denominator) for c in coefficients], denominator)
+
+
+ZERO = Polynomial((), 1)
+ONE = Polynomial((1,), 1)
+
+
+def add(left: Polynomial, right: Polynomial) -> Polynomial:
+    """``left + right``."""
+    denominator = lcm(left.denominator, right.denominator)
+    x, y = denominator // left.denominator, denominator // right.denominator
+    longer, shorter = left.numerators, right.numerators
+    if len(longer) < len(shorter):
+        longer, shorter, x, y = shorter, longer, y, x
+    total = [n * x for n in longer]
+    for i, n in enumerate(shorter):
+        total[i] += n * y
+    return _reduced(total, denominator)
+
+
+def multiply(left: Polynomial, right: Polynomial) -> Polynomial:
+    """``left * right``."""
+    if not left.numerators or not right.numerators:
+        return ZERO
+    product = [0] * (len(left.numerators) + len(right.numerators) - 1)
+    for i, x in enumerate(left.numerators):
+        for j, y in enumerate(right.numerators):
+            product[i + j] += x * y
+    return _reduced(product, left.denominator * right.denominator)
+
+
+def negate(p: Polynomial) -> Polynomial:
+    """``-p``."""
+    return Polynomial(tuple(-n for n in p.numerators), p.denominator)
+
+
+def shift(numerators: tuple[int, ...], by: Fraction) -> tuple[int, ...]:
+    """A primitive polynomial whose roots are those of ``numerators`` plus ``by``.
+
+    >>> shift((-2, 0, 1), Fraction(1, 2))  # roots ±√2 + 1/2
+    (-7, -4, 4)
+    """
+    degree = len(numerators) - 1
+    top, bottom = by.numerator, by.denominator
+    moved = [0] * (degree + 1)
+    for power, n in enumerate(numerators):
+        # n·(t - top/bottom)^power · bottom^degree
+        for i in range(power + 1):
+            moved[i] += n * comb(power, i) * (-top) ** (power - i) * bottom ** (degree - power + i)
+    return primitive(tuple(moved))
+
+
+def primitive(numerators: tuple[int, ...]) -> tuple[int, ...]:
+    """Without common factor, and with positive leading coefficient; the roots are the same."""
+    factor = gcd(*numerators)
+    if factor and numerators[-1] < 0:
+        factor = -factor
+    return numerators if factor in (0, 1) else tuple(n // factor for n in numerators)
+
+
+def sign_at(numerators: tuple[int, ...], x: Fraction) -> int:
+    """The sign (-1, 0, 1) of an integer polynomial at a rational point."""
+    top, bottom = x.numerator, x.denominator
+    value, scale = 0, 1
+    for n in reversed(numerators):
+        value = value * top + n * scale
+        scale *= bottom
+    return (value > 0) - (value < 0)
+
+
+def _reduced(numerators: list[int], denominator: int) -> Polynomial:
+    while numerators and numerators[-1] == 0:
+        numerators.pop()
+    factor = gcd(denominator, *numerators)
+    if factor != 1:
+        return Polynomial(tuple(n // factor for n in numerators), denominator // factor)
+    return Polynomial(tuple(numerators), denominator)
