@@ -1,0 +1,149 @@
+"""A recording of traffic as plain arrays, whatever file it came from.
+
+Coordinates are those of SPEC §2: s along the road in driving direction (front of the box), d across
+it to the left (left side of the box), in metres, metres per second and metres per second squared.
+Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
+``start[v]:start[v + 1]``, and its row of frame f is ``start[v] + f - first_frame[v]``.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+Integers: TypeAlias = npt.NDArray[np.int64]
+Masks: TypeAlias = npt.NDArray[np.uint32]
+Bools: TypeAlias = npt.NDArray[np.bool_]
+
+SIGNALS = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
+ZONES = ("main", "merge", "depart")
+
+
+@dataclass(frozen=True)
+class Lane:
+    """A lane of one driving direction; ``d`` is (right, left) where it is a straight band, else None."""
+
+    name: str
+    direction: int
+    d: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Traffic on one road for some minutes.
+
+    Per vehicle, in order of ``vehicle_id``: ``vehicle_id``, ``direction``, ``kind`` (a class such as
+    Car or Truck), ``length``, ``width``, ``first_frame``, and ``start`` (one entry more than vehicles).
+    Per sample: the six SIGNALS, ``occupancy`` (bit k: the box overlaps ``lanes[k]`` with positive
+    area, SPEC §4), ``lane`` (index of the lane that holds the centre of the box, -1 for none) and
+    ``zones`` (bit k: the box occupies a lanelet of zone ZONES[k]).
+    ``beside`` holds unordered pairs of names of adjacent lanes. ``notes`` says what is odd but usable.
+    """
+
+    name: str
+    rate: int
+    lanes: tuple[Lane, ...]
+    beside: frozenset[frozenset[str]]
+    vehicle_id: Integers
+    direction: Integers
+    kind: npt.NDArray[np.str_]
+    length: Floats
+    width: Floats
+    first_frame: Integers
+    start: Integers
+    s: Floats
+    d: Floats
+    v_lon: Floats
+    v_lat: Floats
+    a_lon: Floats
+    a_lat: Floats
+    occupancy: Masks
+    lane: Integers
+    zones: Masks
+    notes: tuple[str, ...] = ()
+
+    @property
+    def vehicles(self) -> int:
+        """How many vehicles there are."""
+        return len(self.vehicle_id)
+
+    @property
+    def last_frame(self) -> Integers:
+        """The last frame of each vehicle."""
+        last: Integers = self.first_frame + np.diff(self.start) - 1
+        return last
+
+    @property
+    def row_vehicle(self) -> Integers:
+        """For each sample, the index of its vehicle."""
+        return np.repeat(np.arange(self.vehicles), np.diff(self.start))
+
+    @property
+    def row_frame(self) -> Integers:
+        """For each sample, its frame."""
+        within: Integers = np.arange(self.start[-1]) - np.repeat(self.start[:-1], np.diff(self.start))
+        return within + np.repeat(self.first_frame, np.diff(self.start))
+
+    def beside_mask(self, lane: int) -> int:
+        """The lanes adjacent to ``lanes[lane]``, as bits of ``occupancy``."""
+        name = self.lanes[lane].name
+        return sum(1 << k for k, x in enumerate(self.lanes) if frozenset((x.name, name)) in self.beside)
+
+
+def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
+    """The recording with only the vehicles for which ``wanted`` (one entry a vehicle) is true."""
+    rows = np.repeat(wanted, np.diff(recording.start))
+    counts = np.diff(recording.start)[wanted]
+    changed: dict[str, Any] = {
+        name: getattr(recording, name)[wanted]
+        for name in ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
+    }
+    changed |= {name: getattr(recording, name)[rows] for name in (*SIGNALS, "occupancy", "lane", "zones")}
+    return _replace(recording, changed | {"start": offsets(counts)})
+
+
+def offsets(counts: npt.NDArray[Any]) -> Integers:
+    """0 and the running sums of ``counts``.
+
+    >>> offsets(np.array([2, 3])).tolist()
+    [0, 2, 5]
+    """
+    return np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+
+
+def beside_by_order(lanes: tuple[Lane, ...]) -> frozenset[frozenset[str]]:
+    """``Recording.beside`` where the lanes of a direction follow each other across the road."""
+    neighbours = pairwise(lanes)
+    return frozenset(frozenset((a.name, b.name)) for a, b in neighbours if a.direction == b.direction)
+
+
+def occupy_bands(
+    lanes: tuple[Lane, ...], direction: Integers, d: Floats, width: Floats
+) -> tuple[Masks, Integers]:
+    """Occupancy bits and lane of the centre for boxes on straight bands (SPEC §4).
+
+    All arrays have one entry a sample; metres are compared to the micrometre, so that a box which
+    touches a marking in the decimals of the file does so here. A centre on a marking belongs to the band on its left.
+    """
+    occupancy = np.zeros(len(d), np.uint32)
+    lane = np.full(len(d), -1, np.int64)
+    right = np.round(d - width, 6)
+    centre = np.round(d - width / 2, 6)
+    for k, band in enumerate(lanes):
+        if band.d is None:
+            raise ValueError(f"lane {band.name} is no straight band")
+        low, high = band.d
+        ours = direction == band.direction
+        occupancy |= (ours & (d > low) & (right < high)).astype(np.uint32) << np.uint32(k)
+        lane[ours & (low <= centre) & (centre < high)] = k
+    return occupancy, lane
+
+
+def _replace(recording: Recording, changed: Mapping[str, Any]) -> Recording:
+    return Recording(
+        **{**{name: getattr(recording, name) for name in Recording.__dataclass_fields__}, **changed}
+    )

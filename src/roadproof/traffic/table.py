@@ -1,0 +1,190 @@
+"""Number tables in CSV files: the one home of polars.
+
+Reading is strict. A file has exactly the header that its format prescribes, every row has every
+field, every cell that is asked for is a finite number (or a text where the format has one); the
+first cell that breaks a rule is named by file, row (the header is row 1), column and value.
+"""
+
+import math
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from roadproof.errors import InputError
+
+Kind: TypeAlias = Literal["integer", "number", "text"]
+Column: TypeAlias = npt.NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of equal length by name, and the file that they came from."""
+
+    path: Path
+    columns: Mapping[str, Column]
+    rows: int
+
+    def __getitem__(self, name: str) -> Column:
+        return self.columns[name]
+
+    def refuse(self, row: int, column: str, rule: str) -> InputError:
+        """The error for the cell in data row ``row`` (from 0)."""
+        return cell_error(self.path, row, column, self.columns[column][row], rule)
+
+    def require(self, holds: npt.NDArray[np.bool_], column: str, rule: str) -> None:
+        """Raise for the first row where ``holds`` is false."""
+        if not holds.all():
+            raise self.refuse(int(np.argmin(holds)), column, rule)
+
+
+def cell_error(path: Path, row: int, column: str, value: object, rule: str) -> InputError:
+    """An error that names a cell; ``row`` counts data rows from 0, the message lines from 1."""
+    return InputError(f"{path}, row {row + 2}, column {column}={value}: {rule}")
+
+
+def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Table:
+    """The columns ``wanted`` of a CSV file whose header is exactly ``header``.
+
+    Integers come as int64, numbers as finite float64, texts as str. Raises ``InputError`` for a
+    file that cannot be read, is empty or truncated, or breaks a rule above.
+    """
+    content = _read_bytes(path)
+    first_line, _, body = content.partition(b"\n")
+    _check_header(path, first_line, header)
+    rows = _check_shape(path, content, len(header))
+    columns = _read_fast(content, wanted, rows)
+    if columns is None:
+        _blame(path, body, header, wanted)
+        raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
+    for name, kind in wanted.items():
+        if kind == "number" and not np.isfinite(columns[name]).all():
+            row = int(np.argmin(np.isfinite(columns[name])))
+            raise cell_error(path, row, name, columns[name][row], "a number must be finite")
+    return Table(path, columns, rows)
+
+
+def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None = None) -> None:
+    """Write ``columns`` as CSV, floats with ``decimals`` places; the file appears whole or not at all."""
+    import polars as pl
+
+    frame = pl.DataFrame({name: pl.Series(name, values) for name, values in columns.items()})
+    try:
+        descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(descriptor, "wb") as file:
+                frame.write_csv(file, float_precision=decimals, float_scientific=False if decimals else None)
+            os.chmod(temporary, 0o644)
+            os.replace(temporary, path)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+    except OSError as error:
+        raise InputError(
+            f"{path}: the file cannot be written ({error.strerror}); choose another folder"
+        ) from None
+
+
+def _read_bytes(path: Path) -> bytes:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
+    if not content.strip():
+        raise InputError(f"{path}: the file is empty; get it again from its source")
+    return content.removeprefix(b"\xef\xbb\xbf")
+
+
+def _check_header(path: Path, line: bytes, header: Sequence[str]) -> None:
+    names = line.decode("utf-8", "replace").strip("\r\n ").split(",")
+    missing = [name for name in header if name not in names]
+    extra = [name for name in names if name not in header]
+    if missing:
+        raise InputError(
+            f"{path}, row 1: missing columns {', '.join(missing)}; the format has {', '.join(header)}"
+        )
+    if extra:
+        shown = ", ".join(repr(name) for name in extra)
+        raise InputError(f"{path}, row 1: columns {shown} are not part of the format; remove them")
+    if list(names) != list(header):
+        raise InputError(f"{path}, row 1: the columns must come in the order {', '.join(header)}, each once")
+
+
+def _check_shape(path: Path, content: bytes, fields: int) -> int:
+    """The number of data rows; every line must end, and hold ``fields`` fields."""
+    data = np.frombuffer(content, np.uint8)
+    if data[-1] != ord("\n"):
+        raise InputError(
+            f"{path}: the last row does not end with a line break; the file was cut off, get it again"
+        )
+    if data.max() > 127 or not data.min():
+        strange = int(np.argmax((data > 127) | (data == 0)))
+        row = content.count(b"\n", 0, strange) + 1
+        raise InputError(f"{path}, row {row}: byte {data[strange]:#04x} is no part of a table of numbers")
+    lines = int(np.count_nonzero(data == ord("\n")))
+    if np.count_nonzero(data == ord(",")) != lines * (fields - 1):
+        for number, line in enumerate(content.split(b"\n")[:-1], start=1):
+            if line.count(b",") != fields - 1:
+                count = line.count(b",") + 1
+                raise InputError(f"{path}, row {number}: the row has {count} fields, the format {fields}")
+    if lines < 2:
+        raise InputError(f"{path}: the file has a header but no rows; get it again from its source")
+    return lines - 1
+
+
+def _read_fast(content: bytes, wanted: Mapping[str, Kind], rows: int) -> dict[str, Column] | None:
+    """All wanted columns, or None if some cell is wrong."""
+    import polars as pl
+
+    types = {"integer": pl.Int64, "number": pl.Float64, "text": pl.String}
+    try:
+        frame = pl.read_csv(
+            content,
+            columns=list(wanted),
+            schema_overrides={name: types[kind] for name, kind in wanted.items()},
+            quote_char=None,
+            infer_schema=False,
+        )
+    except (pl.exceptions.PolarsError, UnicodeDecodeError):
+        return None
+    if frame.height != rows or any(frame[name].null_count() for name in wanted):
+        return None
+    return {name: frame[name].to_numpy() for name in wanted}
+
+
+def _blame(path: Path, body: bytes, header: Sequence[str], wanted: Mapping[str, Kind]) -> None:
+    """Read cell by cell and raise for the first one that is wrong; slow, and only after a failure."""
+    places = [(header.index(name), name, kind) for name, kind in wanted.items()]
+    for row, line in enumerate(body.decode("utf-8", "replace").split("\n")[:-1]):
+        cells = line.rstrip("\r").split(",")
+        if len(cells) != len(header):
+            raise InputError(
+                f"{path}, row {row + 2}: the row has {len(cells)} fields, the format {len(header)}"
+            )
+        for place, name, kind in places:
+            if not _fits(cells[place], kind):
+                rule = {
+                    "integer": "a whole number is needed",
+                    "number": "a finite number is needed",
+                    "text": "the cell must not be empty",
+                }[kind]
+                raise cell_error(path, row, name, repr(cells[place]), rule)
+
+
+def _fits(cell: str, kind: Kind) -> bool:
+    match kind:
+        case "text":
+            return cell != ""
+        case "integer":
+            digits = cell.removeprefix("-")
+            return digits.isascii() and digits.isdigit() and abs(int(digits[:20])) < 2**63
+        case "number":
+            try:
+                return cell == cell.strip() and "_" not in cell and math.isfinite(float(cell))
+            except ValueError:
+                return False

@@ -1,0 +1,312 @@
+"""The highD reader against recordings computed by hand, and against every kind of damage."""
+
+import random
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.traffic.highd import find_recordings, read_highd
+from roadproof.traffic.recording import Recording, keep_vehicles
+from traffic.tiny_highd import Files, tiny_files, write_files
+
+TRACKS, META, RECORDING = "01_tracks.csv", "01_tracksMeta.csv", "01_recordingMeta.csv"
+
+
+def read(files: Files, folder: Path) -> Recording:
+    return read_highd(write_files(files, folder), "01")
+
+
+def same(a: Recording, b: Recording) -> bool:
+    return all(np.array_equal(getattr(a, f.name), getattr(b, f.name)) for f in fields(Recording))
+
+
+@pytest.mark.parametrize(("layout", "upper_lane", "lower_lanes"), [("2+2", "2", "56"), ("3+2", "3", "67")])
+def test_both_directions_by_hand(layout: str, upper_lane: str, lower_lanes: str, tmp_path: Path) -> None:
+    r = read(tiny_files(layout), tmp_path)
+    assert r.notes == ()
+    assert (r.rate, r.vehicle_id.tolist(), r.direction.tolist()) == (25, [1, 2, 3], [1, 2, 2])
+    assert r.kind.tolist() == ["Car", "Car", "Truck"]
+    assert r.length.tolist() == [4.5, 4.0, 12.0]
+    assert r.width.tolist() == [1.8, 2.0, 2.5]
+    assert (r.start.tolist(), r.first_frame.tolist()) == ([0, 4, 7, 10], [1, 2, 1])
+    assert r.last_frame.tolist() == [4, 4, 3]
+    assert r.row_frame.tolist() == [1, 2, 3, 4, 2, 3, 4, 1, 2, 3]
+    # Direction 1: s = -x, d = y + height, along is -x, left is +y (down in the picture).
+    assert r.s[:4].tolist() == [-300.0, -298.7, -297.4, -296.1]
+    assert r.d[:4].tolist() == [11.31, 11.31, 11.32, 11.32]
+    assert r.v_lon[:2].tolist() == [32.5, 32.53]
+    assert (r.v_lat[0], r.a_lon[0], r.a_lat[0]) == (0.1, 1.0, 0.2)
+    # Direction 2: s = x + width, d = -y, along is +x, left is -y.
+    assert r.s[4:7].tolist() == [14.0, 15.2, 16.4]
+    assert r.d[4:7].tolist() == [-26.0, -25.99, -25.98]
+    assert (r.v_lon[4], r.v_lat[4], r.a_lon[4], r.a_lat[4]) == (30.0, 0.25, 0.5, 0.75)
+    # Lanes. The truck touches the marking at 24.96 (22.46 + 2.5) in its first frame: no occupation yet.
+    index = {lane.name: k for k, lane in enumerate(r.lanes)}
+    left, right = (index[name] for name in lower_lanes)
+    assert r.occupancy[:4].tolist() == [1 << index[upper_lane]] * 4
+    assert r.occupancy[4:7].tolist() == [1 << right] * 3
+    assert r.occupancy[7:].tolist() == [1 << left, 1 << left | 1 << right, 1 << left | 1 << right]
+    assert r.lane[7:].tolist() == [left, left, right]
+    assert r.beside_mask(left) == 1 << right
+    assert r.zones.tolist() == [1] * 10
+
+
+def test_lane_names_are_lane_ids(tmp_path: Path) -> None:
+    r = read(tiny_files("3+2"), tmp_path)
+    assert [(lane.name, lane.direction) for lane in r.lanes] == [
+        ("2", 1),
+        ("3", 1),
+        ("4", 1),
+        ("6", 2),
+        ("7", 2),
+    ]
+    assert frozenset(("4", "6")) not in r.beside
+
+
+def test_keep_vehicles(tmp_path: Path) -> None:
+    r = read(tiny_files(), tmp_path)
+    kept = keep_vehicles(r, r.kind == "Car")
+    assert kept.start.tolist() == [0, 4, 7]
+    assert same(keep_vehicles(r, np.ones(3, bool)), r)
+    assert keep_vehicles(r, r.kind == "Truck").s.tolist() == r.s[7:].tolist()
+
+
+def test_line_ends_and_byte_order_mark_are_harmless(tmp_path: Path) -> None:
+    expected = read(tiny_files(), tmp_path)
+    for path in tmp_path.iterdir():
+        path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes().replace(b"\n", b"\r\n"))
+    assert same(read_highd(tmp_path, "01"), expected)
+
+
+def test_shuffled_rows_are_sorted_and_noted(tmp_path: Path) -> None:
+    expected = read(tiny_files(), tmp_path / "a")
+    files = tiny_files()
+    rows = files[TRACKS][1:]
+    random.Random(1).shuffle(rows)
+    files[TRACKS][1:] = rows
+    found = read(files, tmp_path / "b")
+    assert "sorted" in found.notes[0]
+    assert np.array_equal(found.s, expected.s)
+    assert np.array_equal(found.occupancy, expected.occupancy)
+
+
+def test_find_recordings(tmp_path: Path) -> None:
+    for name in ("02_tracks.csv", "01_recordingMeta.csv", "10_tracksMeta.csv", "x_tracks.csv"):
+        (tmp_path / name).write_text("")
+    assert find_recordings(tmp_path) == ("01", "02", "10")
+    with pytest.raises(InputError, match="not a folder"):
+        find_recordings(tmp_path / "none")
+
+
+def change(file: str, row: int, column: str, value: str) -> Callable[[Files], None]:
+    def apply(files: Files) -> None:
+        files[file][row][files[file][0].index(column)] = value
+
+    return apply
+
+
+DAMAGES: dict[str, tuple[Callable[[Files], None], str]] = {
+    "missing file": (lambda f: f.pop(META) and None, r"01_tracksMeta.csv: the file cannot be read"),
+    "no rows": (
+        lambda f: f.__setitem__(TRACKS, f[TRACKS][:1]),
+        r"01_tracks.csv: the file has a header but no rows",
+    ),
+    "missing column": (lambda f: [row.pop(3) for row in f[TRACKS]] and None, "row 1: missing columns y"),
+    "extra column": (
+        lambda f: [row.append("lane" if k == 0 else "1") for k, row in enumerate(f[TRACKS])] and None,
+        r"row 1: columns 'lane' are not part",
+    ),
+    "columns swapped": (lambda f: f[TRACKS][0].insert(2, f[TRACKS][0].pop(3)), "must come in the order"),
+    "short row": (lambda f: f[TRACKS][4].pop() and None, "row 5: the row has 24 fields, the format 25"),
+    "text": (change(TRACKS, 2, "x", "far"), r"row 3, column x='far': a finite number"),
+    "empty cell": (change(TRACKS, 2, "x", ""), r"row 3, column x='': a finite number"),
+    "not a number": (change(TRACKS, 2, "yVelocity", "NaN"), r"row 3, column yVelocity=.*nan.*finite"),
+    "infinite": (change(TRACKS, 7, "xVelocity", "-inf"), r"row 8, column xVelocity=.*inf.*finite"),
+    "overflow": (change(TRACKS, 7, "x", "1e999"), r"row 8, column x=.*finite"),
+    "half a frame": (change(TRACKS, 7, "frame", "4.5"), r"row 8, column frame='4.5': a whole number"),
+    "quote": (change(TRACKS, 3, "x", '"297.4'), "row 4, column x="),
+    "negative size": (change(META, 2, "height", "-2.00"), r"row 3, column height=-2.0: the size"),
+    "negative size in tracks": (change(TRACKS, 5, "width", "-4.00"), r"row 6, column width=-4.0: the size"),
+    "another size": (
+        change(TRACKS, 5, "width", "4.10"),
+        r"row 6, column width=4.1: 01_tracksMeta.csv has another",
+    ),
+    "frame gap": (lambda f: f[TRACKS].pop(6) and None, r"vehicle id=2, frame=4: the frame before it is 2"),
+    "last frame missing": (
+        lambda f: f[TRACKS].pop(4) and None,
+        r"id=1, column numFrames=4: 01_tracks.csv has 3",
+    ),
+    "duplicate": (lambda f: f[TRACKS].insert(3, f[TRACKS][2]), r"row 4, column frame=2: vehicle and frame"),
+    "unknown vehicle": (
+        change(TRACKS, 1, "id", "9"),
+        r"column id=9: the vehicle is not in 01_tracksMeta.csv",
+    ),
+    "vehicle without rows": (
+        lambda f: f.__setitem__(TRACKS, f[TRACKS][:8]),
+        r"row 4, column id=3: the vehicle has no rows in 01_tracks.csv",
+    ),
+    "vehicle zero": (change(META, 1, "id", "0"), r"column id=0: an id is greater than zero"),
+    "vehicle twice": (change(META, 3, "id", "2"), r"row 4, column id=2: a vehicle has one row"),
+    "frames disagree": (
+        change(META, 2, "initialFrame", "3"),
+        r"numFrames=3: must be finalFrame - initialFrame",
+    ),
+    "class": (change(META, 2, "class", "Bus"), r"row 3, column class=Bus: must be Car or Truck"),
+    "class count": (change(META, 2, "class", "Truck"), r"1 vehicles of class Car, but"),
+    "direction": (change(META, 2, "drivingDirection", "3"), r"drivingDirection=3: must be 1 or 2"),
+    "count": (change(RECORDING, 1, "numVehicles", "4"), r"numVehicles=4: must be numCars \+ numTrucks"),
+    "rate": (change(RECORDING, 1, "frameRate", "0"), r"frameRate=0.0: a whole number of frames"),
+    "recording id": (change(RECORDING, 1, "id", "2"), r"id=2: the name of the file says recording 01"),
+    "one marking": (change(RECORDING, 1, "upperLaneMarkings", "8.5"), "at least two finite"),
+    "markings fall": (
+        change(RECORDING, 1, "lowerLaneMarkings", "28.8;24.96;21"),
+        "each greater than the one before",
+    ),
+    "markings text": (change(RECORDING, 1, "lowerLaneMarkings", "21;left"), "joined by ';'"),
+    "markings cross": (
+        change(RECORDING, 1, "lowerLaneMarkings", "11.00;24.96;28.80"),
+        "must lie below the last upper",
+    ),
+    "markings elsewhere": (
+        change(RECORDING, 1, "lowerLaneMarkings", "61.00;64.96;68.80"),
+        "markings do not fit",
+    ),
+    "two recordings": (lambda f: f[RECORDING].append(f[RECORDING][1]), "2 rows; one recording has one row"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGES)
+def test_damage_is_named(name: str, tmp_path: Path) -> None:
+    damage, message = DAMAGES[name]
+    files = tiny_files()
+    damage(files)
+    with pytest.raises(InputError, match=message):
+        read(files, tmp_path)
+
+
+def test_wrong_driving_direction(tmp_path: Path) -> None:
+    files = tiny_files()
+    change(META, 2, "drivingDirection", "1")(files)
+    for row in (5, 6, 7):
+        change(TRACKS, row, "x", str(50 + 10 * row))(files)
+    with pytest.raises(InputError, match=r"vehicle id=2, column drivingDirection=1: .* moves the other way"):
+        read(files, tmp_path)
+
+
+def test_jump_and_strange_lane_are_noted(tmp_path: Path) -> None:
+    files = tiny_files()
+    change(TRACKS, 7, "x", "15.40")(files)
+    change(TRACKS, 7, "laneId", "5")(files)
+    notes = " | ".join(read(files, tmp_path).notes)
+    assert "laneId is not the lane of the box's centre in 1 rows" in notes
+    assert "1 samples where position and velocity differ" in notes
+
+
+def _spoil(files: dict[str, bytes], chance: random.Random) -> str:
+    """Damage one file in one random way; returns what was done."""
+    name = chance.choice(sorted(files))
+    content = files[name]
+    lines = content.split(b"\n")
+    row = chance.randrange(len(lines) - 1)
+    match kind := chance.choice(
+        [
+            "truncate",
+            "empty",
+            "noise",
+            "drop row",
+            "double row",
+            "cut row",
+            "swap cells",
+            "cell",
+            "shuffle",
+            "splice",
+        ]
+    ):
+        case "truncate":
+            content = content[: chance.randrange(len(content))]
+        case "empty":
+            content = chance.choice([b"", b"\n", b"\n\n\n", b"\0" * 100])
+        case "noise":
+            place = chance.randrange(len(content))
+            content = content[:place] + bytes([chance.randrange(128, 256)]) + content[place + 1 :]
+        case "drop row":
+            content = b"\n".join(lines[:row] + lines[row + 1 :])
+        case "double row":
+            content = b"\n".join(lines[: row + 1] + lines[row:])
+        case "cut row":
+            lines[row] = lines[row][: chance.randrange(max(1, len(lines[row])))]
+            content = b"\n".join(lines)
+        case "swap cells":
+            cells = lines[row].split(b",")
+            i, j = chance.sample(range(len(cells)), 2)
+            cells[i], cells[j] = cells[j], cells[i]
+            lines[row] = b",".join(cells)
+            content = b"\n".join(lines)
+        case "cell":
+            cells = lines[row].split(b",")
+            cells[chance.randrange(len(cells))] = chance.choice(
+                [
+                    b"",
+                    b"nan",
+                    b"-inf",
+                    b"1e999",
+                    b"x",
+                    b"-7",
+                    b"0x10",
+                    b"1_0",
+                    b'"',
+                    b"9" * 40,
+                    b" 3",
+                    b"--1",
+                    b"\0",
+                ]
+            )
+            lines[row] = b",".join(cells)
+            content = b"\n".join(lines)
+        case "shuffle":
+            body = lines[1:-1]
+            chance.shuffle(body)
+            content = b"\n".join([lines[0], *body, b""])
+        case "splice":
+            content = content[: len(content) // 2] + files[sorted(files)[0]]
+    files[name] = content
+    return f"{kind} in {name}"
+
+
+def test_fuzz_never_crashes_and_never_stays_silent(tmp_path: Path) -> None:
+    """600 damages: an InputError, or a note, or the very same recording; never anything else."""
+    original = write_files(tiny_files(), tmp_path / "original")
+    expected = read_highd(original, "01")
+    texts = {path.name: path.read_bytes() for path in original.iterdir()}
+    chance = random.Random(34502)
+    outcomes = {"refused": 0, "noted": 0, "harmless": 0}
+    folder = tmp_path / "spoiled"
+    folder.mkdir()
+    silent, unnamed = [], []
+    for _ in range(600):
+        files = dict(texts)
+        done = _spoil(files, chance)
+        for name, content in files.items():
+            (folder / name).write_bytes(content)
+        try:
+            found = read_highd(folder, "01")
+        except InputError as error:
+            unnamed += [] if "01_" in str(error) else [str(error)]
+            outcomes["refused"] += 1
+            continue
+        if found.notes:
+            outcomes["noted"] += 1
+        elif same(found, expected):
+            outcomes["harmless"] += 1
+        else:
+            silent.append(done)
+    assert not unnamed
+    # A plausible value in place of another (say -7 for an acceleration) cannot be told from the truth.
+    assert all(done.startswith(("cell", "swap cells")) for done in silent), silent
+    assert len(silent) < 30, silent
+    assert outcomes["refused"] > 350
+    assert outcomes["harmless"] < 200, outcomes
