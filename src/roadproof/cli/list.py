@@ -3,6 +3,8 @@
 import argparse
 import re
 from collections.abc import Iterable
+from fractions import Fraction
+from itertools import groupby
 from typing import Any
 
 from roadproof.cli.options import (
@@ -12,6 +14,7 @@ from roadproof.cli.options import (
     select_specification,
     write_json,
 )
+from roadproof.logic.show import decimal
 from roadproof.spec.elaborate import signature
 from roadproof.spec.library import Specification
 from roadproof.verdict import ExitCode
@@ -47,6 +50,7 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
     """What there is to talk about under one spec set and choice of options, as plain data."""
     library = specification.library
     scenarios = [name for name in specification.definitions if re.fullmatch(r"scenario_\d+", name)]
+    others = [d for name, d in specification.definitions.items() if name not in scenarios]
     return {
         "schema": SCHEMA,
         "set": specification.set_name,
@@ -60,12 +64,11 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
         ],
         "definitions": [
             {
-                "name": name,
+                "name": definition.name,
                 "parameters": [{"name": b.name, "sort": b.sort} for b in definition.parameters],
                 "doc": definition.doc,
             }
-            for name, definition in specification.definitions.items()
-            if name not in scenarios
+            for definition in others
         ],
         "sets": [{"name": s.name, "extends": s.parent, "doc": s.doc} for s in library.sets.values()],
         "options": [
@@ -81,17 +84,13 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
 
 def _as_text(inventory: dict[str, Any]) -> str:
     scenarios = [(f"{s['name']}({', '.join(s['arguments'])})", s["doc"]) for s in inventory["scenarios"]]
-    definitions = [(f"{d['name']}({_parameters(d)})", d["doc"]) for d in inventory["definitions"]]
-    sets = [
-        (s["name"] + (f" extends {s['extends']}" if s["extends"] else ""), s["doc"])
-        for s in inventory["sets"]
-    ]
+    sets = [(_extends(s), s["doc"]) for s in inventory["sets"]]
     options = [(f"{o['name']} = {' | '.join(o['values'])}", o["doc"]) for o in inventory["options"]]
-    parameters = [(f"{p['name']} = {p['value']} {p['unit']}", p["doc"]) for p in inventory["parameters"]]
+    parameters = [(_value(p), p["doc"]) for p in inventory["parameters"]]
     return "\n\n".join(
         [
             _block(f"Scenarios (set {inventory['set']})", scenarios),
-            _block("Definitions", definitions),
+            _block("Definitions", _definitions(inventory["definitions"])),
             _block("Spec sets", sets),
             _block("Options (the first value is the default)", options),
             _block("Parameters", parameters),
@@ -99,12 +98,41 @@ def _as_text(inventory: dict[str, Any]) -> str:
     )
 
 
+def _definitions(definitions: Iterable[dict[str, Any]]) -> list[tuple[str, str]]:
+    """One row a definition; those that differ in a number at the end only share a row."""
+    families: dict[str, list[dict[str, Any]]] = {}
+    for definition in definitions:
+        stem, _, index = definition["name"].rpartition("_")
+        families.setdefault(f"{stem}_i" if index.isdigit() else definition["name"], []).append(definition)
+    rows: list[tuple[str, str]] = []
+    for family, members in families.items():
+        if len(members) < 3:
+            rows += [(f"{m['name']}({_parameters(m)})", m["doc"]) for m in members]
+        else:
+            indices = sorted(int(m["name"].rpartition("_")[2]) for m in members)
+            last = members[-1]["doc"] if len({m["doc"] for m in members}) == 1 else "parts of the template"
+            rows.append((family, f"{last}, i = {indices[0]}..{indices[-1]}"))
+    return rows
+
+
 def _parameters(definition: dict[str, Any]) -> str:
-    return ", ".join(f"{p['name']}: {p['sort']}" for p in definition["parameters"])
+    groups = groupby(definition["parameters"], key=lambda parameter: parameter["sort"])
+    return ", ".join(f"{', '.join(p['name'] for p in group)}: {sort}" for sort, group in groups)
+
+
+def _extends(spec_set: dict[str, Any]) -> str:
+    parent = spec_set["extends"]
+    return f"{spec_set['name']} extends {parent}" if parent else str(spec_set["name"])
+
+
+def _value(parameter: dict[str, Any]) -> str:
+    value = Fraction(parameter["value"])
+    sign = "-" if value < 0 else ""
+    return f"{parameter['name']} = {sign}{decimal(abs(value))} {parameter['unit']}"
 
 
 def _block(title: str, rows: Iterable[tuple[str, str]]) -> str:
-    """A title and two columns; nothing trails a row without a second one."""
+    """A title and two columns."""
     known = list(rows)
-    width = min(46, max((len(left) for left, _ in known), default=0))
+    width = max((len(left) for left, _ in known), default=0)
     return "\n".join([title, *(f"  {left:<{width}}  {right}".rstrip() for left, right in known)])

@@ -126,18 +126,7 @@ class Named:
 
 State: TypeAlias = Truth | Compare | Occupies
 Formula: TypeAlias = (
-    Truth
-    | Compare
-    | Occupies
-    | Some
-    | Every
-    | Not
-    | And
-    | Or
-    | Until
-    | Eventually
-    | Always
-    | Named
+    Truth | Compare | Occupies | Some | Every | Not | And | Or | Until | Eventually | Always | Named
 )
 
 TRUE = Truth(True)

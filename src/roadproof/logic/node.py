@@ -24,5 +24,5 @@ def node(cls: type[T]) -> type[T]:
             self.__dict__["_hash"] = known
         return known
 
-    made.__hash__ = remembered  # type: ignore[method-assign,assignment]
+    made.__hash__ = remembered  # type: ignore[method-assign]
     return made

@@ -21,6 +21,7 @@ from roadproof.logic import syntax
 from roadproof.logic.syntax import Expression, Statement
 
 DEEPEST_NESTING = 100
+LONGEST_NUMBER = 200
 LONGEST_EXPONENT = 30
 GREATEST_POWER = 8
 
@@ -164,9 +165,9 @@ def _token_at(token: Token) -> Position:
 
 def _rational(token: Token) -> Fraction:
     exponent = token.lower().partition("e")[2]
-    if len(exponent) > 4 or abs(int(exponent or 0)) > LONGEST_EXPONENT or len(token) > 200:
+    if len(exponent) > 4 or abs(int(exponent or 0)) > LONGEST_EXPONENT or len(token) > LONGEST_NUMBER:
         raise TextError(
-            f"the number {_short(str(token))} is out of range: write at most 200 digits and an "
+            f"the number {_short(str(token))} is out of range: write at most {LONGEST_NUMBER} digits and an "
             f"exponent between -{LONGEST_EXPONENT} and {LONGEST_EXPONENT}",
             _token_at(token),
         )
@@ -293,9 +294,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
                 f"Write where {name} {bound[1]} 0.",
             )
         comparison = "" if bound is None else bound[1]
-        return syntax.ParameterDeclaration(
-            str(name), value, str(unit), comparison, _doc(doc), _at(meta)
-        )
+        return syntax.ParameterDeclaration(str(name), value, str(unit), comparison, _doc(doc), _at(meta))
 
     def option(self, meta: Meta, items: list[Any]) -> Statement:
         *names, doc = items

@@ -182,9 +182,7 @@ def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:
         case Power(base, exponent):
             return Power(replace_leaves(base, replace), exponent)
         case Quotient(numerator, denominator):
-            return Quotient(
-                replace_leaves(numerator, replace), replace_leaves(denominator, replace)
-            )
+            return Quotient(replace_leaves(numerator, replace), replace_leaves(denominator, replace))
         case Maximum(terms):
             return Maximum(tuple(replace_leaves(t, replace) for t in terms))
         case Minimum(terms):

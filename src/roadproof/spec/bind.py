@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from fractions import Fraction
 
-from roadproof.errors import UsageError
+from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -18,13 +18,11 @@ def default_values(library: Library) -> dict[str, Fraction]:
     return {name: p.value * UNITS[p.unit][0] for name, p in library.parameters.items()}
 
 
-def bind(
-    formula: Formula, road: Road, lanes: Mapping[str, str], values: Mapping[str, Fraction]
-) -> Formula:
+def bind(formula: Formula, road: Road, lanes: Mapping[str, str], values: Mapping[str, Fraction]) -> Formula:
     """``formula`` on ``road``: free lanes replaced by ``lanes``, parameters by ``values``.
 
     Quantifiers become finite conjunctions and disjunctions and ``occ`` becomes comparisons, so the
-    result has no ``Some``, ``Every``, ``Occupies`` or ``Parameter``. Raises ``UsageError`` for a
+    result has no ``Some``, ``Every``, ``Occupies`` or ``Parameter``. Raises ``InputError`` for a
     lane that the road does not have or that ``lanes`` does not name.
     """
     return with_values(_Grounding(road, lanes).visit(formula, {}), values)
@@ -82,13 +80,13 @@ class _Grounding:
 
     def _lanelet(self, name: str) -> Lanelet:
         if name not in self.lanelets:
-            raise UsageError(f"lanelet={name}: {unknown('lanelet', name, self.lanelets)}")
+            raise InputError(f"lanelet={name}: {unknown('lanelet', name, self.lanelets)}")
         return self.lanelets[name]
 
     def _lane(self, name: str, scope: Mapping[str, str]) -> str:
         lane = scope.get(name, self.lanes.get(name, name))
         if lane not in self.road.lanes:
-            raise UsageError(
+            raise InputError(
                 f"lane {name}={lane}: road '{self.road.name}' has the lanes {', '.join(self.road.lanes)}"
             )
         return lane

@@ -209,9 +209,7 @@ class _Elaborator:
         bound = self._bind(definition, call, scope)
         return self.apply(definition, bound, call.at)
 
-    def _in_other_set(
-        self, call: syntax.Call, name: str, qualifier: str, scope: Scope
-    ) -> Formula | Quantity:
+    def _in_other_set(self, call: syntax.Call, name: str, qualifier: str, scope: Scope) -> Formula | Quantity:
         if qualifier not in self.specification.library.sets:
             raise TextError(unknown("spec set", qualifier, self.specification.library.sets), call.at)
         inner = _Elaborator(self.specification.in_set(qualifier), self, self.free, depth=self.depth)
@@ -269,9 +267,7 @@ class _Elaborator:
         for binding in parameters:
             if binding.sort == "vehicles":
                 taken, rest = rest[:left_over], rest[left_over:]
-                bound[binding.name] = Vehicles(
-                    tuple(self.reference(a, "vehicle", scope).name for a in taken)
-                )
+                bound[binding.name] = Vehicles(tuple(self.reference(a, "vehicle", scope).name for a in taken))
             elif binding.sort in SORTS:
                 bound[binding.name] = self.reference(rest.pop(0), binding.sort, scope)
             else:
@@ -312,7 +308,9 @@ class _Elaborator:
         made = self.expression(expression, scope)
         if isinstance(made, Quantity):
             raise TextError(
-                "a formula is expected here, but this is a number", expression.at, "Compare it with something."
+                "a formula is expected here, but this is a number",
+                expression.at,
+                "Compare it with something.",
             )
         return made
 
@@ -359,10 +357,10 @@ class _Elaborator:
                 return self._binary(expression, scope)
             case syntax.Temporal(op, bounds, left, right, _):
                 interval = self.interval(bounds, scope)
-                body = self.formula(right, scope)
+                goal = self.formula(right, scope)
                 if left is not None:
-                    return f.Until(self.formula(left, scope), interval, body)
-                return f.Eventually(interval, body) if op == "F" else f.Always(interval, body)
+                    return f.Until(self.formula(left, scope), interval, goal)
+                return f.Eventually(interval, goal) if op == "F" else f.Always(interval, goal)
             case syntax.Quantified():
                 return self._quantified(expression, scope)
 
@@ -485,9 +483,7 @@ class _Elaborator:
         body = self.formula(expression.body, {**scope, variable: Ref(sort, unique)})
         return (f.Every if expression.kind == "every" else f.Some)(unique, domain, body)
 
-    def _vehicles(
-        self, domain: syntax.Name | syntax.Call | syntax.Group, scope: Scope
-    ) -> list[Ref] | None:
+    def _vehicles(self, domain: syntax.Name | syntax.Call | syntax.Group, scope: Scope) -> list[Ref] | None:
         if isinstance(domain, syntax.Group):
             return [self.reference(member, "vehicle", scope) for member in domain.members]
         value = scope.get(domain.name) if isinstance(domain, syntax.Name) else None

@@ -12,7 +12,7 @@ from functools import cache
 from importlib import resources
 from pathlib import Path
 
-from roadproof.errors import InputError, Position, TextError, UsageError
+from roadproof.errors import InputError, Position, TextError
 from roadproof.logic import syntax
 from roadproof.logic.parse import parse_library
 from roadproof.logic.syntax import (
@@ -50,20 +50,18 @@ class Library:
     variants: Mapping[tuple[str, str], tuple[Definition, ...]]
     sources: Mapping[str, Source]
 
-    def select(
-        self, set_name: str = "base", options: Mapping[str, str] | None = None
-    ) -> "Specification":
+    def select(self, set_name: str = "base", options: Mapping[str, str] | None = None) -> "Specification":
         """The definitions in force for a spec set and option values (defaults where not given).
 
-        Raises ``UsageError`` for a set, option or value that does not exist.
+        Raises ``InputError`` for a set, option or value that does not exist.
         """
         chosen = {name: declared.values[0] for name, declared in self.options.items()}
         for name, value in (options or {}).items():
             if name not in self.options:
-                raise UsageError(f"option {name}={value}: {unknown('option', name, self.options)}")
+                raise InputError(f"option {name}={value}: {unknown('option', name, self.options)}")
             if value not in self.options[name].values:
                 allowed = " or ".join(self.options[name].values)
-                raise UsageError(f"option {name}={value}: the value must be {allowed}")
+                raise InputError(f"option {name}={value}: the value must be {allowed}")
             chosen[name] = value
         definitions = dict(self.definitions)
         for block in self._chain(set_name):
@@ -75,7 +73,7 @@ class Library:
     def _chain(self, set_name: str) -> list[SetBlock]:
         """From the outermost ancestor to ``set_name``."""
         if set_name not in self.sets:
-            raise UsageError(f"set={set_name}: {unknown('spec set', set_name, self.sets)}")
+            raise InputError(f"set={set_name}: {unknown('spec set', set_name, self.sets)}")
         chain: list[SetBlock] = []
         name = set_name
         while name:
@@ -194,9 +192,7 @@ class _Building:
         self.definitions[definition.name] = definition
         self.sources[_key(definition)] = source
 
-    def _override(
-        self, block: SetBlock | WhenBlock, fresh: set[tuple[str, str]], source: Source
-    ) -> None:
+    def _override(self, block: SetBlock | WhenBlock, fresh: set[tuple[str, str]], source: Source) -> None:
         inside: set[tuple[str, str]] = set()
         for definition in block.definitions:
             _once(inside, "definition", definition.name, definition.at)

@@ -1,0 +1,163 @@
+"""``roadproof show``: a scenario, a definition or a formula, as text, LaTeX or JSON."""
+
+import argparse
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from roadproof.cli.options import add_specification_options, select_specification, write_json
+from roadproof.errors import InputError
+from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic.latex import align, latex
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.restore import as_syntax, term_as_syntax
+from roadproof.logic.show import decimal, text
+from roadproof.logic.syntax import Binding, Claim, Definition, ParameterDeclaration
+from roadproof.logic.tree import tree
+from roadproof.spec.elaborate import read_claim, signature
+from roadproof.spec.library import Specification, unknown
+from roadproof.spec.uses import definitions_used, parameters_used
+from roadproof.verdict import ExitCode
+
+SUMMARY = "show a scenario, a definition or a formula"
+SCHEMA = "roadproof/show/1"
+
+_WIDTH = 100
+_NAME = re.compile(r"([A-Za-z_]\w*)(?:@([A-Za-z_]\w*))?")
+_EXAMPLES = """\
+examples:
+  roadproof show 4                                scenario_4 and every definition it uses, once each
+  roadproof show cutIn --set ext                  a definition as spec set ext has it
+  roadproof show 4 --expand                       scenario_4 as one formula without definitions
+  roadproof show 'scenario_8(SV,POV,L) -> F danger(SV,POV)' --format latex
+"""
+
+
+@dataclass(frozen=True)
+class Exhibit:
+    """What is on show: a claim, or definitions with the parameters that they speak of, or all three."""
+
+    claim: Claim | None
+    definitions: tuple[Definition, ...] = ()
+    parameters: tuple[ParameterDeclaration, ...] = ()
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("what", metavar="WHAT", help="a scenario's number, a definition's name, or a formula")
+    add_specification_options(parser)
+    parser.add_argument("--expand", action="store_true", help="write every definition out, as one formula")
+    parser.add_argument("--format", choices=("text", "latex", "json"), default="text", help="default: text")
+
+
+def run(args: argparse.Namespace) -> int:
+    specification = select_specification(args)
+    exhibit = _find(specification, args.what.strip(), args.expand)
+    if args.format == "json":
+        write_json(_as_json(exhibit, specification), "-")
+    else:
+        print(_as_latex(exhibit) if args.format == "latex" else _as_text(exhibit))
+    return ExitCode.AS_EXPECTED
+
+
+def _find(specification: Specification, what: str, expand: bool) -> Exhibit:
+    """``what``, elaborated before it is shown so that mistakes in it are found. Raises ``InputError``."""
+    named = _NAME.fullmatch(f"scenario_{int(what)}" if re.fullmatch(r"[0-9]{1,4}", what) else what)
+    if named is None or named[0] in ("true", "false"):
+        return _find_claim(specification, what, expand)
+    if named[2] is not None:
+        specification = specification.in_set(named[2])
+    return _find_definition(specification, named[1], expand)
+
+
+def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibit:
+    claim = parse_claim(what)
+    formula = read_claim(specification, what).formula
+    if expand:
+        return Exhibit(Claim(claim.given, as_syntax(formula, expand=True)))
+    definitions = definitions_used(specification, claim.body)
+    return Exhibit(claim, definitions, parameters_used(specification.library, claim.body, definitions))
+
+
+def _find_definition(specification: Specification, name: str, expand: bool) -> Exhibit:
+    if name not in specification.definitions:
+        raise InputError(unknown("definition", name, specification.definitions))
+    claim = _application(specification, specification.definitions[name])
+    if not expand:
+        read_claim(specification, text(_compared(claim) if _is_number(specification, claim) else claim))
+        definitions = definitions_used(specification, claim.body)
+        return Exhibit(None, definitions, parameters_used(specification.library, claim.body, definitions))
+    if not _is_number(specification, claim):
+        return Exhibit(Claim(claim.given, as_syntax(read_claim(specification, text(claim)).formula, True)))
+    comparison = read_claim(specification, text(_compared(claim))).formula
+    assert isinstance(comparison, f.Compare), "a number compared with zero is a comparison"
+    return Exhibit(Claim(claim.given, term_as_syntax(comparison.left)))
+
+
+def _application(specification: Specification, definition: Definition) -> Claim:
+    """``definition`` applied to its own parameters, the members of a group of vehicles one by one."""
+    roles = signature(specification, definition.name)
+    given: list[Binding] = []
+    for binding in definition.parameters:
+        is_group = binding.sort == "vehicles"
+        members = len(roles) - len(definition.parameters) + 1 if is_group else 1
+        sort = "vehicle" if is_group else binding.sort
+        given += [Binding(role, sort) for role in roles[len(given) : len(given) + members]]
+    return Claim(tuple(given), syntax.Call(definition.name, tuple(syntax.Name(role) for role in roles)))
+
+
+def _compared(claim: Claim) -> Claim:
+    """A claim about a number, which alone would be none."""
+    return Claim(claim.given, syntax.Binary(">=", claim.body, syntax.Literal_(Fraction(0))))
+
+
+def _is_number(specification: Specification, claim: Claim) -> bool:
+    """Whether the claim compares as a number does; mistakes elsewhere in it make no difference here."""
+    try:
+        read_claim(specification, text(_compared(claim)))
+    except InputError:
+        return False
+    return True
+
+
+def _as_text(exhibit: Exhibit) -> str:
+    blocks = [
+        "" if exhibit.claim is None else text(exhibit.claim, _WIDTH),
+        "\n".join(text(definition, _WIDTH) for definition in exhibit.definitions),
+        "\n".join(_declaration(parameter) for parameter in exhibit.parameters),
+    ]
+    return "\n\n".join(block for block in blocks if block)
+
+
+def _declaration(parameter: ParameterDeclaration) -> str:
+    bound = f" where {parameter.name} {parameter.bound} 0" if parameter.bound else ""
+    sign = "-" if parameter.value < 0 else ""
+    value = f"{sign}{decimal(abs(parameter.value))} {parameter.unit}"
+    return f'param {parameter.name} = {value}{bound} "{parameter.doc}"'
+
+
+def _as_latex(exhibit: Exhibit) -> str:
+    blocks = [
+        "" if exhibit.claim is None else f"\\[\n{latex(exhibit.claim)}\n\\]",
+        align(exhibit.definitions) if exhibit.definitions else "",
+    ]
+    return "\n\n".join(block for block in blocks if block)
+
+
+def _as_json(exhibit: Exhibit, specification: Specification) -> dict[str, Any]:
+    claim = exhibit.claim
+    return {
+        "schema": SCHEMA,
+        "set": specification.set_name,
+        "options": dict(specification.options),
+        "formula": None if claim is None else {"text": text(claim), "tree": tree(claim)},
+        "definitions": [
+            {"name": definition.name, "text": text(definition), "tree": tree(definition)}
+            for definition in exhibit.definitions
+        ],
+        "parameters": [
+            {"name": p.name, "value": str(p.value), "unit": p.unit, "doc": p.doc} for p in exhibit.parameters
+        ],
+    }

@@ -1,0 +1,135 @@
+"""In which part of the language a formula lies: how far it looks ahead, and how hard its atoms are."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TypeAlias, assert_never
+
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula, Interval
+from roadproof.logic.rewrite import bounds_of, terms_of
+from roadproof.logic.terms import Term
+
+Seconds: TypeAlias = Fraction
+
+
+def horizon(formula: Formula) -> Seconds | None:
+    """How many seconds after an instant the truth of ``formula`` there may depend on; None: for ever.
+
+    Raises ``ValueError`` where an interval bound still holds a parameter.
+    """
+    done: dict[Formula, Seconds | None] = {}
+
+    def visit(current: Formula) -> Seconds | None:
+        if current not in done:
+            done[current] = _reach(current, [visit(child) for child in f.children(current)])
+        return done[current]
+
+    return visit(formula)
+
+
+def _reach(formula: Formula, below: list[Seconds | None]) -> Seconds | None:
+    farthest = _latest(below)
+    match formula:
+        case f.Until(_, interval, _) | f.Eventually(interval, _) | f.Always(interval, _):
+            high = bounds_of(interval)[1]
+            return None if high is None or farthest is None else high + farthest
+        case _:
+            return farthest
+
+
+def _latest(times: list[Seconds | None]) -> Seconds | None:
+    latest = Fraction(0)
+    for time in times:
+        if time is None:
+            return None
+        latest = max(latest, time)
+    return latest
+
+
+def is_bounded(formula: Formula) -> bool:
+    """Whether no temporal operator in ``formula`` looks ahead for ever; bounds may hold parameters."""
+    return all(interval.high is not None for interval in intervals_of(formula))
+
+
+def intervals_of(formula: Formula) -> list[Interval]:
+    """The intervals of its temporal operators."""
+    return [
+        current.interval
+        for current in f.subformulas(formula)
+        if isinstance(current, f.Until | f.Eventually | f.Always)
+    ]
+
+
+def is_affine(formula: Formula) -> bool:
+    """Whether every atom compares terms that are affine in the signals (parameters count as constants)."""
+    return all(degree is not None and degree <= 1 for degree in map(signal_degree, terms_of(formula)))
+
+
+def signal_degree(term: Term) -> int | None:
+    """The degree of ``term`` as a polynomial in the signals, at most; None where it is no polynomial.
+
+    Products are not multiplied out, so v - v has degree 1 here.
+    """
+    match term:
+        case t.Number() | t.Parameter() | t.Variable() | t.Size():
+            return 0
+        case t.Signal():
+            return 1
+        case t.Power(inner, exponent):
+            degree = signal_degree(inner)
+            return None if degree is None else degree * exponent
+        case t.Quotient(numerator, _):
+            return signal_degree(numerator)
+        case t.Sum() | t.Product() | t.Maximum() | t.Minimum() | t.Inverse():
+            degrees = [signal_degree(child) for child in t.children(term)]
+        case _:
+            assert_never(term)
+    known = [degree for degree in degrees if degree is not None]
+    if len(known) < len(degrees):
+        return None
+    if isinstance(term, t.Product):
+        return sum(known)
+    highest = max(known, default=0)
+    return highest if isinstance(term, t.Sum) or highest == 0 else None
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """How large a formula is: distinct sub-formulas, atoms and temporal operators, and its depth."""
+
+    subformulas: int
+    atoms: int
+    temporal: int
+    depth: int
+
+
+def sizes(formula: Formula) -> Sizes:
+    """Counts over distinct sub-formulas; names of definitions count for nothing."""
+    atoms = temporal = count = 0
+    for current in f.subformulas(formula):
+        match current:
+            case f.Named():
+                continue
+            case f.Compare() | f.Occupies():
+                atoms += 1
+            case f.Until() | f.Eventually() | f.Always():
+                temporal += 1
+            case f.Truth() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
+                pass
+            case _:
+                assert_never(current)
+        count += 1
+    return Sizes(count, atoms, temporal, _depth(formula))
+
+
+def _depth(formula: Formula) -> int:
+    done: dict[Formula, int] = {}
+
+    def visit(current: Formula) -> int:
+        if current not in done:
+            below = max((visit(child) for child in f.children(current)), default=0)
+            done[current] = below if isinstance(current, f.Named) else below + 1
+        return done[current]
+
+    return visit(formula)

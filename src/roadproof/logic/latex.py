@@ -1,0 +1,191 @@
+"""Syntax trees to LaTeX in the paper's hand: names in \\mathit, operators as in its Table of formulas."""
+
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+from typing import assert_never
+
+from roadproof.logic import syntax
+from roadproof.logic.show import (
+    AND,
+    ATOM,
+    OR,
+    POWER,
+    PRODUCT,
+    QUANTIFIED,
+    SIGNED,
+    UNARY,
+    UNTIL,
+    decimal,
+    level,
+    operand_levels,
+)
+from roadproof.logic.syntax import Bounds, Claim, Definition, Expression
+from roadproof.logic.terms import SIGNAL_DIMENSIONS
+
+_RELATION = {
+    "<": "<",
+    "<=": r"\le",
+    ">": ">",
+    ">=": r"\ge",
+    "=": "=",
+    "!=": r"\neq",
+    "->": r"\Rightarrow",
+    "<->": r"\Leftrightarrow",
+    "+": "+",
+    "-": "-",
+}
+_UNIT = {
+    "m/s": r"\mathrm{m}/\mathrm{s}",
+    "m/s^2": r"\mathrm{m}/\mathrm{s}^2",
+    "km/h": r"\mathrm{km}/\mathrm{h}",
+}
+_GREEK = {"rho", "alpha", "beta", "gamma", "delta", "epsilon", "theta", "lambda", "mu", "tau"}
+_EXTREME = ("min", "max")
+
+
+def latex(tree: Expression | Claim | Definition) -> str:
+    """``tree`` for LaTeX's mathematics mode; a definition is ``head \\;:=\\; body``."""
+    match tree:
+        case Claim(_, body):
+            return _show(body, QUANTIFIED)
+        case Definition(name, parameters, _, body, _):
+            return rf"{_call(name, [symbol(b.name) for b in parameters])} \;:=\; {_show(body, QUANTIFIED)}"
+        case _:
+            return _show(tree, QUANTIFIED)
+
+
+def align(definitions: Iterable[Definition]) -> str:
+    """Definitions below each other in an ``align*`` environment."""
+    rows = (latex(definition).replace(r" \;:=\; ", r" &\;:=\; ", 1) for definition in definitions)
+    return "\\begin{align*}\n" + " \\\\\n".join(rows) + "\n\\end{align*}"
+
+
+def _show(expression: Expression, wanted: int) -> str:
+    shown = _operator(expression)
+    return rf"\left({shown}\right)" if _level(expression) < wanted else shown
+
+
+def _level(expression: Expression) -> int:
+    """As in text, but a fraction has its bar for parentheses."""
+    return POWER if isinstance(expression, syntax.Binary) and expression.op == "/" else level(expression)
+
+
+def _operator(expression: Expression) -> str:
+    match expression:
+        case syntax.Literal_(bool(), _, _):
+            return r"\top" if expression.value else r"\bot"
+        case syntax.Literal_(value, unit, _):
+            return _number(Fraction(value)) + (rf"\,{_UNIT.get(unit, _roman(unit))}" if unit else "")
+        case syntax.Name(name, _):
+            return symbol(name)
+        case syntax.Call():
+            return _application(expression)
+        case syntax.Prefix("not", body, _):
+            return rf"\neg {_show(body, UNARY)}"
+        case syntax.Prefix(_, body, _):
+            return f"-{_show(body, SIGNED)}"
+        case syntax.Binary("/", left, right, _):
+            return rf"\frac{{{_show(left, QUANTIFIED)}}}{{{_show(right, QUANTIFIED)}}}"
+        case syntax.Binary("^", left, right, _):
+            return f"{_show(left, ATOM)}^{{{_show(right, QUANTIFIED)}}}"
+        case syntax.Binary("*", left, right, _):
+            between = r" \cdot " if _begins_with_digit(right) else " "
+            return f"{_show(left, PRODUCT)}{between}{_show(right, SIGNED + 1)}"
+        case syntax.Binary(op, left, right, _):
+            left_level, right_level = operand_levels(op)
+            return f"{_show(left, left_level)} {_RELATION[op]} {_show(right, right_level)}"
+        case syntax.Chain(op, parts, _):
+            join, inner = (r" \wedge ", AND) if op == "and" else (r" \vee ", OR)
+            return join.join(_show(part, inner + 1) for part in parts)
+        case syntax.Temporal("U", bounds, left, right, _) if left is not None:
+            until = rf"\mathbin{{\mathcal{{U}}{_bounds(bounds)}}}"
+            return f"{_show(left, UNARY)} {until} {_show(right, UNTIL)}"
+        case syntax.Temporal(op, bounds, _, right, _):
+            return rf"\mathcal{{{op}}}{_bounds(bounds)} {_show(right, UNARY)}"
+        case syntax.Quantified(kind, variable, domain, body, _):
+            big = r"\bigvee" if kind == "some" else r"\bigwedge"
+            return rf"{big}_{{{_range(symbol(variable), domain)}}} {_show(body, UNARY)}"
+        case _:
+            assert_never(expression)
+
+
+def _begins_with_digit(expression: Expression) -> bool:
+    while isinstance(expression, syntax.Binary) and expression.op in ("*", "^"):
+        expression = expression.left
+    return isinstance(expression, syntax.Literal_)
+
+
+def _application(call: syntax.Call) -> str:
+    shown = [_show(argument, QUANTIFIED) for argument in call.arguments]
+    if call.name in SIGNAL_DIMENSIONS and len(shown) == 1:
+        letter, _, direction = call.name.partition("_")
+        return f"{letter}_{{{_italic(direction)},{shown[0]}}}" if direction else f"{letter}_{{{shown[0]}}}"
+    if call.name == "inverse" and len(shown) == 1:
+        return rf"\frac{{1}}{{{shown[0]}}}"
+    if call.name == "abs" and len(shown) == 1:
+        return rf"\left|{shown[0]}\right|"
+    if call.name in _EXTREME:
+        return rf"\{call.name}\left({','.join(shown)}\right)"
+    return _call(call.name, shown)
+
+
+def _call(name: str, arguments: Iterable[str]) -> str:
+    return f"{symbol(name)}({','.join(arguments)})"
+
+
+def _range(variable: str, domain: syntax.Name | syntax.Call | syntax.Group) -> str:
+    match domain:
+        case syntax.Group(members, _):
+            return rf"{variable}\in\{{{','.join(symbol(member.name) for member in members)}\}}"
+        case syntax.Call("zone", (syntax.Name(zone, _),), _):
+            return rf"\mathit{{zone}}({variable})={_italic(zone)}"
+        case syntax.Call("lanelets", (syntax.Name(lane, _),), _):
+            return rf"{variable}\in {symbol(lane)}"
+        case syntax.Call("adjacentLanes", (syntax.Name(lane, _),), _):
+            return rf"{variable}\in\mathit{{adjLanes}}({symbol(lane)})"
+        case _:
+            return rf"{variable}\in {_show(domain, ATOM)}"
+
+
+def _bounds(bounds: Bounds | None) -> str:
+    if bounds is None:
+        return ""
+    high = r"\infty" if bounds.high is None else _show(bounds.high, QUANTIFIED)
+    return rf"_{{[{_show(bounds.low, QUANTIFIED)},{high}]}}"
+
+
+def _number(value: Fraction) -> str:
+    return decimal(value) or rf"\frac{{{value.numerator}}}{{{value.denominator}}}"
+
+
+def symbol(name: str) -> str:
+    """A name as the paper sets it: ``a_max_lat`` as a_max with lat above, ``POV1`` as POV with index 1.
+
+    >>> symbol("behaviourSV_4")
+    '\\\\mathit{behaviourSV}_{4}'
+    """
+    stem, at, qualifier = name.partition("@")
+    stem, *below = [part for part in stem.split("_") if part] or [stem]
+    numbered = re.fullmatch(r"(\D+)(\d+)", stem)
+    if numbered and not below:
+        stem, below = numbered[1], [numbered[2]]
+    above = [qualifier] if at else []
+    if below and below[0] in _EXTREME:
+        above = [*below[1:], *above]
+        lower = _roman(below[0])
+    else:
+        lower = ",".join(_italic(part) for part in below)
+    upper = ",".join(_italic(part) for part in above)
+    return _italic(stem) + (f"_{{{lower}}}" if lower else "") + (f"^{{{upper}}}" if upper else "")
+
+
+def _italic(word: str) -> str:
+    if word in _GREEK:
+        return rf"\{word}"
+    escaped = word.replace("{", r"\{").replace("}", r"\}")
+    return escaped if len(word) == 1 or word.isdigit() else rf"\mathit{{{escaped}}}"
+
+
+def _roman(word: str) -> str:
+    return rf"\mathrm{{{word}}}"

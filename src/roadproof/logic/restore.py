@@ -1,0 +1,159 @@
+"""Formulas back to syntax trees, so that what was computed can be shown and read again.
+
+Elaborating the result gives the same formula again, up to constants: a number that no text can hold,
+such as 1/3 s, comes back as the quotient 1/3 * 1 s, and sums of three as sums of two.
+"""
+
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import reduce
+from typing import Literal, assert_never
+
+from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.syntax import Binary, Bounds, Call, Expression, Literal_, Name, Prefix
+from roadproof.logic.terms import Dimension, Term
+
+_UNITS: dict[Dimension, str] = {(0, 0): "", (0, 1): "s", (1, 0): "m", (1, -1): "m/s", (1, -2): "m/s^2"}
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def as_syntax(formula: Formula, expand: bool = False) -> Expression:
+    """The syntax tree of ``formula``; definitions are called by name, or written out with ``expand``.
+
+    A definition whose arguments have no names of the language (a number, a lane of a road file) is
+    written out in any case.
+    """
+    match formula:
+        case f.Truth(value):
+            return Literal_(value)
+        case f.Compare(left, op, right):
+            return Binary(op, term_as_syntax(left), term_as_syntax(right))
+        case f.Occupies(vehicle, lanelet):
+            return Call("occ", (Name(vehicle), Name(lanelet)))
+        case f.Some(variable, domain, body):
+            return syntax.Quantified("some", variable, _domain(domain), as_syntax(body, expand))
+        case f.Every(variable, domain, body):
+            return syntax.Quantified("every", variable, _domain(domain), as_syntax(body, expand))
+        case f.Not(body):
+            return Prefix("not", as_syntax(body, expand))
+        case f.And((f.Compare(a, "<=", b), f.Compare(c, ">=", d))) if (a, b) == (c, d):
+            return Binary("=", term_as_syntax(a), term_as_syntax(b))
+        case f.Or((f.Compare(a, "<", b), f.Compare(c, ">", d))) if (a, b) == (c, d):
+            return Binary("!=", term_as_syntax(a), term_as_syntax(b))
+        case f.And(parts):
+            return _chain("and", [as_syntax(part, expand) for part in parts])
+        case f.Or(parts):
+            return _chain("or", [as_syntax(part, expand) for part in parts])
+        case f.Until(left, interval, right):
+            return syntax.Temporal("U", _bounds(interval), as_syntax(left, expand), as_syntax(right, expand))
+        case f.Eventually(interval, body):
+            return syntax.Temporal("F", _bounds(interval), None, as_syntax(body, expand))
+        case f.Always(interval, body):
+            return syntax.Temporal("G", _bounds(interval), None, as_syntax(body, expand))
+        case f.Named(name, arguments, body):
+            if expand or not all(_NAME.fullmatch(argument) for argument in arguments):
+                return as_syntax(body, expand)
+            return Call(name, tuple(Name(argument) for argument in arguments))
+        case _:
+            assert_never(formula)
+
+
+def _chain(op: Literal["and", "or"], parts: Sequence[Expression]) -> Expression:
+    if not parts:
+        return Literal_(op == "and")
+    return parts[0] if len(parts) == 1 else syntax.Chain(op, tuple(parts))
+
+
+def _domain(domain: f.Domain) -> Name | Call:
+    match domain.kind:
+        case "lanes":
+            return Name("lanes")
+        case "adjacent":
+            return Call("adjacentLanes", (Name(domain.of),))
+        case "lanelets" | "zone":
+            return Call(domain.kind, (Name(domain.of),))
+        case _:
+            assert_never(domain.kind)
+
+
+def _bounds(interval: f.Interval) -> Bounds | None:
+    if interval == f.FOREVER:
+        return None
+    return Bounds(_bound(interval.low), None if interval.high is None else _bound(interval.high))
+
+
+def _bound(term: Term) -> Expression:
+    """Where a time is expected, 0 needs no unit."""
+    return Literal_(Fraction(0)) if t.constant_value(term) == 0 else term_as_syntax(term)
+
+
+def term_as_syntax(term: Term) -> Expression:
+    """The syntax tree of a term; numbers keep their unit."""
+    match term:
+        case t.Number(value, dimension):
+            return _number(value, dimension)
+        case t.Parameter(name, _) | t.Variable(name, _):
+            return Name(name)
+        case t.Signal(name, vehicle) | t.Size(name, vehicle):
+            return Call(name, (Name(vehicle),))
+        case t.Sum(terms):
+            return _sum(terms)
+        case t.Product((t.Number(Fraction(numerator=-1, denominator=1), (0, 0)), factor)) if not isinstance(
+            factor, t.Number
+        ):
+            return Prefix("-", term_as_syntax(factor))
+        case t.Product(factors):
+            made = [term_as_syntax(factor) for factor in factors]
+            return (
+                reduce(lambda left, right: Binary("*", left, right), made) if made else _number(Fraction(1))
+            )
+        case t.Power(inner, exponent):
+            return Binary("^", term_as_syntax(inner), Literal_(Fraction(exponent)))
+        case t.Quotient(numerator, denominator):
+            return Binary("/", term_as_syntax(numerator), term_as_syntax(denominator))
+        case t.Maximum(terms):
+            return Call("max", tuple(term_as_syntax(inner) for inner in terms))
+        case t.Minimum(terms):
+            return Call("min", tuple(term_as_syntax(inner) for inner in terms))
+        case t.Inverse(inner):
+            return Call("inverse", (term_as_syntax(inner),))
+        case _:
+            assert_never(term)
+
+
+def _sum(terms: Sequence[Term]) -> Expression:
+    """A sum; terms with a minus sign in front are subtracted."""
+    if not terms:
+        return _number(Fraction(0))
+    total = term_as_syntax(terms[0])
+    for term in terms[1:]:
+        made = term_as_syntax(term)
+        total = Binary("-", total, made.body) if isinstance(made, Prefix) else Binary("+", total, made)
+    return total
+
+
+def _product(factors: Sequence[Expression]) -> Expression:
+    return reduce(lambda left, right: Binary("*", left, right), factors) if factors else _number(Fraction(1))
+
+
+def _number(value: Fraction, dimension: Dimension = (0, 0)) -> Expression:
+    if dimension in _UNITS:
+        written: Expression = Literal_(abs(value), _UNITS[dimension])
+    else:
+        written = Binary("*", Literal_(abs(value)), _unit(dimension))
+    return Prefix("-", written) if value < 0 else written
+
+
+def _unit(dimension: Dimension) -> Expression:
+    """One of a unit that has no name, as powers of 1 m and 1 s: (2, -2) is (1 m)^2/(1 s)^2."""
+    above: list[Expression] = []
+    below: list[Expression] = []
+    for unit, exponent in zip(("m", "s"), dimension, strict=True):
+        if exponent:
+            one = Literal_(Fraction(1), unit)
+            (above if exponent > 0 else below).append(Binary("^", one, Literal_(Fraction(abs(exponent)))))
+    return reduce(lambda left, right: Binary("/", left, right), below, _product(above))
