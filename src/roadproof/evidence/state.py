@@ -125,15 +125,16 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
                     reals[symbol(leaf)] = ">"
                 case t.Signal() | t.Variable():
                     reals[symbol(leaf)] = ""
-        booleans |= set(_opaque_symbols(formula))
+        booleans |= set(opaque_symbols(formula))
     lines = [f"(declare-const {name} Real)" for name in sorted(reals)]
     lines += [f"(assert ({bound} {name} 0.0))" for name, bound in sorted(reals.items()) if bound]
     return lines + [f"(declare-const {name} Bool)" for name in sorted(booleans)]
 
 
-def _opaque_symbols(formula: Formula) -> Iterable[str]:
+def opaque_symbols(formula: Formula) -> Iterable[str]:
+    """The constants of all that only the road decides in a state formula."""
     if isinstance(formula, f.Occupies | f.Some | f.Every):
         yield opaque(formula)
         return
     for child in f.children(formula):
-        yield from _opaque_symbols(child)
+        yield from opaque_symbols(child)

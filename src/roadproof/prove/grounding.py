@@ -70,18 +70,22 @@ class Grounding:
     """All that has been told to the solver, by what it was told for.
 
     ``switches`` turns instance and lemma clauses on: assumption name → what it stands for.
+    ``wishes`` are assumptions that a named time falls on a moment known before it: models in which
+    they hold have few instants, so that instantiation comes to an end.
     """
 
     atoms: Atoms
     bounds: dict[str, str]
     prefix: str = "t"
+    wishful: bool = False
+    names: dict[Site, str] = field(default_factory=dict)
     session: Session = field(default_factory=Session)
     universals: list[Universal] = field(default_factory=list)
     road_universals: list[RoadUniversal] = field(default_factory=list)
-    names: dict[Site, str] = field(default_factory=dict)
     moments: dict[Moment, None] = field(default_factory=lambda: {ZERO: None})
     elements: dict[str, None] = field(default_factory=dict)
     switches: dict[str, tuple[Site, str] | Lemma] = field(default_factory=dict)
+    wishes: list[str] = field(default_factory=list)
     applied: dict[tuple[str, Moment], str] = field(default_factory=dict)
     _known: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
     _declared: set[str] = field(default_factory=set)
@@ -140,15 +144,15 @@ class Grounding:
             case f.Eventually(interval, body) | f.Always(interval, body):
                 window = self._window(moment, interval)
                 if isinstance(formula, f.Eventually) == positive:
-                    when = self._name_time(site)
+                    when = self._name_time(site, window.low)
                     self._require(switch, *window.smt(when), self.truth(body, positive, when))
                 else:
                     self._wait(
                         site, switch, window, body, lambda when: self.truth(body, positive, when)
                     )
             case f.Until(left, interval, right) if positive:
-                end = self._name_time(site)
                 window = self._window(moment, interval)
+                end = self._name_time(site, window.low)
                 self._require(switch, *window.smt(end), self.truth(right, True, end))
                 before = Window(window.low, end, strict=True)
                 self._wait(site, switch, before, left, lambda when: self.truth(left, True, when))
@@ -173,7 +177,7 @@ class Grounding:
                 raise ValueError(f"no quantifier: {site.formula}")
 
     def _fails(self, until: f.Until, site: Site, low: Moment, when: Moment) -> str:
-        failed = self._name_time(Site(site.formula, False, site.moment, str(when)))
+        failed = self._name_time(Site(site.formula, False, site.moment, str(when)), low)
         early = Window(low, when, strict=True).smt(failed)
         broken = f"(and {' '.join(early)} {self.truth(until.left, False, failed)})"
         return f"(or {self.truth(until.right, False, when)} {broken})"
@@ -198,16 +202,19 @@ class Grounding:
         flat = body is not None and f.is_state(body) and not _has_quantifier(body)
         self.universals.append(Universal(site, switch, window, instance, flat))
 
-    def _name_time(self, site: Site) -> Moment:
-        name = f"{self.prefix}{len(self.names) + 1}"
-        self.names[site] = name
+    def _name_time(self, site: Site, earliest: Moment) -> Moment:
+        name = self.names.setdefault(site, f"{self.prefix}{len(self.names) + 1}")
         self._declare(name, f"(declare-const {name} Real)")
+        if self.wishful:
+            wish = f"w_{name}"
+            known = " ".join(f"(= {name} {m.smt()})" for m in dict.fromkeys([earliest, *self.moments]))
+            self.session.tell(f"(declare-const {wish} Bool)(assert (=> {wish} (or {known})))")
+            self.wishes.append(wish)
         self.moments[at(name)] = None
         return at(name)
 
     def _name_element(self, site: Site) -> str:
-        name = f"M{len(self.names) + 1}"
-        self.names[site] = name
+        name = self.names.setdefault(site, f"M{len(self.names) + 1}")
         self.elements[name] = None
         return name
 

@@ -19,16 +19,17 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.prove.grounding import Grounding, Universal
 from roadproof.prove.states import StateChecker
+from roadproof.solve.smt import Answer
 
 MOST_ROUNDS = 400
+WISH_SECONDS = 0.25
 
 
 @dataclass(frozen=True)
 class Proof:
-    """What ``evidence.derivation`` needs to derive the ground query again."""
+    """What ``evidence.derivation`` needs, beside the names, to derive the ground query again."""
 
     instances: Mapping[Site, tuple[str, ...]]
-    names: Mapping[Site, str]
     lemmas: tuple[Lemma, ...]
 
 
@@ -41,7 +42,7 @@ class Model:
 
     values: Mapping[str, Fraction]
     states: Mapping[Fraction, Mapping[str, bool]]
-    signals: Mapping[Fraction, Mapping[str, Fraction]]
+    signals: Mapping[Fraction, Mapping[str, Fraction | bool]]
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,11 @@ class GaveUp:
 
 
 class Search:
-    """One claim under attack. ``candidates()`` may be asked again after a candidate was refused."""
+    """One claim under attack, with one way of choosing models.
+
+    ``wishful`` asks for models with few instants, which ends the hunt for a countermodel sooner and
+    a hard proof later. ``names`` is shared between searches whose proofs are to be put together.
+    """
 
     def __init__(
         self,
@@ -59,25 +64,27 @@ class Search:
         bounds: Mapping[str, str],
         defaults: Mapping[str, Fraction],
         lanes: Sequence[str],
-        deadline: float,
+        names: dict[Site, str],
+        wishful: bool,
     ) -> None:
-        self.atoms = atoms
-        self.claim = claim
-        self.deadline = deadline
-        self.grounding = Grounding(atoms, dict(bounds), _free_prefix(bounds))
+        prefix = _free_prefix(bounds)
+        self.grounding = Grounding(atoms, dict(bounds), prefix, wishful, names)
         self.grounding.elements |= dict.fromkeys(lanes)
         self.states = StateChecker(atoms, dict(bounds), defaults)
         self.bound_moments = _bounds_of(claim)
         self.spread = 0
         self.grounding.demand(claim, False)
 
-    def run(self) -> Proof | Model | GaveUp:
-        """A proof, a candidate countermodel, or why neither was found in time."""
+    def run(self, deadline: float) -> Proof | Model | GaveUp:
+        """A proof, a candidate countermodel, or why neither was found before ``deadline``.
+
+        May be called again: after a later deadline, or after ``widen``.
+        """
         for _ in range(MOST_ROUNDS):
-            left = self.deadline - time.monotonic()
+            left = deadline - time.monotonic()
             if left <= 0:
                 return GaveUp("the time is up")
-            answer = self.grounding.session.check(list(self.grounding.switches), timeout=left)
+            answer = self._check(left)
             if answer == "unsat":
                 return self._shrink()
             if answer == "unknown":
@@ -86,7 +93,7 @@ class Search:
             if self._instantiate(values):
                 continue
             states = self._states(values)
-            refused = self._lemmas(states, values)
+            refused = self._lemmas(states, values, deadline)
             if refused is None:
                 return Model(values, states, {v: self.states.signals(s) for v, s in states.items()})
             if isinstance(refused, GaveUp):
@@ -99,6 +106,27 @@ class Search:
             return False
         self.spread += 1
         return True
+
+    def _check(self, timeout: float) -> Answer:
+        """Check all clauses, giving up the latest wish that stands in the way until none does.
+
+        Wishes make the query harder; all are given up where they cost more than ``WISH_SECONDS``.
+        """
+        session, grounding = self.grounding.session, self.grounding
+        while grounding.wishes:
+            answer = session.check(
+                [*grounding.switches, *grounding.wishes], timeout=min(WISH_SECONDS, timeout)
+            )
+            if answer == "sat":
+                return answer
+            if answer == "unknown":
+                grounding.wishes.clear()
+                break
+            blamed = set(session.core()) & set(grounding.wishes)
+            if not blamed:
+                return answer
+            grounding.wishes.remove(max(blamed, key=grounding.wishes.index))
+        return session.check(list(grounding.switches), timeout=timeout)
 
     # --- one round -------------------------------------------------------------------------------
 
@@ -169,12 +197,15 @@ class Search:
         return dict(sorted(states.items()))
 
     def _lemmas(
-        self, states: Mapping[Fraction, Mapping[str, bool]], values: dict[str, Fraction]
+        self,
+        states: Mapping[Fraction, Mapping[str, bool]],
+        values: dict[str, Fraction],
+        deadline: float,
     ) -> bool | GaveUp | None:
         """Turn impossible states into lemmas; None where every state is possible."""
         learnt = False
         for instant, state in states.items():
-            clause = self.states.refute(state, self.deadline)
+            clause = self.states.refute(state, deadline)
             if isinstance(clause, str):
                 return GaveUp(clause)
             if clause is not None:
@@ -190,12 +221,12 @@ class Search:
     # --- a proof ---------------------------------------------------------------------------------
 
     def _shrink(self) -> Proof:
-        """The clauses of the last refutation, each one needed."""
+        """The clauses that the last refutation needs, each one of them."""
         session = self.grounding.session
         needed = session.core()
         for switch in list(needed):
             without = [s for s in needed if s != switch]
-            if session.check(without) == "unsat":
+            if session.check(without, timeout=WISH_SECONDS) == "unsat":
                 needed = without
         instances: dict[Site, list[str]] = {}
         lemmas: dict[tuple[tuple[str, bool], ...], list[str]] = {}
@@ -207,7 +238,6 @@ class Search:
                 instances.setdefault(used[0], []).append(used[1])
         return Proof(
             {site: tuple(texts) for site, texts in instances.items()},
-            self.grounding.names,
             tuple(Lemma(literals, tuple(moments)) for literals, moments in lemmas.items()),
         )
 

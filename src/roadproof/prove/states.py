@@ -25,7 +25,7 @@ class StateChecker:
         self.atoms = atoms
         self.bounds = bounds
         self.defaults = defaults
-        self.known: dict[frozenset[tuple[str, bool]], Mapping[str, Fraction]] = {}
+        self.known: dict[frozenset[tuple[str, bool]], Mapping[str, Fraction | bool]] = {}
 
     def refute(self, wanted: Mapping[str, bool], deadline: float) -> tuple[tuple[str, bool], ...] | str | None:
         """None where a state with these truth values exists; else a clause against it, or why not known."""
@@ -44,8 +44,8 @@ class StateChecker:
             name if positive else f"not {name}" for name, positive in wanted.items()
         )
 
-    def signals(self, wanted: Mapping[str, bool]) -> Mapping[str, Fraction]:
-        """Values of signals, sizes and parameters in the state found for ``wanted``.
+    def signals(self, wanted: Mapping[str, bool]) -> Mapping[str, Fraction | bool]:
+        """Values of signals, sizes, parameters and road predicates in the state found for ``wanted``.
 
         Numbers that are not rational are left out.
         """
@@ -85,10 +85,11 @@ class _Question:
             asserted = state.state(meaning if positive else f.negation(meaning))
             self.session.tell(f"(declare-const {switch} Bool)(assert (=> {switch} {asserted}))")
 
-    def values(self) -> Mapping[str, Fraction]:
+    def values(self) -> Mapping[str, Fraction | bool]:
         symbols = [state.symbol(leaf) for leaf in self.leaves]
+        symbols += sorted({s for meaning in self.meanings.values() for s in state.opaque_symbols(meaning)})
         read = self.session.values(symbols)
-        return {s: v for s, v in zip(symbols, read, strict=True) if isinstance(v, Fraction)}
+        return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
 
     def shrink(self, deadline: float) -> list[tuple[str, bool]]:
         """The literals of an impossible combination, each one needed."""

@@ -1,0 +1,150 @@
+"""A model over finitely many instants becomes a trace over all of time, and is judged.
+
+At each instant the model gives a state of all vehicles. Between instants the trace keeps the state
+of the instant before (or, as a second try, takes that of the instant after). It is a trace in the
+paper's sense, signals as functions of time; it may jump, and what only a road decides is free.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from roadproof.evidence import state
+from roadproof.judge import TruthSet, judge
+from roadproof.judge.signals import AbstractSignals
+from roadproof.judge.truth import from_switches
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import map_terms, terms_of, without_names
+from roadproof.prove.search import Model
+from roadproof.prove.states import TYPICAL_SIZE
+
+
+@dataclass(frozen=True)
+class Instant:
+    """A state: values of signals, sizes, parameters and variables, and the truth of named atoms."""
+
+    time: Fraction
+    values: Mapping[str, Fraction]
+    atoms: Mapping[str, bool]
+
+
+@dataclass(frozen=True)
+class Countermodel:
+    """A judged trace on which a claim is false at time 0; ``held`` says which state fills the gaps."""
+
+    instants: tuple[Instant, ...]
+    parameters: Mapping[str, Fraction]
+    held: Literal["before", "after"]
+
+
+def realise(
+    claim: Formula, atoms: Mapping[str, Formula], model: Model, defaults: Mapping[str, Fraction]
+) -> Countermodel | None:
+    """The model as a trace on which the atomised ``claim`` is judged false, or None.
+
+    None also where two instants need different values of one parameter or one vehicle's size.
+    """
+    if any(isinstance(p, f.Some | f.Every) and not f.is_state(p) for p in f.subformulas(claim)):
+        return None
+    fixed = _fixed_values(model, defaults)
+    if fixed is None:
+        return None
+    bare = map_terms(without_names(claim), lambda term: _put_in(term, fixed))
+    truths = [_truths(bare, model, instant, fixed) for instant in model.states]
+    times = list(model.states)
+    helds: tuple[Literal["before", "after"], ...] = ("before", "after")
+    for held in helds:
+        given = {part: _spread(times, [at[part] for at in truths], held) for part in truths[0]}
+        if not judge(bare, None, given).holds:
+            instants = [
+                Instant(
+                    time,
+                    {n.strip("|"): v for n, v in model.signals[time].items() if not isinstance(v, bool)},
+                    {
+                        name: judge(map_terms(meaning, lambda term: _put_in(term, fixed)), None, {
+                            part: _spread([Fraction(0)], [true], "before") for part, true in at.items()
+                        }).holds
+                        for name, meaning in atoms.items()
+                        if set(_parts(map_terms(meaning, lambda term: _put_in(term, fixed)))) <= set(at)
+                    },
+                )
+                for time, at in zip(times, truths, strict=True)
+            ]
+            parameters = {n: v for n, v in fixed.items() if n in defaults and not n.startswith("|")}
+            return Countermodel(tuple(instants), parameters, held)
+    return None
+
+
+def _fixed_values(model: Model, defaults: Mapping[str, Fraction]) -> dict[str, Fraction] | None:
+    """One value for every parameter, variable and size; None where instants disagree."""
+    fixed: dict[str, Fraction] = {}
+    for found in [model.values, *model.signals.values()]:
+        for name, value in found.items():
+            if isinstance(value, bool) or (name.startswith("|") and not _is_size(name)):
+                continue
+            if fixed.setdefault(name, value) != value:
+                return None
+    return {**defaults, **fixed}
+
+
+def _is_size(symbol: str) -> bool:
+    return symbol.startswith(("|length(", "|width("))
+
+
+def _put_in(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
+    """``term`` with parameters, variables and sizes as numbers."""
+
+    def leaf(old: t.Leaf) -> t.Term:
+        match old:
+            case t.Parameter(name, dimension) | t.Variable(name, dimension):
+                return t.Number(values.get(name, Fraction(0)), dimension)
+            case t.Size(name, _):
+                return t.Number(values.get(state.symbol(old), TYPICAL_SIZE[name]), (1, 0))
+            case _:
+                return old
+
+    return t.replace_leaves(term, leaf)
+
+
+def _parts(formula: Formula) -> Iterator[Formula]:
+    """The comparisons and road predicates that ``formula`` is made of, each once."""
+    seen: set[Formula] = set()
+    waiting = [formula]
+    while waiting:
+        current = waiting.pop()
+        if current in seen:
+            continue
+        seen.add(current)
+        if isinstance(current, f.Compare | f.Occupies | f.Some | f.Every):
+            yield current
+        else:
+            waiting.extend(f.children(current))
+
+
+def _truths(
+    bare: Formula, model: Model, instant: Fraction, fixed: Mapping[str, Fraction]
+) -> dict[Formula, bool]:
+    """Which comparisons and road predicates hold at an instant, evaluated exactly."""
+    found = model.signals[instant]
+    truths: dict[Formula, bool] = {}
+    for part in _parts(bare):
+        if isinstance(part, f.Occupies | f.Some | f.Every):
+            truths[part] = bool(found.get(state.opaque(part), False))
+            continue
+        signals = {
+            leaf: ((Fraction(0), Fraction(found.get(state.symbol(leaf), 0))),)
+            for side in terms_of(part)
+            for leaf in t.leaves(side)
+            if isinstance(leaf, t.Signal)
+        }
+        truths[part] = judge(part, AbstractSignals(signals, {})).holds
+    return truths
+
+
+def _spread(times: list[Fraction], values: list[bool], held: Literal["before", "after"]) -> TruthSet:
+    """Truth at instants, carried over to what lies between them."""
+    after = values if held == "before" else [*values[1:], values[-1]]
+    return from_switches(zip(times, values, after, strict=True))

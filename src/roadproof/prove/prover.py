@@ -1,0 +1,175 @@
+"""One claim, one verdict: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.errors import InputError
+from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.certificate import Certificate, certify
+from roadproof.evidence.derivation import Lemma, Site, met_names
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.prove.countermodel import Countermodel, realise
+from roadproof.prove.search import GaveUp, Proof, Search
+from roadproof.solve.smt import ask
+from roadproof.spec.bind import default_values
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+from roadproof.verdict import Verdict
+
+# Ways to look, in turns: (ask for few instants, seconds). The last is given what time is left.
+TURNS: tuple[tuple[bool, float], ...] = ((True, 0.35), (False, 3.0), (True, 6.0), (False, 20.0), (True, 1e9))
+VACUITY_SECONDS = 0.5
+
+
+@dataclass(frozen=True)
+class Result:
+    """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS."""
+
+    claim: str
+    set_name: str
+    verdict: Verdict
+    reason: str
+    seconds: float
+    certificate: Certificate | None = None
+    countermodel: Countermodel | None = None
+
+
+def prove(
+    specification: Specification,
+    claim: str,
+    timeout: float = 60.0,
+    label: str = "",
+    scenario: int | None = None,
+) -> Result:
+    """Decide whether ``claim`` holds at time 0 on all traces, for all values of its parameters.
+
+    Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
+    above zero, roads, and signals as functions of time. ``timeout`` is in seconds. A proof counts
+    only once its certificate, derived apart, has been answered unsat. Raises ``TextError``.
+    """
+    begun = time.monotonic()
+    deadline = begun + timeout
+    query = read_claim(specification, claim)
+    atoms = Atoms()
+    atomised = atoms.atomise(query.formula)
+    attempt = _Attempt(specification, atoms, query.lanes, deadline)
+
+    def result(
+        verdict: Verdict,
+        reason: str = "",
+        certificate: Certificate | None = None,
+        countermodel: Countermodel | None = None,
+    ) -> Result:
+        seconds = time.monotonic() - begun
+        name = specification.set_name
+        return Result(claim, name, verdict, reason, seconds, certificate, countermodel)
+
+    names: dict[Site, str] = {}
+    proofs: list[Proof] = []
+    for goal in conjuncts(atomised):
+        found = attempt.decide(goal, names)
+        if isinstance(found, Countermodel):
+            return result(Verdict.REFUTED, "", None, found)
+        if isinstance(found, GaveUp):
+            return result(Verdict.UNKNOWN, found.reason)
+        proofs.append(found)
+    certificate = _certificate(specification, claim, atomised, atoms, proofs, names, label, scenario)
+    for title, script in certificate.queries:
+        answer = ask(script, timeout=max(1.0, deadline - time.monotonic()))
+        if answer != "unsat":
+            why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
+            return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
+    premise = _premise(atomised)
+    if premise is not None and attempt.never_holds(premise):
+        return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
+    return result(Verdict.PROVED, "", certificate)
+
+
+def conjuncts(formula: Formula) -> Iterator[Formula]:
+    """The parts of a conjunction, of its conjunctions, and so on."""
+    if isinstance(formula, f.And):
+        for part in formula.parts:
+            yield from conjuncts(part)
+    else:
+        yield formula
+
+
+def _premise(formula: Formula) -> Formula | None:
+    """A of a claim ``A -> B``, which is built as ``not A or B``."""
+    match formula:
+        case f.Or((f.Not(premise), _)):
+            return premise
+        case _:
+            return None
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    specification: Specification
+    atoms: Atoms
+    lanes: tuple[str, ...]
+    deadline: float
+
+    def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
+        """Look for a proof and for a countermodel in turns, until one is found or the time is up."""
+        last = GaveUp("the time is up")
+        for wishful, seconds in TURNS:
+            until = min(self.deadline, time.monotonic() + seconds)
+            search = self._search(goal, names, wishful)
+            found = search.run(until)
+            while not isinstance(found, Proof | GaveUp):
+                countermodel = realise(goal, self.atoms.named, found, self._defaults())
+                if countermodel is not None:
+                    return countermodel
+                if not search.widen():
+                    found = GaveUp("the only countermodels found over points in time are no traces")
+                    break
+                found = search.run(until)
+            if isinstance(found, Proof):
+                return found
+            last = found
+            if time.monotonic() >= self.deadline:
+                break
+        return last
+
+    def never_holds(self, premise: Formula) -> bool:
+        """Whether the negation of ``premise`` is proved quickly."""
+        until = min(self.deadline, time.monotonic() + VACUITY_SECONDS)
+        return isinstance(self._search(f.negation(premise), {}, True).run(until), Proof)
+
+    def _defaults(self) -> Mapping[str, Fraction]:
+        return default_values(self.specification.library)
+
+    def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:
+        bounds = {name: p.bound for name, p in self.specification.library.parameters.items()}
+        return Search(goal, self.atoms, bounds, self._defaults(), self.lanes, names, wishful)
+
+
+def _certificate(
+    specification: Specification,
+    claim: str,
+    atomised: Formula,
+    atoms: Atoms,
+    proofs: list[Proof],
+    names: dict[Site, str],
+    label: str,
+    scenario: int | None,
+) -> Certificate:
+    """The proofs of all parts as one certificate."""
+    instances: dict[Site, tuple[str, ...]] = {}
+    lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
+    for proof in proofs:
+        for site, texts in proof.instances.items():
+            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
+        for lemma in proof.lemmas:
+            before = lemmas.get(lemma.literals, ())
+            lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
+    try:
+        met = met_names(atomised, atoms, instances, names)
+        made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
+        return certify(specification, claim, instances, met, made, label, scenario)
+    except InputError as error:
+        raise AssertionError(f"the finder's instances do not fit the claim: {error}") from error
