@@ -16,8 +16,7 @@ from time import perf_counter
 
 import numpy as np
 
-from roadproof.logic.formula import Formula, subformulas
-from roadproof.logic.formula import Named
+from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.monitor import Batch, compile
 from roadproof.monitor.recursive import Reading, Trace, answer

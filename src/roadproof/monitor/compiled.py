@@ -279,10 +279,10 @@ def _check_starts(starts: Integers | None, lengths: Integers) -> None:
 def _read_bits(words: Array, lengths: Integers, when: When, starts: Integers | None) -> NDArray[np.bool_]:
     traces = len(lengths)
     if when == "all":
-        truth: NDArray[np.bool_] = unpack(words, traces) & inside(lengths, len(words))
-        return truth
+        return unpack(words, traces) & inside(lengths, len(words))
     if starts is None:
-        return unpack(words[:1], traces)[0].copy()
+        first: NDArray[np.bool_] = unpack(words[:1], traces)[0]
+        return first
     index = np.arange(traces)
     bits = words[starts, index // BITS] >> (index % BITS).astype(np.uint64)
     return np.asarray(bits & np.uint64(1), dtype=np.bool_)

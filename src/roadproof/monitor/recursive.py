@@ -48,6 +48,8 @@ class Reading:
     def __init__(self, trace: Trace) -> None:
         self.trace = trace
         self.given = {without_names(g): values for g, values in trace.given.items()}
+        self.found: dict[Formula, Sequence[bool] | None] = {}
+        self.constants: dict[t.Term, float | None] = {}
         self.truths: dict[tuple[Formula, int, ReadAs], bool] = {}
         self.margins: dict[tuple[Formula, int, ReadAs], float] = {}
 
@@ -166,13 +168,18 @@ class Reading:
         return int(count)
 
     def _given(self, formula: Formula) -> Sequence[bool] | None:
-        return self.given.get(without_names(formula)) if self.given else None
+        if formula not in self.found:
+            self.found[formula] = self.given.get(without_names(formula))
+        return self.found[formula]
 
     def number(self, term: t.Term, k: int) -> float:
         """The value of ``term`` at sample ``k`` in floating-point arithmetic, from left to right."""
-        constant = t.constant_value(term)
+        if term not in self.constants:
+            exact = t.constant_value(term)
+            self.constants[term] = None if exact is None else float(exact)
+        constant = self.constants[term]
         if constant is not None:
-            return float(constant)
+            return constant
         match term:
             case t.Signal(name, vehicle):
                 return float(self.trace.signals[name, vehicle][k])

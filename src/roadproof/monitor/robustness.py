@@ -48,6 +48,11 @@ def observe_margins(
         rows = slice(start, min(start + height, samples))
         for all_rows, values in zip(margins, run(program, batch, rows, columns), strict=True):
             all_rows[rows] = values
+    lengths = batch.lengths[columns]
+    if (lengths < samples).any():  # NaN after the end of a trace would survive minimum and maximum
+        after = ~inside(lengths, samples)
+        for all_rows in margins:
+            all_rows[after] = 0.0
     return dict(zip(comparisons, margins, strict=True))
 
 
