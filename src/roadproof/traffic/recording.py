@@ -127,7 +127,8 @@ def occupy_bands(
     """Occupancy bits and lane of the centre for boxes on straight bands (SPEC §4).
 
     All arrays have one entry a sample; metres are compared to the micrometre, so that a box which
-    touches a marking in the decimals of the file does so here. A centre on a marking belongs to the band on its left.
+    touches a marking in the decimals of the file does so here. A centre on a marking is in the band
+    to the left of it.
     """
     occupancy = np.zeros(len(d), np.uint32)
     lane = np.full(len(d), -1, np.int64)

@@ -1,0 +1,174 @@
+"""Which vehicles to look at together: pairs and triples of one driving direction.
+
+The pre-filter keeps every pair that may violate the RSS distance; what it drops provably does not.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from roadproof.traffic.recording import Bools, Floats, Integers, Recording, offsets
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Unordered pairs of vehicle indices, ``first`` < ``second``, and their common frames low … high."""
+
+    first: Integers
+    second: Integers
+    low: Integers
+    high: Integers
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+    @property
+    def samples(self) -> Integers:
+        """How many common frames each pair has."""
+        counts: Integers = self.high - self.low + 1
+        return counts
+
+    def choose(self, wanted: Bools | Integers | slice) -> "Pairs":
+        """The pairs at ``wanted``: a mask, indices or a slice."""
+        return Pairs(self.first[wanted], self.second[wanted], self.low[wanted], self.high[wanted])
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What the longitudinal RSS distance depends on besides the speeds (SI units; paper eq. lon_RSS)."""
+
+    rho: float
+    a_max: float
+    b_min: float
+    b_max: float
+
+
+def common_pairs(recording: Recording, eligible: Bools) -> Pairs:
+    """All unordered pairs of eligible vehicles of one direction that share a frame.
+
+    ``eligible`` has one entry a vehicle. Pairs come in order of (first, second).
+    """
+    chosen = np.flatnonzero(eligible)
+    made = [_meeting(recording, chosen[recording.direction[chosen] == way]) for way in (1, 2)]
+    one, other = (np.concatenate([m[k] for m in made]) for k in (0, 1))
+    first, second = np.minimum(one, other), np.maximum(one, other)
+    order = np.lexsort((second, first))
+    first, second = first[order], second[order]
+    last_frame = recording.last_frame
+    low = np.maximum(recording.first_frame[first], recording.first_frame[second])
+    return Pairs(first, second, low, np.minimum(last_frame[first], last_frame[second]))
+
+
+def _meeting(recording: Recording, vehicles: Integers) -> tuple[Integers, Integers]:
+    """In order of entry, each vehicle meets those that enter before it leaves."""
+    vehicles = vehicles[np.argsort(recording.first_frame[vehicles], kind="stable")]
+    entry = recording.first_frame[vehicles]
+    place = np.arange(len(vehicles))
+    count = np.searchsorted(entry, recording.last_frame[vehicles], side="right") - place - 1
+    one = np.repeat(place, count)
+    other = one + 1 + np.arange(len(one)) - np.repeat(offsets(count)[:-1], count)
+    return vehicles[one], vehicles[other]
+
+
+def near_pairs(recording: Recording, pairs: Pairs, reach: Reach) -> Pairs:
+    """The pairs that come near enough, in some common frame, for a longitudinal RSS violation.
+
+    Proof that none is lost. A violation needs, for the one in front f and the one behind r,
+    0 <= s_f - s_r <= length_f + dRSS_lon(v_r, v_f). Let V be the greatest |v_lon| that r ever has
+    and m the least |v_lon| of f. With rho, a_max >= 0 and b_min, b_max > 0: v_r·rho <= V·rho,
+    (v_r + a_max·rho)² <= (V + a_max·rho)² and v_f² >= m², so dRSS_lon(v_r, v_f) is at most the same
+    expression in V and m, whatever the signs of the speeds. That bound, a constant of each ordered
+    pair, is compared with s_f - s_r at every common frame. The bound is widened by a millimetre,
+    far more than the rounding of doubles in these sums, which stays below a micrometre for roads up
+    to a thousand kilometres.
+    """
+    if not (min(reach.rho, reach.a_max) >= 0 and min(reach.b_min, reach.b_max) > 0):
+        raise ValueError("the bound holds for rho, a_max >= 0 and b_min, b_max > 0")
+    speed = np.abs(recording.v_lon)
+    greatest = np.maximum.reduceat(speed, recording.start[:-1])
+    least = np.minimum.reduceat(speed, recording.start[:-1])
+    ahead = _bound(reach, greatest[pairs.first], least[pairs.second]) + recording.length[pairs.second]
+    behind = _bound(reach, greatest[pairs.second], least[pairs.first]) + recording.length[pairs.first]
+    near = np.zeros(len(pairs), bool)
+    for part in _parts(pairs, 2_000_000):
+        chosen = pairs.choose(part)
+        counts = chosen.samples
+        begin = offsets(counts)[:-1]
+        rows = np.arange(int(counts.sum()))
+        row_first = row_of(recording, chosen.first, chosen.low) - begin
+        row_second = row_of(recording, chosen.second, chosen.low) - begin
+        gap = recording.s[rows + np.repeat(row_second, counts)]
+        gap -= recording.s[rows + np.repeat(row_first, counts)]
+        inside = gap <= np.repeat(ahead[part], counts)
+        inside &= gap >= np.repeat(-behind[part], counts)
+        near[part] = np.logical_or.reduceat(inside, begin)
+    return pairs.choose(near)
+
+
+def _bound(reach: Reach, greatest_rear: Floats, least_front: Floats) -> Floats:
+    braking = (greatest_rear + reach.a_max * reach.rho) ** 2 / (2 * reach.b_min)
+    way = greatest_rear * reach.rho + reach.a_max * reach.rho**2 / 2
+    bound: Floats = np.maximum(0, way + braking - least_front**2 / (2 * reach.b_max)) + 0.001
+    return bound
+
+
+def row_of(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:
+    """The sample of each vehicle at each frame."""
+    rows: Integers = recording.start[vehicle] + frame - recording.first_frame[vehicle]
+    return rows
+
+
+def _parts(pairs: Pairs, samples: int) -> Iterator[slice]:
+    """Slices of the pairs, each of about so many samples."""
+    ends = np.cumsum(pairs.samples)
+    begin = 0
+    while begin < len(pairs):
+        done = ends[begin - 1] if begin else 0
+        end = max(begin + 1, int(np.searchsorted(ends, done + samples, side="right")))
+        yield slice(begin, end)
+        begin = end
+
+
+@dataclass(frozen=True)
+class Triples:
+    """Ordered triples for scenario 2: SV, the first POV and the second, common frames low … high."""
+
+    sv: Integers
+    pov1: Integers
+    pov2: Integers
+    low: Integers
+    high: Integers
+
+    def __len__(self) -> int:
+        return len(self.sv)
+
+    def choose(self, wanted: Bools | Integers) -> "Triples":
+        return Triples(*(x[wanted] for x in (self.sv, self.pov1, self.pov2, self.low, self.high)))
+
+
+def triples_of(recording: Recording, endangered: Pairs, meeting: Pairs) -> Triples:
+    """Every way to extend an endangered pair, in both orders, by a third vehicle.
+
+    SV and POV2 are the endangered pair; POV1 is any vehicle that ``meeting`` says shares frames with
+    SV, and all three have a frame in common. Vehicles of ``meeting`` are those of common_pairs.
+    """
+    sv = np.concatenate((endangered.first, endangered.second))
+    pov2 = np.concatenate((endangered.second, endangered.first))
+    low, high = np.tile(endangered.low, 2), np.tile(endangered.high, 2)
+    one = np.concatenate((meeting.first, meeting.second))
+    other = np.concatenate((meeting.second, meeting.first))[np.argsort(one, kind="stable")]
+    begin = offsets(np.bincount(one, minlength=recording.vehicles))
+    count = np.diff(begin)[sv]
+    pair = np.repeat(np.arange(len(sv)), count)
+    within = np.arange(len(pair)) - np.repeat(offsets(count)[:-1], count)
+    pov1 = other[begin[sv[pair]] + within]
+    last_frame = recording.last_frame
+    triples = Triples(
+        sv[pair],
+        pov1,
+        pov2[pair],
+        np.maximum(low[pair], recording.first_frame[pov1]),
+        np.minimum(high[pair], last_frame[pov1]),
+    )
+    return triples.choose((triples.low <= triples.high) & (triples.pov1 != triples.pov2))
