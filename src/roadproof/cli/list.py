@@ -39,10 +39,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     specification = select_specification(args, load_library_of(args))
     inventory = take_inventory(specification)
-    if args.json != "-":
-        print(_as_text(inventory))
     if args.json:
         write_json(inventory, args.json)
+    if args.json != "-":
+        print(_as_text(inventory))
     return ExitCode.AS_EXPECTED
 
 

@@ -83,9 +83,14 @@ def _run(arguments: list[str]) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="store_true", help="print the version and exit")
+    available = dict(_available())
     asked = next((a for a in arguments if not a.startswith("-")), None)
+    if asked is not None and asked not in available:
+        from roadproof.spec.library import unknown
+
+        raise UsageError(f"{unknown('sub-command', asked, available)}\nSee roadproof --help.")
     commands = parser.add_subparsers(dest="command", metavar="SUBCOMMAND", parser_class=_Parser)
-    for name, file in _available():
+    for name, file in available.items():
         summary = _summary(file)
         command = commands.add_parser(
             name,

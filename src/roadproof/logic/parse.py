@@ -1,5 +1,6 @@
 """Text to syntax tree. User text reaches nothing but this grammar: no eval, no sympify."""
 
+import re
 from fractions import Fraction
 from functools import cache
 from importlib import resources
@@ -24,6 +25,7 @@ DEEPEST_NESTING = 100
 LONGEST_NUMBER = 200
 LONGEST_EXPONENT = 30
 GREATEST_POWER = 8
+_PARENTHESES = re.compile(r'[()\[\]{}]|"[^"\n]*"|#[^\n]*')
 
 
 def parse_library(text: str, source: str) -> tuple[Statement, ...]:
@@ -54,6 +56,23 @@ def _definitions(statements: tuple[Statement, ...]) -> list[syntax.Definition]:
     return found
 
 
+def _check_parentheses(text: str) -> None:
+    """Refuse text with parentheses deeper than trees may be; those in strings and comments do not count."""
+    depth = 0
+    for found in _PARENTHESES.finditer(text):
+        if found[0] in "([{":
+            depth += 1
+        elif found[0] in ")]}":
+            depth -= 1
+        if depth > DEEPEST_NESTING:
+            before = text[: found.start()]
+            raise TextError(
+                f"parentheses are nested too deep: at most {DEEPEST_NESTING} are allowed",
+                Position(before.count("\n") + 1, found.start() - before.rfind("\n")),
+                "Give the parts of the formula names with def.",
+            )
+
+
 def _check_depth(body: Expression, at: Position, source: str, text: str) -> None:
     deep = syntax.depth(body)
     if deep > DEEPEST_NESTING:
@@ -78,6 +97,7 @@ def _parser(start: str) -> Lark:
 
 def _parse(text: str, source: str, start: str) -> object:
     try:
+        _check_parentheses(text)
         return _Build().transform(_parser(start).parse(text))
     except UnexpectedInput as error:
         raise _explain(error, text).locate(source, text) from None
@@ -120,7 +140,7 @@ _READABLE = {
 
 
 def _readable(names: set[str]) -> str:
-    shown = sorted({_READABLE.get(n, n.lower() if n.isalpha() else n) for n in names})
+    shown = sorted({_READABLE.get(n, n.lower() if n.isalpha() and len(n) > 1 else n) for n in names})
     shown = [s for s in shown if not s.startswith("__")]
     many = len(shown) > 8
     return ", ".join(shown[:8]) + (", …" if many else "")

@@ -21,7 +21,7 @@ from roadproof.logic.syntax import Binding, Bounds, Definition, Expression
 from roadproof.logic.terms import Dimension
 from roadproof.spec.library import BUILT_IN, Specification, source_of, unknown
 
-DEEPEST_FORMULA = 200
+DEEPEST_FORMULA = 100
 UNITS: Mapping[str, tuple[Fraction, Dimension]] = {
     "s": (Fraction(1), (0, 1)),
     "ms": (Fraction(1, 1000), (0, 1)),
