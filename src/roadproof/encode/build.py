@@ -1,14 +1,14 @@
 """A question to a problem: formula, road, vehicles and grid become columns, rows and a circuit."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
 from roadproof.encode.facts import Quantity, facts_of
 from roadproof.encode.motion import Layout, Motions, encode_motions
-from roadproof.encode.place import be_in_lane, span, stay_apart, stay_on_road
+from roadproof.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.encode.polynomial import Fact, Polynomial, affine, variable
 from roadproof.encode.problem import ColumnFact, Problem
 from roadproof.encode.unroll import At, Grid, unroll
@@ -24,14 +24,20 @@ _LATER = -1
 class Manners:
     """What is asked of a drive beside the formula; all of it is printed with a NONE-WITHIN.
 
-    ``natural``: start and end in a lane, straight on, within the vehicles' jumps of acceleration.
+    ``natural``: start and end in a lane, straight on, at cruising
+    speed; move across the road in one direction only, within the vehicles' jumps of acceleration.
     ``reach``: how far from the first vehicle's start the others may start, in m.
-    ``collisions``: whether boxes may overlap.
+    ``collisions``: whether boxes may overlap. ``straight``: vehicles that do not move across the road.
+    ``margin`` and ``inside``: what a search in floating
+    point keeps from the facts of the formula and from the limits of the accelerations.
     """
 
     natural: bool = True
     reach: Fraction = Fraction(150)
     collisions: bool = False
+    straight: frozenset[str] = frozenset()
+    margin: Fraction = Fraction(1, 10)
+    inside: Fraction = Fraction(1, 100)
     off_centre: Fraction = Fraction(3, 10)
 
 
@@ -45,7 +51,7 @@ def build_problem(
     """
     motions = _motions(road, vehicles, grid, manners)
     layout = motions.layout
-    wanted = ground(unroll(formula, grid), vehicles, layout)
+    wanted = ground(unroll(formula, grid), vehicles, layout, manners.margin)
     around = surroundings(road, vehicles, layout, manners)
     return Problem(motions.columns, motions.rows, all_of([wanted, *around])), layout
 
@@ -57,7 +63,7 @@ def _motions(road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, manners: M
         for k, name in enumerate(vehicles)
     }
     across: dict[str, Range] = {name: (right + v.width, left) for name, v in vehicles.items()}
-    return encode_motions(vehicles, grid, starts, across, manners.natural)
+    return encode_motions(vehicles, grid, starts, across, manners.natural, manners.inside, manners.straight)
 
 
 def surroundings(
@@ -66,17 +72,18 @@ def surroundings(
     """Conditions on where vehicles are that do not come from the formula."""
     parts = [stay_on_road(layout, road, name, vehicle) for name, vehicle in vehicles.items()]
     if not manners.collisions:
-        parts += [stay_apart(layout, a, b) for a, b in combinations(vehicles.items(), 2)]
+        parts += [stay_apart(layout, a, b, manners.margin) for a, b in combinations(vehicles.items(), 2)]
     if manners.natural:
         parts += [
             be_in_lane(layout, road, name, vehicle, step, manners.off_centre)
             for name, vehicle in vehicles.items()
-            for step in (0, layout.grid.steps)
+            for step in ((0,) if name in manners.straight else (0, layout.grid.steps))
         ]
+        parts += [move_one_way(layout, name) for name in vehicles if name not in manners.straight]
     return parts
 
 
-def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout) -> Circuit[ColumnFact]:
+def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout, margin: Fraction) -> Circuit[ColumnFact]:
     """A circuit of comparisons at samples as one of facts about columns."""
     sizes = {(name, "length"): v.length for name, v in vehicles.items()}
     sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
@@ -84,7 +91,7 @@ def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout
 
     def at(leaf: At) -> Circuit[ColumnFact]:
         if leaf.atom not in known:
-            known[leaf.atom] = facts_of(leaf.atom, sizes)
+            known[leaf.atom] = replace_leaves(facts_of(leaf.atom, sizes), lambda fact: Leaf(replace(fact, margin=margin)))
         if leaf.step < layout.grid.steps:
             return replace_leaves(known[leaf.atom], lambda fact: Leaf(fact_at(fact, layout, leaf.step)))
         return replace_leaves(known[leaf.atom], lambda fact: fact_for_ever(fact, layout))
@@ -94,7 +101,7 @@ def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout
 
 def fact_at(fact: Fact[Quantity], layout: Layout, step: int) -> ColumnFact:
     """A fact about signals as one about the columns of a sample."""
-    return Fact(fact.polynomial.substitute(lambda q: layout.state(q[0], q[1], step)), fact.strict)
+    return Fact(fact.polynomial.substitute(lambda q: layout.state(q[0], q[1], step)), fact.strict, fact.margin)
 
 
 def fact_for_ever(fact: Fact[Quantity], layout: Layout) -> Circuit[ColumnFact]:
@@ -119,5 +126,8 @@ def fact_for_ever(fact: Fact[Quantity], layout: Layout) -> Circuit[ColumnFact]:
         rest = tuple(v for v in monomial if v != _LATER)
         powers.setdefault(power, {})[rest] = factor
     return all_of(
-        Leaf(Fact(Polynomial(terms), fact.strict and power == 0)) for power, terms in sorted(powers.items())
+        Leaf(
+            Fact(Polynomial(terms), fact.strict, fact.margin) if power == 0 else Fact(Polynomial(terms), False)
+        )
+        for power, terms in sorted(powers.items())
     )

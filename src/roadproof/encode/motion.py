@@ -5,7 +5,7 @@ acceleration between two samples is constant, so it is the difference of speeds 
 positions follow the trapezoid rule exactly. After the last sample there is no acceleration.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -49,27 +49,28 @@ class Motions:
 
 
 def encode_motions(
-    vehicles: Mapping[str, Vehicle], grid: Grid, starts: Mapping[str, Range], across: Mapping[str, Range], natural: bool
+    vehicles: Mapping[str, Vehicle], grid: Grid, starts: Mapping[str, Range], across: Mapping[str, Range], natural: bool, inside: Fraction, straight: Collection[str] = ()
 ) -> Motions:
     """Columns and rows for ``vehicles``.
 
     ``starts``: where the front of each vehicle may be at time 0; ``across``: where its left side may
     be at all (m). ``natural`` asks in addition that no vehicle moves across the road at the first
     and last sample and that accelerations change by no more than the vehicle's jumps, from and to
-    none at the end.
+    none at the end; the first speed is then the vehicle's cruising speed. ``inside`` is how far
+    accelerations stay inside their limits, so that rounding cannot break them. Vehicles in ``straight`` never move across the road.
     """
     layout = Layout(tuple(vehicles), grid)
     columns = [
         column
         for name, vehicle in vehicles.items()
-        for column in _columns(name, vehicle, grid, starts[name], across[name], natural)
+        for column in _columns(name, vehicle, grid, starts[name], across[name], natural, name in straight)
     ]
-    rows = [row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural)]
+    rows = [row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural, inside)]
     return Motions(layout, tuple(columns), tuple(rows))
 
 
 def _columns(
-    name: str, vehicle: Vehicle, grid: Grid, start: Range, across: Range, natural: bool
+    name: str, vehicle: Vehicle, grid: Grid, start: Range, across: Range, natural: bool, straight: bool
 ) -> Iterable[Column]:
     slow, fast = vehicle.v_lon
     for k in range(grid.steps + 1):
@@ -78,17 +79,19 @@ def _columns(
     for k in range(grid.steps + 1):
         yield Column(f"{name}.d.{k}", *across)
     for k in range(grid.steps + 1):
-        yield Column(f"{name}.v_lon.{k}", slow, fast)
+        yield Column(f"{name}.v_lon.{k}", *(vehicle.cruise if natural and k == 0 else (slow, fast)))
     for k in range(grid.steps + 1):
         low, high = vehicle.v_lat
         if natural:
             away = min(k, grid.steps - k) * grid.dt
             bound = away * max(vehicle.a_lat[1], -vehicle.a_lat[0])
             low, high = max(low, -bound), min(high, bound)
+        if straight:
+            low = high = Fraction(0)
         yield Column(f"{name}.v_lat.{k}", low, high)
 
 
-def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool) -> Iterable[Row]:
+def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool, inside: Fraction) -> Iterable[Row]:
     grid = layout.grid
     half = grid.dt / 2
 
@@ -101,18 +104,18 @@ def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool) -> Iterabl
             driven = [(column(speed, k), -half), (column(speed, k + 1), -half)]
             yield row_of(affine(moved + driven), Fraction(0), Fraction(0))
         for acceleration, limits in (("a_lon", vehicle.a_lon), ("a_lat", vehicle.a_lat)):
-            yield row_of(layout.state(name, acceleration, k), *limits)
+            yield row_of(layout.state(name, acceleration, k), limits[0] + inside, limits[1] - inside)
     for k in range(grid.steps + 1):
         for sign in (1, -1):
             share = [(column("v_lon", k), vehicle.lateral_share), (column("v_lat", k), Fraction(sign))]
-            yield row_of(affine(share), Fraction(0), None)
+            yield row_of(affine(share), inside, None)
     if natural:
-        yield from _jumps(name, vehicle, layout)
+        yield from _jumps(name, vehicle, layout, inside)
 
 
-def _jumps(name: str, vehicle: Vehicle, layout: Layout) -> Iterable[Row]:
+def _jumps(name: str, vehicle: Vehicle, layout: Layout, inside: Fraction) -> Iterable[Row]:
     for acceleration, jump in (("a_lon", vehicle.jump_lon), ("a_lat", vehicle.jump_lat)):
         for k in range(layout.grid.steps):
             later = layout.state(name, acceleration, k + 1)
             change = later + layout.state(name, acceleration, k).scaled(Fraction(-1))
-            yield row_of(change, -jump, jump)
+            yield row_of(change, inside - jump, jump - inside)

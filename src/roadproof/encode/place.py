@@ -99,7 +99,7 @@ def _at_least(value: Polynomial[int], bound: Fraction) -> Circuit[ColumnFact]:
     return Leaf(Fact(value + constant(-bound), False))
 
 
-def stay_apart(layout: Layout, first: tuple[str, Vehicle], second: tuple[str, Vehicle]) -> Circuit[ColumnFact]:
+def stay_apart(layout: Layout, first: tuple[str, Vehicle], second: tuple[str, Vehicle], margin: Fraction) -> Circuit[ColumnFact]:
     """Between two samples, one of four sides separates the boxes at both ends."""
     (a, vehicle_a), (b, vehicle_b) = first, second
     conditions = []
@@ -114,7 +114,7 @@ def stay_apart(layout: Layout, first: tuple[str, Vehicle], second: tuple[str, Ve
                     )
                     for e in (k, k + 1)
                 ]
-                sides.append(all_of(Leaf(Fact(gap, False)) for gap in gaps))
+                sides.append(all_of(Leaf(Fact(gap, False, margin)) for gap in gaps))
         conditions.append(any_of(sides))
     return all_of(conditions)
 
@@ -133,3 +133,12 @@ def be_in_lane(
             band = (middle - slack - vehicle.width, middle + slack)
             choices.append(_box_inside(layout, name, vehicle, (along, band), step))
     return any_of(choices)
+
+
+def move_one_way(layout: Layout, name: str) -> Circuit[ColumnFact]:
+    """The vehicle never moves to the left, or never to the right."""
+    directions = []
+    for sign in (Fraction(1), Fraction(-1)):
+        speeds = [layout.state(name, "v_lat", k).scaled(sign) for k in range(layout.grid.steps + 1)]
+        directions.append(all_of(Leaf(Fact(speed, False)) for speed in speeds))
+    return any_of(directions)

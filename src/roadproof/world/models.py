@@ -49,7 +49,7 @@ def load_road(name_or_path: str | Path) -> Road:
 def load_vehicle(name_or_path: str | Path) -> Vehicle:
     """A bundled vehicle by name, or a user's by path. Raises ``InputError``."""
     path, content = _read("vehicles", name_or_path)
-    fields = ("length", "width", "v_lon", "v_lat", "a_lon", "a_lat", "lateral_share", "jump_lon", "jump_lat")
+    fields = ("length", "width", "v_lon", "v_lat", "a_lon", "a_lat", "lateral_share", "cruise", "jump_lon", "jump_lat")
     _only(content, {*fields, "name"}, str(path))
     for field in fields:
         if field not in content:
@@ -57,7 +57,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     one = {k: _number(content[k], f"{path}, {k}") for k in fields if not isinstance(content[k], list)}
     two = {k: _range(content[k], f"{path}, {k}") for k in fields if isinstance(content[k], list)}
     for field in fields:
-        wanted = two if field in ("v_lon", "v_lat", "a_lon", "a_lat") else one
+        wanted = two if field in ("v_lon", "v_lat", "a_lon", "a_lat", "cruise") else one
         if field not in wanted:
             raise InputError(f"{path}: {field} must be {'[low, high]' if wanted is two else 'one number'}")
     for field, value in one.items():
@@ -65,6 +65,8 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
             raise InputError(f"{path}: {field}={value}, but it must be greater than 0")
     if two["v_lon"][0] < 0:
         raise InputError(f"{path}: v_lon starts at {two['v_lon'][0]}, but a vehicle never reverses: use 0 or more")
+    if two["cruise"][0] < two["v_lon"][0] or two["cruise"][1] > two["v_lon"][1]:
+        raise InputError(f"{path}: cruise={content['cruise']} is not inside v_lon={content['v_lon']}")
     for field in ("a_lon", "a_lat", "v_lat"):
         low, high = two[field]
         if not low <= 0 <= high:

@@ -11,7 +11,8 @@ class Vehicle:
     """A point mass with a box. Lengths in m, speeds in m/s, accelerations in m/s².
 
     ``lateral_share``: |v_lat| is at most this share of v_lon, which keeps the heading below
-    arctan(share); ``jump_lon`` and ``jump_lat`` bound how far the acceleration of a natural drive
+    arctan(share); ``cruise`` is the range of speeds that a natural drive starts with, and
+    ``jump_lon`` and ``jump_lat`` bound how far the acceleration of a natural drive
     changes from one piece to the next.
     """
 
@@ -23,5 +24,6 @@ class Vehicle:
     a_lon: Range
     a_lat: Range
     lateral_share: Fraction
+    cruise: Range
     jump_lon: Fraction
     jump_lat: Fraction

@@ -1,0 +1,149 @@
+"""Certified bounds of polynomials on boxes, and affine conditions on the safe side of them.
+
+``inner``: conditions under which a fact surely holds, so that what a solver finds is a solution of
+the exact problem. ``outer``: conditions that hold wherever the fact does, so that when a solver
+finds nothing there is nothing. Squares are convex: a tangent is below, a secant above on its window;
+a product is the difference of two squares (McCormick's relaxation in other words: Math.
+Programming 10, 1976). All in floating point: solutions are judged exactly elsewhere.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Literal, TypeAlias
+
+from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
+from roadproof.encode.polynomial import Fact
+from roadproof.encode.problem import ColumnFact
+
+Side: TypeAlias = Literal["inner", "outer"]
+# Lower and upper bound of each column.
+Box: TypeAlias = Sequence[tuple[float, float]]
+
+
+class TooNonlinearError(Exception):
+    """A fact has a degree above 2, which no affine bound here covers."""
+
+
+@dataclass(frozen=True)
+class Affine:
+    """Σ coefficient · column + constant."""
+
+    terms: tuple[tuple[int, float], ...]
+    constant: float
+
+    def __add__(self, other: "Affine") -> "Affine":
+        total = dict(self.terms)
+        for column, factor in other.terms:
+            total[column] = total.get(column, 0.0) + factor
+        return Affine(tuple(total.items()), self.constant + other.constant)
+
+    def scaled(self, factor: float) -> "Affine":
+        return Affine(tuple((c, k * factor) for c, k in self.terms), self.constant * factor)
+
+    def range(self, box: Box) -> tuple[float, float]:
+        """Least and greatest value on a box."""
+        low = high = self.constant
+        for column, factor in self.terms:
+            one, other = factor * box[column][0], factor * box[column][1]
+            low, high = low + min(one, other), high + max(one, other)
+        return low, high
+
+    def value(self, values: Sequence[float]) -> float:
+        return self.constant + sum(factor * values[column] for column, factor in self.terms)
+
+
+@dataclass(frozen=True)
+class Bound:
+    """``affine >= margin``."""
+
+    affine: Affine
+    margin: float = 0.0
+
+
+def split_squares(fact: ColumnFact) -> tuple[Affine, tuple[tuple[float, Affine], ...]]:
+    """A polynomial of degree at most 2 as an affine part and multiples of squares of affine forms.
+
+    Raises ``TooNonlinearError`` above degree 2.
+    """
+    terms: dict[int, float] = {}
+    constant = 0.0
+    squares: list[tuple[float, Affine]] = []
+    for monomial, coefficient in fact.polynomial.terms.items():
+        factor = float(coefficient)
+        if not monomial:
+            constant += factor
+        elif len(monomial) == 1:
+            terms[monomial[0]] = factor
+        elif len(monomial) > 2:
+            raise TooNonlinearError(str(len(monomial)))
+        elif monomial[0] == monomial[1]:
+            squares.append((factor, Affine(((monomial[0], 1.0),), 0.0)))
+        else:
+            x, y = monomial
+            squares.append((factor / 4, Affine(((x, 1.0), (y, 1.0)), 0.0)))
+            squares.append((-factor / 4, Affine(((x, 1.0), (y, -1.0)), 0.0)))
+    return Affine(tuple(terms.items()), constant), tuple(squares)
+
+
+def approximate(fact: ColumnFact, box: Box, side: Side, pieces: int = 1) -> Circuit[Bound]:
+    """Affine conditions for ``fact`` on ``box``, on the given side of it.
+
+    ``pieces``: number of tangents and of secant windows per square; 1 needs no choice between them.
+    """
+    linear, squares = split_squares(fact)
+    options = [_square(factor, form, box, side, pieces) for factor, form in squares]
+    cases = []
+    for chosen in product(*(o[0] for o in options)):
+        total, conditions = linear, []
+        for piece, window in chosen:
+            total, conditions = total + piece, [*conditions, *window]
+        cases.append(all_of([*(Leaf(c) for c in conditions), _leaf(total, fact, box)]))
+    every = any(o[1] for o in options)
+    return all_of(cases) if every else any_of(cases)
+
+
+Piece: TypeAlias = tuple[Affine, tuple[Bound, ...]]
+
+
+def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> tuple[list[Piece], bool]:
+    """Affine bounds of ``factor·form²`` with the windows in which they are valid.
+
+    The flag says whether all of the pieces are asked for together rather than one of them.
+    """
+    low, high = form.range(box)
+    if high - low < 1e-12:
+        return [(Affine((), factor * low * low), ())], False
+    if (factor > 0) == (side == "inner"):
+        points = [low + (high - low) * (2 * k + 1) / (2 * pieces) for k in range(pieces)]
+        tangents = [form.scaled(2 * p) + Affine((), -p * p) for p in points]
+        made: list[Piece] = [(tangent.scaled(factor), ()) for tangent in tangents]
+        return made, side == "outer"
+    cuts = [low + (high - low) * k / pieces for k in range(pieces + 1)]
+    windows: list[Piece] = []
+    for a, b in zip(cuts, cuts[1:], strict=False):
+        secant = form.scaled(a + b) + Affine((), -a * b)
+        inside = (Bound(form + Affine((), -a)), Bound(form.scaled(-1) + Affine((), b)))
+        windows.append((secant.scaled(factor), inside if pieces > 1 else ()))
+    return windows, False
+
+
+def _leaf(affine: Affine, fact: ColumnFact, box: Box) -> Circuit[Bound]:
+    """The condition, or true or false where the box decides it."""
+    low, high = affine.range(box)
+    if low > 0 or (low == 0 and not fact.strict):
+        return All(())
+    if high < 0 or (high == 0 and fact.strict):
+        return AnyOf(())
+    return Leaf(Bound(affine, float(fact.margin)))
+
+
+def value_of(fact: Fact[int], values: Sequence[float]) -> float:
+    """The value of the polynomial of a fact where ``values`` gives that of each column."""
+    total = 0.0
+    for monomial, coefficient in fact.polynomial.terms.items():
+        term = float(coefficient)
+        for column in monomial:
+            term *= values[column]
+        total += term
+    return total

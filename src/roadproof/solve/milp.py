@@ -1,0 +1,215 @@
+"""Mixed-integer solvers through cvxpy: one sparse matrix constraint, one-sided big-M.
+
+A disjunction gets one binary column per part, and a chosen part must hold; nothing follows from a
+part that is not chosen, so no condition is needed in the other direction. Each big-M is the bound of
+its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth`` only.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from typing import Any, Literal, TypeAlias, assert_never
+
+import numpy as np
+
+from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, nodes, replace_leaves
+from roadproof.encode.problem import Problem
+from roadproof.errors import MissingSolverError, UsageError
+from roadproof.solve.bounds import Affine, Bound, Box, Side, approximate
+
+Status: TypeAlias = Literal["found", "infeasible", "unknown"]
+
+
+@dataclass(frozen=True)
+class SolverFacts:
+    """What we know of a solver: cvxpy's name for it, the module it needs, its options."""
+
+    cvxpy_name: str
+    module: str
+    options: Callable[[float, float], Mapping[str, object]]
+
+
+SOLVERS: Mapping[str, SolverFacts] = {
+    "highs": SolverFacts("HIGHS", "highspy", lambda limit, gap: {"time_limit": limit, "mip_rel_gap": gap}),
+    "scipy": SolverFacts(
+        "SCIPY", "scipy", lambda limit, gap: {"scipy_options": {"time_limit": limit, "mip_rel_gap": gap}}
+    ),
+    "scip": SolverFacts(
+        "SCIP", "pyscipopt", lambda limit, gap: {"scip_params": {"limits/time": limit, "limits/gap": gap}}
+    ),
+    "gurobi": SolverFacts("GUROBI", "gurobipy", lambda limit, gap: {"TimeLimit": limit, "MIPGap": gap}),
+    "cbc": SolverFacts("CBC", "cylp", lambda limit, gap: {"maximumSeconds": limit, "allowableGap": gap}),
+    "glpk": SolverFacts("GLPK_MI", "cvxopt", lambda limit, gap: {"tm_lim": int(limit * 1000), "mip_gap": gap}),
+}
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Values of the problem's columns where ``status`` is found."""
+
+    status: Status
+    values: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What to make small: Σ weight · column, and Σ weight · |column|."""
+
+    linear: Mapping[int, float] = field(default_factory=dict)
+    absolute: Mapping[int, float] = field(default_factory=dict)
+
+
+def find_solver(name: str) -> SolverFacts:
+    """Raises ``UsageError`` for an unknown name, ``MissingSolverError`` where it is not installed."""
+    if name not in SOLVERS:
+        raise UsageError(f"solver={name}: there is no such solver; there are {', '.join(sorted(SOLVERS))}")
+    for module in ("cvxpy", SOLVERS[name].module):
+        if find_spec(module) is None:
+            raise MissingSolverError(
+                f"solver={name} needs the module {module}: install roadproof[milp] for HiGHS, "
+                "or use --engine smt, which needs z3 only"
+            )
+    return SOLVERS[name]
+
+
+def solve_mixed(
+    problem: Problem,
+    box: Box,
+    side: Side = "inner",
+    pieces: int = 1,
+    cost: Cost | None = None,
+    solver: str = "highs",
+    time_limit: float = 30.0,
+    gap: float = 0.5,
+) -> Solution:
+    """A solution of ``problem`` in ``box`` (a bound pair per column).
+
+    On the inner side a solution solves the exact problem up to floating point; on the outer side
+    ``infeasible`` says that the exact problem has no solution, up to the solver's tolerances. Raises
+    ``TooNonlinearError`` for facts above degree 2 and as ``find_solver`` does.
+    """
+    known = find_solver(solver)
+    circuit = replace_leaves(problem.circuit, lambda fact: approximate(fact, box, side, pieces))
+    tableau = _Tableau(list(box))
+    for row in problem.rows:
+        terms = tuple((c, float(k)) for c, k in row.terms.items())
+        low = -np.inf if row.low is None else float(row.low)
+        high = np.inf if row.high is None else float(row.high)
+        tableau.add(terms, low, high)
+    tableau.require(circuit)
+    return _run(tableau, len(problem.columns), cost or Cost(), known, time_limit, gap)
+
+
+class _Tableau:
+    """Rows and binary columns, written as triplets."""
+
+    def __init__(self, box: list[tuple[float, float]]) -> None:
+        self.box = box
+        self.binaries: list[int] = []
+        self.entries: tuple[list[int], list[int], list[float]] = ([], [], [])
+        self.low: list[float] = []
+        self.high: list[float] = []
+
+    def add(self, terms: Sequence[tuple[int, float]], low: float, high: float) -> None:
+        rows, columns, values = self.entries
+        for column, factor in terms:
+            rows.append(len(self.low))
+            columns.append(column)
+            values.append(factor)
+        self.low.append(low)
+        self.high.append(high)
+
+    def binary(self) -> int:
+        self.box.append((0.0, 1.0))
+        self.binaries.append(len(self.box) - 1)
+        return self.binaries[-1]
+
+    def require(self, circuit: Circuit[Bound]) -> None:
+        """Rows for ``circuit``; ``chosen`` holds for each part of a disjunction its binary."""
+        chosen: dict[int, int] = {}
+        top: list[Circuit[Bound]] = list(circuit.parts) if isinstance(circuit, All) else [circuit]
+        for node in nodes(circuit):
+            if isinstance(node, AnyOf):
+                for part in node.parts:
+                    if id(part) not in chosen:
+                        chosen[id(part)] = self.binary()
+        waiting: list[tuple[Circuit[Bound], int | None]] = [(part, None) for part in top]
+        waiting += [(n, chosen[id(n)]) for n in nodes(circuit) if id(n) in chosen]
+        for node, guard in waiting:
+            self._hold(node, guard, chosen)
+
+    def _hold(self, node: Circuit[Bound], guard: int | None, chosen: Mapping[int, int]) -> None:
+        """``node`` holds, if the guard is 1 where there is one."""
+        match node:
+            case Leaf(bound):
+                self._bound(bound.affine, guard, bound.margin)
+            case All(parts):
+                for part in parts:
+                    self._hold(part, guard, chosen)
+            case AnyOf(parts):
+                picks = [(chosen[id(p)], 1.0) for p in parts]
+                if guard is None:
+                    self.add(picks, 1.0, np.inf)
+                else:
+                    self.add([*picks, (guard, -1.0)], 0.0, np.inf)
+            case _:
+                assert_never(node)
+
+    def _bound(self, affine: Affine, guard: int | None, margin: float) -> None:
+        """affine >= margin, relaxed by its own least value where the guard is 0."""
+        least = margin - affine.constant
+        if guard is None:
+            self.add(affine.terms, least, np.inf)
+            return
+        slack = max(0.0, margin - affine.range(self.box)[0])
+        self.add([*affine.terms, (guard, -slack)], least - slack, np.inf)
+
+
+def _run(
+    tableau: _Tableau, wanted: int, cost: Cost, known: SolverFacts, time_limit: float, gap: float
+) -> Solution:
+    import cvxpy
+    from scipy.sparse import csr_array
+
+    sizes = {c: len(tableau.box) + k for k, c in enumerate(cost.absolute)}
+    for column, size in sizes.items():
+        bound = max(abs(tableau.box[column][0]), abs(tableau.box[column][1]))
+        tableau.box.append((0.0, bound))
+        tableau.add([(size, 1.0), (column, 1.0)], 0.0, np.inf)
+        tableau.add([(size, 1.0), (column, -1.0)], 0.0, np.inf)
+    count = len(tableau.box)
+    weights = np.zeros(count)
+    for column, weight in cost.linear.items():
+        weights[column] += weight
+    for column, weight in cost.absolute.items():
+        weights[sizes[column]] += weight
+    rows, columns, values = tableau.entries
+    matrix = csr_array((values, (rows, columns)), shape=(len(tableau.low), count))
+    low, high = np.array(tableau.low), np.array(tableau.high)
+    equal = low == high
+    above, below = ~equal & np.isfinite(low), ~equal & np.isfinite(high)
+    limits = np.array(tableau.box)
+    attributes: dict[str, Any] = {"bounds": [limits[:, 0], limits[:, 1]]}
+    if tableau.binaries:
+        attributes["boolean"] = [np.array(tableau.binaries)]
+    x = cvxpy.Variable(count, **attributes)
+    constraints = [matrix[equal] @ x == low[equal]] if equal.any() else []
+    if above.any():
+        constraints.append(matrix[above] @ x >= low[above])
+    if below.any():
+        constraints.append(matrix[below] @ x <= high[below])
+    program = cvxpy.Problem(cvxpy.Minimize(weights @ x), constraints)
+    try:
+        program.solve(solver=known.cvxpy_name, **known.options(time_limit, gap))
+    except cvxpy.error.SolverError:
+        return Solution("unknown")
+    if program.status in ("infeasible", "infeasible_or_unbounded"):
+        return Solution("infeasible")
+    if x.value is None:
+        return Solution("unknown")
+    return Solution("found", tuple(float(v) for v in x.value[:wanted]))
+
+
+def box_of(problem: Problem) -> list[tuple[float, float]]:
+    """The bounds of a problem's columns as floats."""
+    return [(float(c.low), float(c.high)) for c in problem.columns]

@@ -1,0 +1,104 @@
+"""What a drive should look like once its choices are made: objectives for ``solve.smooth``."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Literal, TypeAlias
+
+from roadproof.encode.circuit import implicant
+from roadproof.encode.motion import Layout
+from roadproof.encode.polynomial import Polynomial
+from roadproof.encode.problem import ColumnFact, Problem
+from roadproof.solve.bounds import Affine, Bound, value_of
+from roadproof.solve.milp import box_of
+from roadproof.solve.smooth import Square, minimise, narrow, near
+from roadproof.world.road import Road
+from roadproof.world.vehicle import Vehicle
+
+Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
+OBJECTIVES: tuple[Objective, ...] = ("any", "smooth", "margin", "mild", "severe", "short")
+
+# How far a signal may move in one round, so that squares are nearly straight.
+_TRUST = {"s": 400.0, "d": 10.0, "v_lon": 4.0, "v_lat": 0.6}
+
+
+def reshape(
+    problem: Problem,
+    layout: Layout,
+    road: Road,
+    vehicles: Mapping[str, Vehicle],
+    found: Sequence[float],
+    objective: Objective,
+    depths: Sequence[ColumnFact] = (),
+    rounds: int = 3,
+) -> tuple[float, ...]:
+    """A better drive than ``found`` for the same choices; ``found`` where there is none.
+
+    ``depths``: facts of which mild makes the values small and severe great.
+    """
+    choices = implicant(problem.circuit, lambda fact: value_of(fact, found))
+    squares = list(comfort(layout, road, vehicles, found))
+    widths = [_TRUST[column.name.split(".")[1]] for column in problem.columns]
+    best = tuple(found)
+    for _ in range(rounds):
+        box = narrow(box_of(problem), best, widths)
+        bounds = [near(fact, best, box) for fact in choices]
+        cost = None
+        if objective == "margin":
+            box, bounds, cost = _with_margin(box, bounds)
+        elif objective in ("mild", "severe") and depths:
+            cost = _depth(depths, best, 1.0 if objective == "mild" else -1.0)
+        better = minimise(problem.rows, box, bounds, squares, cost)
+        if better is None:
+            break
+        best = better[: len(problem.columns)]
+    return best
+
+
+def comfort(
+    layout: Layout, road: Road, vehicles: Mapping[str, Vehicle], found: Sequence[float]
+) -> Iterator[Square]:
+    """Little jerk and acceleration, near the middle of the lane that ``found`` is nearest to."""
+    steps = layout.grid.steps
+    for name, vehicle in vehicles.items():
+        middles = sorted({float(x.d[0] + x.d[1] + vehicle.width) / 2 for x in road.lanelets})
+        pace = float(sum(vehicle.cruise)) / 2
+        for k in range(steps):
+            for signal, jerk, effort in (("a_lon", 1.0, 0.1), ("a_lat", 1.0, 0.5)):
+                now, later = _affine(layout, name, signal, k), _affine(layout, name, signal, k + 1)
+                yield Square(jerk, later + now.scaled(-1.0))
+                yield Square(effort, now)
+        for k in range(steps + 1):
+            side = found[layout.column(name, "d", k)]
+            middle = min(middles, key=lambda m: abs(m - side))
+            yield Square(1.0, _affine(layout, name, "d", k) + Affine((), -middle))
+            yield Square(0.002, _affine(layout, name, "v_lon", k) + Affine((), -pace))
+
+
+def _affine(layout: Layout, name: str, signal: str, step: int) -> Affine:
+    polynomial: Polynomial[int] = layout.state(name, signal, step)
+    terms = tuple((m[0], float(c)) for m, c in polynomial.terms.items() if m)
+    return Affine(terms, float(polynomial.constant))
+
+
+def _with_margin(
+    box: list[tuple[float, float]], bounds: list[Bound]
+) -> tuple[list[tuple[float, float]], list[Bound], Affine]:
+    """One more column that no fact with a margin may fall below, to be made great."""
+    extra = len(box)
+    raised = [
+        Bound(b.affine + Affine(((extra, -1.0),), 0.0), 0.0) if b.margin > 0 else b for b in bounds
+    ]
+    least = min((b.margin for b in bounds if b.margin > 0), default=0.0)
+    return [*box, (least, 1000.0)], raised, Affine(((extra, -100.0),), 0.0)
+
+
+def _depth(depths: Sequence[ColumnFact], point: Sequence[float], sign: float) -> Affine:
+    """The sum of the facts' values, straightened at ``point``."""
+    total = Affine((), 0.0)
+    for fact in depths:
+        for monomial, coefficient in fact.polynomial.terms.items():
+            for position, column in enumerate(monomial):
+                factor = float(coefficient)
+                for other in monomial[:position] + monomial[position + 1 :]:
+                    factor *= point[other]
+                total = total + Affine(((column, factor * sign),), 0.0)
+    return total
