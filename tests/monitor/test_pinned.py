@@ -21,7 +21,7 @@ from roadproof.spec.elaborate import apply_definition
 from roadproof.spec.library import bundled_library
 
 conventions = st.sampled_from(["truncated", "clip"])
-quick = settings(max_examples=120, deadline=None, derandomize=True)
+quick = settings(max_examples=400, deadline=None, derandomize=True)
 
 
 @quick
@@ -42,7 +42,7 @@ def test_margins_are_those_of_the_recursive_reading(
     assert list(margin_differences(formula, batch, convention)) == []
 
 
-@settings(max_examples=15, deadline=None, derandomize=True)
+@settings(max_examples=40, deadline=None, derandomize=True)
 @given(formulas, st.integers(0, 10**6), st.sampled_from([63, 64, 65, 130]), conventions)
 def test_traces_of_several_words_do_not_mix(
     formula: Formula, seed: int, traces: int, convention: Convention
