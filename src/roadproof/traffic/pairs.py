@@ -50,7 +50,8 @@ def common_pairs(recording: Recording, eligible: Bools) -> Pairs:
     ``eligible`` has one entry a vehicle. Pairs come in order of (first, second).
     """
     chosen = np.flatnonzero(eligible)
-    made = [_meeting(recording, chosen[recording.direction[chosen] == way]) for way in (1, 2)]
+    ways = np.unique(recording.direction)
+    made = [_meeting(recording, chosen[recording.direction[chosen] == way]) for way in ways]
     one, other = (np.concatenate([m[k] for m in made]) for k in (0, 1))
     first, second = np.minimum(one, other), np.maximum(one, other)
     order = np.lexsort((second, first))

@@ -1,0 +1,255 @@
+"""The CommonRoad reader: a road turned by 30 degrees with known answers, damage, and real traffic."""
+
+import math
+import random
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadproof.errors import InputError
+from roadproof.traffic.commonroad import read_commonroad
+from roadproof.traffic.overlaps import find_overlaps
+from roadproof.traffic.projection import boxes_of, inside, overlap, project, triangles_of
+
+US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
+TURN = math.radians(30)
+
+
+@dataclass(frozen=True)
+class Car:
+    """Positions (along, across) of the centre in road coordinates; one state a time step."""
+
+    id: int
+    first: int
+    centres: tuple[tuple[float, float], ...]
+    speed: float = 20.0
+    drift: float = 0.0  # angle to the road
+    length: float = 4.0
+
+
+CARS = (
+    Car(7, 0, ((10.0, 1.75), (12.0, 1.75), (14.0, 1.75))),  # right main lane
+    Car(3, 1, ((40.0, 3.2), (42.0, 3.6)), drift=0.1),  # astride the marking at 3.5
+    Car(9, 0, ((60.0, -1.75),), length=9.0),  # on the merge lane
+)
+
+
+def plane(along: float, across: float) -> tuple[float, float]:
+    return (
+        100 + along * math.cos(TURN) - across * math.sin(TURN),
+        50 + along * math.sin(TURN) + across * math.cos(TURN),
+    )
+
+
+def point(along: float, across: float) -> str:
+    x, y = plane(along, across)
+    return f"<point><x>{x!r}</x><y>{y!r}</y></point>"
+
+
+def lanelet(name: str, low: float, high: float, s: tuple[float, float], kind: str, links: str) -> str:
+    def bound(tag: str, across: float) -> str:
+        return f"<{tag}>{''.join(point(a, across) for a in (s[0], sum(s) / 2, s[1]))}</{tag}>"
+
+    return (
+        f'<lanelet id="{name}">{bound("leftBound", high)}{bound("rightBound", low)}{links}'
+        f"<laneletType>{kind}</laneletType></lanelet>"
+    )
+
+
+def state(tag: str, car: Car, k: int) -> str:
+    values = {
+        "orientation": TURN + car.drift,
+        "time": car.first + k,
+        "velocity": car.speed,
+        "acceleration": -1.5,
+    }
+    return (
+        f"<{tag}><position>{point(*car.centres[k])}</position>"
+        + "".join(f"<{x}><exact>{v!r}</exact></{x}>" for x, v in values.items())
+        + f"</{tag}>"
+    )
+
+
+def obstacle(car: Car) -> str:
+    states = "".join(state("state", car, k) for k in range(1, len(car.centres)))
+    return (
+        f'<dynamicObstacle id="{car.id}"><type>car</type><shape><rectangle><length>{car.length}</length>'
+        f"<width>1.8</width></rectangle></shape>{state('initialState', car, 0)}"
+        f"<trajectory>{states}</trajectory></dynamicObstacle>"
+    )
+
+
+def document(cars: tuple[Car, ...] = CARS) -> str:
+    """Two main lanes of two lanelets each, and a merge lane beside the first right one."""
+    road = [
+        lanelet(
+            "1", 0.0, 3.5, (0, 80), "highway", '<successor ref="2"/><adjacentLeft ref="3" drivingDir="same"/>'
+        ),
+        lanelet("2", 0.0, 3.5, (80, 160), "highway", '<predecessor ref="1"/>'),
+        lanelet("3", 3.5, 7.0, (0, 80), "highway", '<successor ref="4"/><successor ref="99"/>'),
+        lanelet("4", 3.5, 7.0, (80, 160), "highway", '<adjacentRight ref="2" drivingDir="same"/>'),
+        lanelet("5", -3.5, 0.0, (0, 80), "accessRamp", '<adjacentLeft ref="1" drivingDir="same"/>'),
+    ]
+    head = '<?xml version="1.0"?><commonRoad commonRoadVersion="2020a" timeStepSize="0.1">'
+    return head + "".join(road) + "".join(map(obstacle, cars)) + "</commonRoad>"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "tiny.xml"
+    path.write_text(document())
+    return path
+
+
+def test_by_hand(file: Path) -> None:
+    r = read_commonroad(file)
+    assert (r.name, r.rate) == ("tiny", 10)
+    assert [lane.name for lane in r.lanes] == ["1", "3", "5"]
+    assert r.beside == {frozenset("13"), frozenset("15")}
+    assert r.vehicle_id.tolist() == [3, 7, 9]
+    assert r.kind.tolist() == ["Car", "Car", "Truck"]
+    assert r.first_frame.tolist() == [1, 0, 0]
+    assert r.start.tolist() == [0, 2, 5, 6]
+    # Γ is the centre of lane 1 (across = 1.75); the front is half a length ahead of the centre.
+    assert r.s == pytest.approx([42.0, 44.0, 12.0, 14.0, 16.0, 64.5])
+    assert r.d == pytest.approx([3.2 - 1.75 + 0.9, 3.6 - 1.75 + 0.9, 0.9, 0.9, 0.9, -3.5 + 0.9])
+    assert r.v_lon == pytest.approx([20 * math.cos(0.1)] * 2 + [20.0] * 4)
+    assert r.v_lat == pytest.approx([20 * math.sin(0.1)] * 2 + [0.0] * 4)
+    assert r.a_lon == pytest.approx([-1.5 * math.cos(0.1)] * 2 + [-1.5] * 4)
+    assert r.occupancy.tolist() == [0b011, 0b011, 0b001, 0b001, 0b001, 0b100]
+    assert r.lane.tolist() == [0, 1, 0, 0, 0, 2]
+    # Lanelets 1, 3 and 5 are side by side with the merge lane: merge zone; 2 and 4 are main road.
+    assert r.zones.tolist() == [0b010] * 6
+
+
+def test_zone_behind_the_merge_lane(tmp_path: Path) -> None:
+    path = tmp_path / "far.xml"
+    path.write_text(document((Car(1, 0, ((78.5, 1.75), (81.0, 1.75), (90.0, 1.75))),)))
+    r = read_commonroad(path)
+    assert r.zones.tolist() == [0b011, 0b011, 0b001]
+    assert r.occupancy.tolist() == [1, 1, 1]
+
+
+def test_overlaps_are_reported(tmp_path: Path) -> None:
+    path = tmp_path / "crash.xml"
+    path.write_text(
+        document((Car(1, 0, ((50.0, 1.75), (60.0, 1.75))), Car(2, 0, ((54.0, 1.75), (63.0, 1.75)))))
+    )
+    r = read_commonroad(path)
+    ((one, other, frames, depth),) = find_overlaps(r)  # touching bumpers in frame 0 are no overlap
+    assert (one, other, frames) == (1, 2, 1)
+    assert depth == pytest.approx(1.0)
+    assert "vehicles 1 and 2 overlap in 1 frames, by up to 1.00 m" in r.notes
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('timeStepSize="0.1"', 'timeStepSize="0.3"', "timeStepSize=0.3: a whole number"),
+        ('timeStepSize="0.1"', 'timeStepSize="fast"', "timeStepSize of commonRoad is 'fast'"),
+        ('Version="2020a"', 'Version="2018b"', "2020a is needed"),
+        ("</commonRoad>", "", "no well-formed XML"),
+        ('<?xml version="1.0"?>', '<!DOCTYPE a [<!ENTITY b "c">]>', "no document type"),
+        (
+            "<time><exact>2</exact>",
+            "<time><exact>5</exact>",
+            "dynamicObstacle 7: time step 1 is followed by 5",
+        ),
+        ("<exact>20.0</exact>", "<exact>nan</exact>", "velocity in a state of dynamicObstacle 7 is 'nan'"),
+        ("<width>1.8</width>", "<width>-1.8</width>", r"dynamicObstacle 7 has length=4.0, width=-1.8"),
+        ('dynamicObstacle id="3"', 'dynamicObstacle id="7"', "dynamicObstacle 7 occurs twice"),
+        ("<lanelet ", "<lane ", "no well-formed XML"),
+    ],
+)
+def test_damage_is_named(old: str, new: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "spoiled.xml"
+    text = document()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    with pytest.raises(InputError, match=message):
+        read_commonroad(path)
+
+
+def test_fuzz(tmp_path: Path) -> None:
+    """200 random cuts and changes: an InputError or a recording, never anything else."""
+    path, chance, refused = tmp_path / "fuzz.xml", random.Random(5), 0
+    text = document()
+    for _ in range(200):
+        begin = chance.randrange(len(text))
+        end = min(len(text), begin + chance.randrange(1, 40))
+        path.write_text(text[:begin] + chance.choice(["", "0", "<x/>", "-", "1e999", "\0"]) + text[end:])
+        try:
+            read_commonroad(path)
+        except InputError:
+            refused += 1
+    assert refused > 120
+
+
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(st.integers(0, 2**31))
+def test_overlap_against_sampling(seed: int) -> None:
+    """A box overlaps a triangle if one of many random points is inside both, and never if they touch."""
+    random_ = np.random.default_rng(seed)
+    box = boxes_of(random_.uniform(-2, 2, (1, 2)), random_.uniform(0, 7, 1), np.array([3.0]), np.array([1.5]))
+    triangle = random_.uniform(-4, 4, (1, 3, 2))
+    points = random_.uniform(-5, 5, (4000, 2))
+    halves = np.stack((box[0][[0, 1, 2]], box[0][[0, 2, 3]]))
+    common = inside(points, halves) & inside(points, triangle)
+    found = bool(overlap(box, triangle)[0])
+    if common.any():
+        assert found
+    shift = box[0, :, 0].max() - triangle[0, :, 0].min()  # moved until they just touch, or less
+    assert not overlap(box, triangle + np.array([shift + 1e-9, 0]))[0]
+    if found and not common.any():
+        assert _distance_inside(box[0], triangle[0]) < 0.5  # only slivers escape the sampling
+
+
+def _distance_inside(box: np.ndarray, triangle: np.ndarray) -> float:
+    """How deep the figures overlap along their edge normals."""
+    depth = np.inf
+    for figure in (box, triangle):
+        for a, b in zip(figure, np.roll(figure, -1, axis=0), strict=True):
+            normal = np.array([a[1] - b[1], b[0] - a[0]]) / np.hypot(*(b - a))
+            one, other = box @ normal, triangle @ normal
+            depth = min(depth, min(one.max(), other.max()) - max(one.min(), other.min()))
+    return float(depth)
+
+
+def test_touching_is_not_occupying() -> None:
+    strip = triangles_of(np.array([[0.0, 4.0], [50.0, 4.0]]), np.array([[0.0, 0.0], [50.0, 0.0]]))
+    level = np.zeros(3)
+    centre = np.array([[10.0, 5.0], [10.0, 4.999], [-2.0, 2.0]])
+    boxes = boxes_of(centre, level, np.full(3, 4.0), np.full(3, 2.0))
+    assert overlap(boxes, strip).tolist() == [False, True, False]
+
+
+def test_projection_goes_on_straight() -> None:
+    line = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]])
+    along = project(line, np.array([[-5.0, 1.0], [4.0, -2.0], [9.0, 6.0], [12.0, 15.0]]))
+    assert along.s.tolist() == [-5.0, 4.0, 16.0, 25.0]
+    assert along.d.tolist() == [1.0, -2.0, 1.0, -2.0]
+    assert along.heading == pytest.approx([0, 0, math.pi / 2, math.pi / 2])
+
+
+@pytest.mark.skipif(not US101.is_dir(), reason="the US-101 recordings are not here: ../shared/data/us101")
+def test_us101() -> None:
+    paths = sorted(US101.glob("*.xml"))
+    assert len(paths) == 8
+    for path in paths:
+        r = read_commonroad(path)
+        assert r.rate == 10
+        assert len(r.lanes) in (5, 6)
+        assert len(r.beside) == len(r.lanes) - 1
+        assert (r.lane < 0).mean() < 0.01
+        assert 0 <= r.v_lon.min() <= r.v_lon.max() < 35
+        inner = np.diff(r.row_vehicle) == 0
+        for position, velocity, limit in ((r.s, r.v_lon, 1.2), (r.d, r.v_lat, 0.1)):
+            error = np.abs(np.diff(position) - (velocity[1:] + velocity[:-1]) / 20)[inner]
+            assert error.max() < limit
+        assert any(note.startswith("accelerations") for note in r.notes)
+    first = read_commonroad(paths[0])
+    assert list(find_overlaps(first)) == [(504, 513, 2, pytest.approx(0.16, abs=0.01))]
