@@ -1,25 +1,32 @@
 """How fast the monitor is: 7 scenarios over 32,398 traces of 375 samples, and ratios in one run.
 
-    python benchmarks/monitor.py [--traces N] [--samples N] [--threads N] [--json FILE]
+    python benchmarks/monitor.py [--traces N] [--samples N] [--threads N] [--json FILE] [--peers PYTHON]
 
 The traces are random pairs of cars that follow, approach and pass each other, lengths all equal (the
 worst case). Every sampled verdict and margin is compared with the plain recursive evaluator.
+``--peers`` names the Python of an environment with rtamt and sentil; they get the truth of the state
+atoms ready-made and are timed on fewer traces, whose verdicts are compared with the clip convention.
 """
 
 import argparse
 import json
+import subprocess
 import sys
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
+from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.monitor import Batch, compile
+from roadproof.monitor import Batch, Monitor, compile
+from roadproof.monitor.boolean import unpack
 from roadproof.monitor.recursive import Reading, Trace, answer
+from roadproof.monitor.semantics import interval_steps
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import apply_definition
 from roadproof.spec.library import bundled_library
@@ -79,7 +86,7 @@ def random_batch(formulas: dict[str, Formula], traces: int, samples: int, seed: 
             given[formula] = own if formula.arguments[1] == "L" else np.where(start_lane, beside, here)
     # "some M in adjacentLanes(L)" has one member on two lanes
     for formula in {x for root in formulas.values() for x in subformulas(root)}:
-        if type(formula).__name__ == "Some" and formula.domain.kind == "adjacent":
+        if isinstance(formula, f.Some) and formula.domain.kind == "adjacent":
             inner = formula.body
             assert isinstance(inner, Named)
             given[formula] = given[inner]
@@ -96,6 +103,60 @@ def trace_of(batch: Batch, index: int) -> Trace:
         {key: float(values[index]) for key, values in batch.sizes.items()},
         {formula: values[:length, index].tolist() for formula, values in batch.given.items()},
     )
+
+
+def peer_text(formula: Formula, atoms: Mapping[Formula, int], dt: Fraction) -> str:
+    """A formula without names as rtamt and sentil write it, over variables of 1 and -1."""
+
+    def show(x: Formula) -> str:
+        if x in atoms:
+            return f"(a{atoms[x]} > 0)"
+        match x:
+            case f.Truth(value):
+                return "(a0 > -2)" if value else "(a0 > 2)"
+            case f.Not(body):
+                return f"(not {show(body)})"
+            case f.And(parts):
+                return "(" + " and ".join(map(show, parts)) + ")"
+            case f.Or(parts):
+                return "(" + " or ".join(map(show, parts)) + ")"
+            case f.Eventually(interval, body):
+                return f"(eventually{bounds(interval)} {show(body)})"
+            case f.Always(interval, body):
+                return f"(always{bounds(interval)} {show(body)})"
+            case f.Until(left, interval, right):
+                return f"({show(left)} until{bounds(interval)} {show(right)})"
+            case _:
+                raise AssertionError(f"{x} has no text for peers")
+
+    def bounds(interval: f.Interval) -> str:
+        low, high = interval_steps(interval, dt)
+        return "" if high is None else f"[{low},{high}]"
+
+    return show(formula)
+
+
+def compare_with_peers(
+    monitor: Monitor, batch: Batch, python: str, traces: int, slow: int
+) -> dict[str, float]:
+    """Seconds that each peer would take for the whole batch, and how many verdicts differ from clip."""
+    observation = monitor.observe(batch)
+    leaves = {x: k for k, x in enumerate(observation.leaves)}
+    truth = np.stack([unpack(words, batch.traces)[:, :traces] for words in observation.leaves.values()])
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "atoms.npz"
+        np.savez(path, truth=truth, texts=[peer_text(x, leaves, batch.dt) for x in monitor.plain.values()])
+        script = Path(__file__).with_name("monitor_peers.py")
+        run = subprocess.run([python, script, path, str(slow)], check=True, capture_output=True, text=True)
+    print(run.stderr, file=sys.stderr, end="")
+    clipped = monitor.evaluate(observation, "clip").answers
+    figures = {}
+    for name, answers in json.loads(run.stdout).items():
+        ours = np.array([clipped[x].true[: len(answers["verdicts"])] for x in monitor.plain]).T
+        figures[f"{name}_scaled"] = answers["seconds"] * batch.traces
+        figures[f"count_{name}_verdicts"] = ours.size
+        figures[f"count_{name}_differing"] = int((ours != np.array(answers["verdicts"])).sum())
+    return figures
 
 
 def timed(what: Callable[[], object], repeat: int = 3) -> float:
@@ -115,6 +176,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--recursive", type=int, default=6, help="traces for the recursive evaluator")
     parser.add_argument("--json", type=Path)
+    parser.add_argument("--peers", metavar="PYTHON", help="a Python that has rtamt and sentil")
+    parser.add_argument("--rtamt", type=int, default=20, help="traces for rtamt")
+    parser.add_argument("--sentil", type=int, default=1000, help="traces for sentil")
     options = parser.parse_args()
 
     formulas = scenarios()
@@ -150,8 +214,13 @@ def main() -> int:
                 print(f"trace {i}, {name}: {got} where {wanted} was expected", file=sys.stderr)
                 return 30
     figures["ratio_recursive_to_boolean"] = figures["recursive_scaled"] / figures["boolean"]
+    if options.peers:
+        figures |= compare_with_peers(monitor, batch, options.peers, options.sentil, options.rtamt)
+        for peer in ("rtamt", "sentil"):
+            if f"{peer}_scaled" in figures:
+                figures[f"ratio_{peer}_to_boolean"] = figures[f"{peer}_scaled"] / figures["boolean_clip"]
     for name, value in figures.items():
-        print(f"{name:28s} {value:12.3f}{'' if name.startswith('ratio') else ' s'}")
+        print(f"{name:28s} {value:12.3f}{'' if name.startswith(('ratio', 'count')) else ' s'}")
     for name, found in verdicts.answers.items():
         print(
             f"{name}: {found.true.sum()} true, {found.false.sum()} false, {found.undecided.sum()} undecided"
