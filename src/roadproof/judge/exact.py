@@ -103,18 +103,19 @@ class _Judging:
             case f.Named(_, _, body):
                 return self.visit(body)
             case f.Eventually(interval, body):
-                return eventually(*_seconds(interval), self.visit(body))
+                return eventually(*seconds(interval), self.visit(body))
             case f.Always(interval, body):
-                return always(*_seconds(interval), self.visit(body))
+                return always(*seconds(interval), self.visit(body))
             case f.Until(left, interval, right):
-                return until(self.visit(left), *_seconds(interval), self.visit(right))
+                return until(self.visit(left), *seconds(interval), self.visit(right))
             case f.Occupies() | f.Some() | f.Every():
                 raise InputError("a formula over a road's lanes is judged after it is bound to a road")
             case _:
                 assert_never(formula)
 
 
-def _seconds(interval: Interval) -> tuple[Fraction, Fraction | None]:
+def seconds(interval: Interval) -> tuple[Fraction, Fraction | None]:
+    """Both bounds of an interval; None is unbounded. Raises ``InputError`` where they make no sense."""
     try:
         low, high = bounds_of(interval)
     except ValueError as error:

@@ -1,0 +1,174 @@
+"""Deliberate faults in the judge: the pinning checks must notice each of them."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import HealthCheck, Phase, find, settings
+from hypothesis import strategies as st
+
+from judge.cases import comparisons, drives, every_small_case
+from judge.pinning import disagreement_on_drive, disagreement_on_sets
+from roadproof.judge import comparison, exact, piecewise, signals, truth
+from roadproof.judge.algebraic import moved
+from roadproof.judge.truth import Cut, Span, TruthSet, complement, eventually, intersection, union
+from roadproof.world.motion import State
+
+search = settings(
+    max_examples=2000,
+    deadline=None,
+    derandomize=True,
+    database=None,
+    phases=[Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
+real_until, real_reaching = truth.until, truth._reaching
+real_signs, real_quadratic, real_starts = piecewise._signs, signals._quadratic, signals.starts_of
+
+
+def classic_until(left, low, high, right):
+    """Asks for left from 0 on, not from low on."""
+    start = truth.always(Fraction(0), low, left) if low > 0 else truth.ALWAYS
+    return intersection([start, real_until(left, low, high, right)])
+
+
+def greedy_until(left, low, high, right):
+    """Asks for left at the end, too."""
+    return real_until(left, low, high, intersection([left, right]))
+
+
+def until_that_needs_no_left(left, low, high, right):
+    return eventually(low, high, right)
+
+
+def until_that_forgets_the_end(left, low, high, right):
+    """The witness must lie inside the interval of left, so not at its open end."""
+    return union([right_now(low, right), real_until(left, low, high, intersection([left, right]))])
+
+
+def right_now(low, right):
+    return eventually(low, low, right)
+
+
+def unclipped_until(left, low, high, right):
+    """Measures high from the instant low instead of from 0."""
+    return real_until(left, low, None if high is None else high + low, right)
+
+
+def open_reach(low, high, spans):
+    """F loses its closed ends."""
+    shrunk = [Span(Cut(b.point, True), None if e is None else Cut(e.point, False)) for b, e in spans]
+    return real_reaching(low, high, [s for s in shrunk if s.end is None or s.begin < s.end])
+
+
+def backward_reach(low, high, spans):
+    """Shifts by the wrong sign."""
+    found = []
+    for begin, end in spans:
+        first = Cut(moved(begin.point, low), begin.after)
+        found.append(
+            Span(first, None if end is None or high is None else Cut(moved(end.point, high), end.after))
+        )
+    return found
+
+
+def short_reach(low, high, spans):
+    """The window cut to its low end."""
+    return real_reaching(low, high if high is None else low, spans)
+
+
+def weak_always(low, high, body):
+    """Looks at the closed window's inside only."""
+    opened = TruthSet(tuple(complement(body).cuts))
+    spans = [s for s in opened.spans() if s.end is None or s.begin.point != s.end.point]
+    return complement(union([eventually(low, high, truth._covered([s], 1)) for s in spans]))
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "fault"),
+    [
+        (exact, "until", classic_until),
+        (exact, "until", greedy_until),
+        (exact, "until", until_that_needs_no_left),
+        (exact, "until", until_that_forgets_the_end),
+        (exact, "until", unclipped_until),
+        (truth, "_reaching", open_reach),
+        (truth, "_reaching", backward_reach),
+        (truth, "_reaching", short_reach),
+        (exact, "always", weak_always),
+        (exact, "intersection", union),
+        (exact, "complement", lambda body: TruthSet(body.cuts[1:] or (truth.START,))),
+    ],
+    ids=lambda x: getattr(x, "__name__", None) if callable(x) else "",
+)
+def test_a_faulty_operator_is_noticed(monkeypatch, module, name, fault):
+    monkeypatch.setattr(module, name, fault)
+    caught = next((case for case in every_small_case() if disagreement_on_sets(*case) is not None), None)
+    assert caught is not None
+    monkeypatch.undo()
+    assert disagreement_on_sets(*caught) is None
+
+
+def open_roots(p, start, end):
+    """A root counts as what comes after it."""
+    return [(point, after, after) for point, _, after in real_signs(p, start, end)]
+
+
+def crossing_tangents(p, start, end):
+    """Every root is taken to change the sign."""
+    found = real_signs(p, start, end)
+    sign, seen = found[0][2], found[:1]
+    for point, at, _ in found[1:]:
+        sign = -sign
+        seen.append((point, at, sign))
+    return seen
+
+
+def roots_at_the_end(p, start, end):
+    """The piece is taken to last one root too long: its start counts as strictly inside."""
+    found = real_signs(p, start, end)
+    return [(found[0][0], found[0][2], found[0][2]), *found[1:]]
+
+
+def full_square(position, speed, acceleration, begin):
+    """a·t² for a/2·t²."""
+    return real_quadratic(position, speed, 2 * acceleration, begin)
+
+
+def left_continuous(motion):
+    """A knot belongs to the piece that ends there, one piece late."""
+    states = real_starts(motion)
+    late = [State(*vars(s).values()) for s in states]
+    for i in range(1, len(late)):
+        late[i] = State(
+            late[i].time,
+            late[i].s,
+            late[i].d,
+            late[i].v_lon,
+            late[i].v_lat,
+            states[i - 1].a_lon,
+            late[i].a_lat,
+        )
+    return tuple(late)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "fault"),
+    [
+        (piecewise, "_signs", open_roots),
+        (piecewise, "_signs", crossing_tangents),
+        (piecewise, "_signs", roots_at_the_end),
+        (signals, "_quadratic", full_square),
+        (signals, "starts_of", left_continuous),
+        (piecewise, "greatest", piecewise.least),
+        (comparison, "TRUE_SIGNS", {**comparison.TRUE_SIGNS, ">=": frozenset({1})}),
+        (comparison, "MIRRORED", {op: op for op in comparison.MIRRORED}),
+        (comparison, "ZERO", frozenset()),
+    ],
+    ids=lambda x: getattr(x, "__name__", None) if callable(x) else "",
+)
+def test_a_faulty_comparison_is_noticed(monkeypatch, module, name, fault):
+    monkeypatch.setattr(module, name, fault)
+    wrong = lambda case: disagreement_on_drive(*case) not in (None, "doubtful")  # noqa: E731
+    comparison, drive = find(st.tuples(comparisons, drives), wrong, settings=search)
+    monkeypatch.undo()
+    assert disagreement_on_drive(comparison, drive) is None

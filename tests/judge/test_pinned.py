@@ -1,0 +1,38 @@
+"""The judge against a reading by definition, on random truth sets and random drives; and mutants."""
+
+from hypothesis import HealthCheck, assume, given, settings
+
+from judge.cases import comparisons, drives, every_small_case, formulas, opaque_cases
+from judge.pinning import disagreement_on_drive, disagreement_on_sets
+
+quiet = settings(
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+)
+
+
+def test_operators_on_all_small_truth_sets():
+    assert [case for case in every_small_case() if disagreement_on_sets(*case) is not None] == []
+
+
+@settings(quiet, max_examples=200)
+@given(opaque_cases())
+def test_operators_on_truth_sets(case):
+    assert disagreement_on_sets(*case) is None
+
+
+@settings(quiet, max_examples=250)
+@given(comparisons, drives)
+def test_comparisons_on_drives(comparison, drive):
+    found = disagreement_on_drive(comparison, drive)
+    assume(found != "doubtful")
+    assert found is None
+
+
+@settings(quiet, max_examples=150)
+@given(formulas(comparisons, leaves=4), drives)
+def test_formulas_on_drives(formula, drive):
+    found = disagreement_on_drive(formula, drive)
+    assume(found != "doubtful")
+    assert found is None
