@@ -10,7 +10,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.monitor import Batch, Monitor, compile
-from roadproof.monitor.compiled import Convention
+from roadproof.monitor.answers import Convention
 from roadproof.monitor.recursive import Reading, Trace
 
 DT = Fraction(1, 25)

@@ -14,7 +14,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.logic.rewrite import with_values
 from roadproof.monitor import Batch, compile
-from roadproof.monitor.compiled import Convention
+from roadproof.monitor.answers import Convention
 from roadproof.monitor.recursive import Reading, answer
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import apply_definition

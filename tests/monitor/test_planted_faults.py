@@ -10,7 +10,7 @@ from monitor.cases import IN_LANE, ON_MAIN, boolean_differences, interval, margi
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.monitor import arithmetic, boolean, compiled, semantics
+from roadproof.monitor import answers, arithmetic, boolean, compiled, semantics
 from roadproof.monitor.batch import Array
 from roadproof.monitor.semantics import View
 
@@ -85,7 +85,8 @@ def negation_keeps_the_view(patch: pytest.MonkeyPatch) -> None:
 
 
 def weak_is_strong(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(compiled, "_views", lambda _: (View.STRONG, View.STRONG))
+    for module in (compiled, answers):
+        patch.setattr(module, "views", lambda _: (View.STRONG, View.STRONG))
 
 
 def empty_windows_fail_always(patch: pytest.MonkeyPatch) -> None:

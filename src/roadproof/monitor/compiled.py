@@ -8,19 +8,29 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula, Named
 from roadproof.logic.rewrite import bounds_of, terms_of, without_names
+from roadproof.monitor.answers import (
+    Answer,
+    Convention,
+    Margins,
+    Verdicts,
+    When,
+    check_starts,
+    no_margin,
+    read_bits,
+    store_margin,
+    views,
+)
 from roadproof.monitor.arithmetic import Program, margin_program
-from roadproof.monitor.batch import Array, Batch, Integers, inside
-from roadproof.monitor.boolean import BITS, TRUTH, observe_truth, pack, packed_inside, unpack
+from roadproof.monitor.batch import Array, Batch, Integers
+from roadproof.monitor.boolean import BITS, TRUTH, observe_truth, pack, packed_inside
 from roadproof.monitor.robustness import (
     MARGIN,
     as_margin,
@@ -28,52 +38,7 @@ from roadproof.monitor.robustness import (
     observe_margins,
     trace_blocks,
 )
-from roadproof.monitor.semantics import Evaluation, View
-
-Convention: TypeAlias = Literal["truncated", "clip"]
-When: TypeAlias = Literal["start", "all"]
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What is known of a formula: ``true`` for every continuation, ``false`` for every, or neither.
-
-    Shape (traces,) at the start of each trace, or (time, traces), where neither holds after the end.
-    """
-
-    true: NDArray[np.bool_]
-    false: NDArray[np.bool_]
-
-    @property
-    def undecided(self) -> NDArray[np.bool_]:
-        return ~(self.true | self.false)
-
-
-@dataclass(frozen=True)
-class Verdicts:
-    """Answers by the name of the formula, and of named sub-formulas at all samples if asked for."""
-
-    convention: Convention
-    answers: Mapping[str, Answer]
-    named: Mapping[Named, Answer]
-
-
-@dataclass(frozen=True)
-class Margin:
-    """The margin lies in [low, high] whatever comes after the trace; with ``clip`` they are equal.
-
-    Shape as in ``Answer``; NaN after the end of a trace.
-    """
-
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Margins:
-    convention: Convention
-    margins: Mapping[str, Margin]
-    named: Mapping[Named, Margin]
+from roadproof.monitor.semantics import Evaluation
 
 
 @dataclass(frozen=True)
@@ -128,15 +93,15 @@ class Monitor:
         bounds that are no multiple of the step, and for signals and lanes that the batch has not.
         """
         seen = self.observe(batch, threads=threads) if isinstance(batch, Batch) else batch
-        _check_starts(starts, seen.lengths)
+        check_starts(starts, seen.lengths)
         shape = (seen.samples, -(-len(seen.lengths) // BITS))
         end = packed_inside(seen.lengths, seen.samples)
         evaluation = Evaluation(TRUTH, seen.leaves, end, seen.dt, shape, self.states)
 
         def answer(formula: Formula, when: When) -> Answer:
-            strong, weak = (evaluation.value(formula, view) for view in _views(semantics))
-            true = _read_bits(strong, seen.lengths, when, starts)
-            return Answer(true, _read_bits(~weak, seen.lengths, when, starts))
+            strong, weak = (evaluation.value(formula, view) for view in views(semantics))
+            true = read_bits(strong, seen.lengths, when, starts)
+            return Answer(true, read_bits(~weak, seen.lengths, when, starts))
 
         return Verdicts(
             semantics,
@@ -155,20 +120,20 @@ class Monitor:
         samples_in_block: int = 24_000,
     ) -> Margins:
         """The margin of every formula; arguments and errors as in ``evaluate``."""
-        _check_starts(starts, batch.lengths)
+        check_starts(starts, batch.lengths)
         given = _given(batch)
         comparisons = tuple(self._comparisons(given))
         program = margin_program(comparisons)
-        margins = {name: _no_margin(batch, at) for name in self.plain}
-        named_margins = {name: _no_margin(batch, "all") for name in self.named} if named else {}
+        margins = {name: no_margin(batch, at) for name in self.plain}
+        named_margins = {name: no_margin(batch, "all") for name in self.named} if named else {}
 
         def measure_block(columns: slice) -> None:
             evaluation = self._margin_evaluation(batch, given, comparisons, program, columns)
             begin = None if starts is None else starts[columns]
             for name, formula in self.plain.items():
-                _store(margins[name], evaluation, formula, semantics, batch, columns, at, begin)
+                store_margin(margins[name], evaluation, formula, semantics, batch, columns, at, begin)
             for node, made in named_margins.items():
-                _store(made, evaluation, self.named[node], semantics, batch, columns, "all", begin)
+                store_margin(made, evaluation, self.named[node], semantics, batch, columns, "all", begin)
 
         with ThreadPoolExecutor(threads) as pool:
             for _ in pool.map(measure_block, trace_blocks(batch, samples_in_block)):
@@ -263,52 +228,3 @@ def _shown(formula: Formula) -> str:
             )
         case _:
             return "…"
-
-
-def _views(convention: Convention) -> tuple[View, View]:
-    return (View.CLIP, View.CLIP) if convention == "clip" else (View.STRONG, View.WEAK)
-
-
-def _check_starts(starts: Integers | None, lengths: Integers) -> None:
-    if starts is None:
-        return
-    if starts.shape != lengths.shape or (starts < 0).any() or (starts >= lengths).any():
-        raise InputError("starts must name one sample inside each trace")
-
-
-def _read_bits(words: Array, lengths: Integers, when: When, starts: Integers | None) -> NDArray[np.bool_]:
-    traces = len(lengths)
-    if when == "all":
-        return unpack(words, traces) & inside(lengths, len(words))
-    if starts is None:
-        first: NDArray[np.bool_] = unpack(words[:1], traces)[0]
-        return first
-    index = np.arange(traces)
-    bits = words[starts, index // BITS] >> (index % BITS).astype(np.uint64)
-    return np.asarray(bits & np.uint64(1), dtype=np.bool_)
-
-
-def _no_margin(batch: Batch, when: When) -> Margin:
-    shape = (batch.traces,) if when == "start" else (batch.samples, batch.traces)
-    return Margin(np.full(shape, np.nan), np.full(shape, np.nan))
-
-
-def _store(
-    margin: Margin,
-    evaluation: Evaluation,
-    formula: Formula,
-    convention: Convention,
-    batch: Batch,
-    columns: slice,
-    when: When,
-    starts: Integers | None,
-) -> None:
-    for view, made in zip(_views(convention), (margin.low, margin.high), strict=True):
-        values = evaluation.value(formula, view)
-        if when == "all":
-            belongs = inside(batch.lengths[columns], len(values))
-            made[: len(values), columns] = np.where(belongs, values, np.nan)
-        elif starts is None:
-            made[columns] = values[0]
-        else:
-            made[columns] = values[starts, np.arange(values.shape[1])]

@@ -18,7 +18,6 @@ from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 
-from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of
@@ -142,8 +141,6 @@ class Evaluation:
 def interval_steps(interval: f.Interval, dt: Fraction) -> tuple[int, int | None]:
     """Both bounds in steps; None is unbounded. Raises ``InputError`` where they are no multiple of dt."""
     low, high = bounds_of(interval)
-    if low < 0 or (high is not None and high < low):
-        raise InputError(f"the interval [{low}, {high}] s must lie in the future and not be empty")
     return steps_of(low, dt), None if high is None else steps_of(high, dt)
 
 
