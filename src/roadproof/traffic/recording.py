@@ -106,6 +106,24 @@ def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
     return _replace(recording, changed | {"start": offsets(counts)})
 
 
+def join_vehicles(recording: Recording, guests: Recording) -> Recording:
+    """The recording with the vehicles of ``guests``, whose ids must all be greater, added at the end.
+
+    Both must have the same rate and lanes.
+    """
+    if (recording.rate, recording.lanes) != (guests.rate, guests.lanes):
+        raise ValueError("recordings of different roads or rates cannot be joined")
+    if recording.vehicles and guests.vehicle_id.min() <= recording.vehicle_id.max():
+        raise ValueError("the ids of the guests must be greater than those of the recording")
+    per_vehicle = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
+    changed: dict[str, Any] = {
+        name: np.concatenate((getattr(recording, name), getattr(guests, name)))
+        for name in (*per_vehicle, *SIGNALS, "occupancy", "lane", "zones")
+    }
+    changed["start"] = np.concatenate((recording.start, recording.start[-1] + guests.start[1:]))
+    return _replace(recording, changed)
+
+
 def offsets(counts: npt.NDArray[Any]) -> Integers:
     """0 and the running sums of ``counts``.
 
