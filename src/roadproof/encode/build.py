@@ -33,7 +33,7 @@ class Manners:
     """
 
     natural: bool = True
-    reach: Fraction = Fraction(150)
+    reach: Fraction = Fraction(80)
     collisions: bool = False
     straight: frozenset[str] = frozenset()
     margin: Fraction = Fraction(1, 10)

@@ -30,7 +30,11 @@ class SolverFacts:
 
 
 SOLVERS: Mapping[str, SolverFacts] = {
-    "highs": SolverFacts("HIGHS", "highspy", lambda limit, gap: {"time_limit": limit, "mip_rel_gap": gap}),
+    "highs": SolverFacts(
+        "HIGHS",
+        "highspy",
+        lambda limit, gap: {"time_limit": limit, "mip_rel_gap": gap, "mip_heuristic_effort": 0.3},
+    ),
     "scipy": SolverFacts(
         "SCIPY", "scipy", lambda limit, gap: {"scipy_options": {"time_limit": limit, "mip_rel_gap": gap}}
     ),

@@ -8,27 +8,21 @@ road: ``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, `
 import tomllib
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from importlib import resources
 from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any, cast, get_args
 
 from roadproof.errors import InputError
+from roadproof.shipped import shipped
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 from roadproof.world.vehicle import Range, Vehicle
 
 LARGEST_MODEL = 1_000_000
 
 
-def models_folder() -> Path:
-    """Where the models that come with roadproof lie: in the package, or beside it in a checkout."""
-    packed = Path(str(resources.files("roadproof"))) / "models"
-    return packed if packed.is_dir() else Path(__file__).resolve().parents[3] / "models"
-
-
 def names_of(kind: str) -> tuple[str, ...]:
     """The bundled models of a kind (``roads`` or ``vehicles``), sorted."""
-    return tuple(sorted(p.stem for p in (models_folder() / kind).glob("*.toml")))
+    return tuple(sorted(p.stem for p in (shipped("models") / kind).glob("*.toml")))
 
 
 def load_road(name_or_path: str | Path) -> Road:
@@ -76,7 +70,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
 
 def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Mapping[str, Any]]:
     path = Path(name_or_path)
-    bundled = models_folder() / kind / f"{name_or_path}.toml"
+    bundled = shipped("models") / kind / f"{name_or_path}.toml"
     if path.suffix != ".toml" and not path.is_file():
         if len(path.parts) != 1 or str(name_or_path) not in names_of(kind):
             raise InputError(
