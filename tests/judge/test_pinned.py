@@ -16,7 +16,7 @@ def test_operators_on_all_small_truth_sets():
     assert [case for case in every_small_case() if disagreement_on_sets(*case) is not None] == []
 
 
-@settings(quiet, max_examples=200)
+@settings(quiet, max_examples=120)
 @given(opaque_cases())
 def test_operators_on_truth_sets(case):
     assert disagreement_on_sets(*case) is None

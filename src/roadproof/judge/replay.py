@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
+from typing import Protocol, TypeAlias
 
 from roadproof.errors import UsageError
 from roadproof.judge.algebraic import Point, decimal
@@ -26,7 +27,27 @@ from roadproof.logic.terms import (
 )
 from roadproof.world.drive import Drive
 from roadproof.world.motion import State, state_at
-from roadproof.world.vehicle import Vehicle
+
+Range: TypeAlias = tuple[Fraction, Fraction]
+
+
+class Limits(Protocol):
+    """What a vehicle can do, in m/s and m/s²; |v_lat| is at most ``lateral_share`` of v_lon."""
+
+    @property
+    def v_lon(self) -> Range: ...
+
+    @property
+    def v_lat(self) -> Range: ...
+
+    @property
+    def a_lon(self) -> Range: ...
+
+    @property
+    def a_lat(self) -> Range: ...
+
+    @property
+    def lateral_share(self) -> Fraction: ...
 
 
 @dataclass(frozen=True)
@@ -77,7 +98,7 @@ def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
     return Overlap(a, b, *begin)
 
 
-def first_breach(drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction | None) -> Breach | None:
+def first_breach(drive: Drive, limits: Mapping[str, Limits], horizon: Fraction | None) -> Breach | None:
     """The first instant within [0, horizon] at which a vehicle leaves its limits, or None.
 
     Speeds and accelerations in their ranges, no reversing, |v_lat| <= lateral_share·v_lon. Raises
@@ -107,7 +128,7 @@ def boxes_overlap(a: str, b: str) -> Formula:
     return conjunction(*parts)
 
 
-def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
+def _rules(name: str, limits: Limits) -> Iterator[tuple[str, Formula]]:
     """Every limit in words and as a formula."""
     zero = number(0, (1, -1))
     yield from _bounded("v_lon", name, limits.v_lon, "m/s")
@@ -121,9 +142,7 @@ def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
     yield f"|v_lat| <= {limits.lateral_share}·v_lon (heading)", inside
 
 
-def _bounded(
-    signal: SignalName, name: str, limits: tuple[Fraction, Fraction], unit: str
-) -> Iterator[tuple[str, Formula]]:
+def _bounded(signal: SignalName, name: str, limits: Range, unit: str) -> Iterator[tuple[str, Formula]]:
     bounds: tuple[tuple[Comparison, Fraction], ...] = ((">=", limits[0]), ("<=", limits[1]))
     for op, limit in bounds:
         bound = Number(limit, SIGNAL_DIMENSIONS[signal])

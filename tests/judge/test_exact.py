@@ -1,0 +1,272 @@
+"""The judge on written-out drives, on the bundled library, and on input that is wrong."""
+
+import random
+import time
+from fractions import Fraction
+
+import pytest
+
+from roadproof.errors import InputError, UsageError
+from roadproof.judge.algebraic import real_roots
+from roadproof.judge.exact import judge
+from roadproof.judge.signals import AbstractSignals
+from roadproof.judge.truth import ALWAYS, NEVER, interval, union
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.spec.bind import bind, default_values
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import bundled_library
+from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.road import Lanelet, Road, pairs
+
+LIBRARY = bundled_library()
+ROAD = Road(
+    "two lanes",
+    (
+        Lanelet("m1", "main-1", "main", "main", (None, None), (Fraction(0), Fraction(7, 2))),
+        Lanelet("m2", "main-2", "main", "main", (None, None), (Fraction(7, 2), Fraction(7))),
+    ),
+    pairs([("main-1", "main-2")]),
+)
+SQRT2 = real_roots((-2, 0, 1))[1][0]
+
+
+def motion(s=0, d=0, v_lon=0, v_lat=0, pieces=(), last=(0, 0)):
+    """``pieces`` are (duration, a_lon, a_lat)."""
+    made = [Piece(Fraction(h), Fraction(a), Fraction(b)) for h, a, b in pieces]
+    state = [Fraction(x) for x in (s, d, v_lon, v_lat)]
+    final = Piece(None, Fraction(last[0]), Fraction(last[1]))
+    return Motion(Fraction(9, 2), Fraction(9, 5), *state, (*made, final))
+
+
+def bound(text, set_name="base", lane="main-1", **options):
+    query = read_claim(LIBRARY.select(set_name, options), text)
+    lanes = dict.fromkeys(query.lanes, lane)
+    return bind(query.formula, ROAD, lanes, default_values(LIBRARY))
+
+
+def truth(text, drive, **options):
+    formula = bound(f"given A, B: vehicle: {text}", **options)
+    return judge(formula, drive).truth(formula)
+
+
+def span(low, high, closed="[]"):
+    return interval(Fraction(low), None if high is None else Fraction(high), closed)
+
+
+def alone(**state):
+    return Drive({"A": motion(**state)})
+
+
+def test_a_tangent_root_is_one_instant():
+    drive = alone(s=1, v_lon=-2, last=(2, 0))  # s = (t - 1)²
+    assert truth("s(A) <= 0 m", drive) == span(1, 1)
+    assert truth("s(A) < 0 m", drive) == NEVER
+    assert truth("s(A) >= 0 m", drive) == ALWAYS
+    assert truth("s(A) > 0 m", drive) == union([span(0, 1, "[)"), span(1, None, "()")])
+    assert truth("F[1,1] s(A) = 0 m", drive) == span(0, 0)
+    assert truth("F[0,1] s(A) = 0 m", drive) == span(0, 1)
+
+
+def test_windows_that_end_on_roots():
+    drive = alone(v_lon=0, last=(1, 0))  # s = t²/2 reaches 1 at √2
+    assert truth("s(A) >= 1 m", drive) == interval(SQRT2, None)
+    assert truth("F[0,1.5] s(A) >= 1 m", drive) == ALWAYS
+    assert truth("F[0,1.4] s(A) >= 1 m", drive).at(Fraction(1, 50)) is True
+    assert truth("F[0,1.4] s(A) >= 1 m", drive).at(Fraction(1, 100)) is False
+    assert truth("s(A) >= 2 m", drive) == span(2, None)
+    assert truth("F[0,2] s(A) >= 2 m", drive) == ALWAYS
+    assert truth("F[0,2] s(A) > 2 m", drive) == span(0, None, "()")
+    assert truth("G[0,2] s(A) < 2 m", drive) == NEVER
+    assert truth("G[0,2] s(A) <= 2 m", drive) == span(0, 0)
+
+
+def test_a_knot_belongs_to_the_piece_that_begins_there():
+    drive = alone(pieces=[(1, 2, 0), (1, -1, 0)])
+    assert truth("a_lon(A) > 0 m/s^2", drive) == span(0, 1, "[)")
+    assert truth("a_lon(A) < 0 m/s^2", drive) == span(1, 2, "[)")
+    assert truth("a_lon(A) = 0 m/s^2", drive) == span(2, None)
+    assert truth("v_lon(A) >= 2 m/s", drive) == span(1, 1)
+
+
+def test_simultaneous_switches():
+    drive = alone(pieces=[(1, 1, 0)], last=(0, 0))
+    assert truth("a_lon(A) > 0 m/s^2 U v_lon(A) >= 1 m/s", drive) == ALWAYS
+    assert truth("a_lon(A) > 0 m/s^2 U v_lon(A) > 1 m/s", drive) == NEVER
+    assert truth("(a_lon(A) > 0 m/s^2) U[0,0.5] (a_lon(A) <= 0 m/s^2)", drive) == span("1/2", None)
+
+
+def test_until_asks_for_left_inside_its_window_only():
+    # a_lon > 0 on [1, 2) only; v_lon reaches 1 at 2.
+    drive = alone(pieces=[(1, 0, 0), (1, 1, 0)])
+    assert truth("(a_lon(A) > 0 m/s^2) U[1,3] (v_lon(A) >= 1 m/s)", drive).at(Fraction(0))
+    assert not truth("(a_lon(A) > 0 m/s^2) U[0,3] (v_lon(A) >= 1 m/s)", drive).at(Fraction(0))
+
+
+def test_the_last_piece_lasts_for_ever():
+    assert truth("G v_lon(A) >= 0 m/s", alone(v_lon=100, last=(Fraction(-1, 1000), 0))) == NEVER
+    assert truth("G v_lon(A) >= 0 m/s", alone(v_lon=100)) == ALWAYS
+    assert truth("F s(A) < 0 m", alone(v_lon=100, last=(Fraction(-1, 1000), 0))) == ALWAYS
+    assert truth("G F s(A) > 1000000 m", alone(v_lon=1)) == ALWAYS
+
+
+def test_maximum_and_powers():
+    drive = alone(v_lon=-1, last=(1, 0))  # v = t - 1
+    assert truth("max(0 m/s, v_lon(A)) > 0 m/s", drive) == span(1, None, "()")
+    assert truth("max(v_lon(A), -v_lon(A)) <= 1 m/s", drive) == span(0, 2)
+    # (t - 1)^4 = 4 at 1 + √2
+    assert str(truth("v_lon(A)^4 >= 4 * 1 m/s * 1 m/s * 1 m/s * 1 m/s", drive)) == "[2.414214 ± 0.000001, ∞)"
+
+
+def test_inverse_is_infinite_at_zero():
+    drive = alone(v_lon=-1, last=(1, 0))  # v = t - 1
+    one = f.Compare(t.Inverse(t.Signal("v_lon", "A")), ">=", t.number(2))
+    assert judge(one, drive).truth(one) == span(1, "3/2")
+    both = f.Compare(t.Inverse(t.Signal("v_lon", "A")), ">=", t.Inverse(t.Signal("v_lon", "A")))
+    strict = f.Compare(both.left, ">", both.right)
+    assert judge(both, drive).truth(both) == ALWAYS
+    assert judge(strict, drive).truth(strict) == NEVER
+    below = f.Compare(t.number(0), ">", t.Inverse(t.Signal("v_lon", "A")))
+    assert judge(below, drive).truth(below) == span(0, 1, "[)")
+
+
+def constant_speeds(**speeds):
+    return Drive(
+        {
+            name: motion(v_lon=speeds.get(f"{name}_lon", 0), v_lat=speeds.get(f"{name}_lat", 0))
+            for name in ("A", "B")
+        }
+    )
+
+
+def lies_at(term, value, drive, **options):
+    """``value`` (m) is the value of ``term`` to the last digit given, half a digit either way."""
+    half = Fraction(1, 2 * 10 ** len(value.partition(".")[2]))
+    low, high = Fraction(value) - half, Fraction(value) + half
+    claim = f"{term} >= {float(low):.6f} m and {term} <= {float(high):.6f} m"
+    return truth(claim, drive, **options) == ALWAYS
+
+
+@pytest.mark.parametrize(
+    ("rear", "front", "distance"),
+    [("30", "24", "73.6500"), ("20", "33", "0.0000"), ("0", "0", "1.6500"), ("35", "35", "65.6708")],
+)
+def test_longitudinal_rss_distance(rear, front, distance):
+    drive = constant_speeds(A_lon=rear, B_lon=front)
+    assert lies_at("dRSS_lon(v_lon(A), v_lon(B))", distance, drive)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "paper", "signed"),
+    [
+        ("0", "0", "1.0800", "1.0800"),
+        ("1", "-1", "4.1467", "4.1467"),
+        ("-1", "3/2", "0.0000", "0.0000"),
+        ("-2", "-1", "1.5467", "1.1433"),
+        ("-3", "-3", "7.0800", "5.6100"),
+    ],
+)
+def test_lateral_rss_distance(left, right, paper, signed):
+    literal = constant_speeds(A_lat=left, B_lat=right)
+    mirrored = constant_speeds(A_lat=-Fraction(left), B_lat=-Fraction(right))
+    for reading, distance in (("paper", paper), ("signed", signed)):
+        assert lies_at("dRSS_lat(v_lat(A), v_lat(B))", distance, literal, lateral_rss=reading)
+        for sign, drive in (("literal", literal), ("rss", mirrored)):
+            options = {"lateral_rss": reading, "lateral_sign": sign}
+            assert lies_at("lateralDistance(A, B)", distance, drive, **options)
+
+
+def random_drive(seed, names, count=11):
+    rnd = random.Random(seed)
+    drive = {}
+    for i, name in enumerate(names):
+        pieces = [
+            (
+                Fraction(rnd.randint(4, 9), 10),
+                Fraction(rnd.randint(-30, 30), 10),
+                Fraction(rnd.randint(-5, 5), 10),
+            )
+            for _ in range(count)
+        ]
+        drive[name] = motion(70 * i, rnd.randint(2, 5), 30 - 5 * i, 0, pieces)
+    return Drive(drive)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_robust_predicates_are_true_where_the_boolean_ones_are(seed):
+    drive = random_drive(seed, ("A", "B"), count=5)
+    plain = truth("rssViolation(A, B)", drive)
+    assert plain == truth("rssViolation(A, B)", drive, rss_form="robust")
+    assert plain == truth("rssViolation(B, A)", drive)
+
+
+def test_a_scenario_on_a_drive_made_for_it():
+    # SV closes in at 8 m/s on POV, 100 m ahead in the same lane: scenario 4, danger at 51.5 m of gap.
+    drive = Drive({"SV": motion(0, 3, 30), "POV": motion(100, 3, 22)})
+    scenario = bound("scenario_4(SV, POV, L)")
+    judgement = judge(scenario, drive)
+    assert judgement.holds
+    names = {part.name: found for part, found in judgement.named()}
+    assert names["scenario_4"].at(Fraction(0))
+    assert str(names["aheadOf"]).startswith("[0, 11.9375]")
+    assert judge(bound("scenario_4(SV, POV, L) -> dangerArises(SV, POV)"), drive).holds
+    assert not judge(bound("scenario_3(SV, POV, L)"), drive).holds
+    assert not judge(bound("scenario_4(SV, POV, L)", lane="main-2"), drive).holds
+    assert judge(bound("scenario_3(POV, SV, L)"), drive).holds
+
+
+def test_three_vehicles_are_judged_quickly():
+    scenario = bound("scenario_2(SV, POV1, POV2, L)")
+    seconds = []
+    for seed in range(5):
+        drive = random_drive(seed, ("SV", "POV1", "POV2"))
+        begin = time.perf_counter()
+        judge(scenario, drive)
+        seconds.append(time.perf_counter() - begin)
+    assert min(seconds) < 0.1
+
+
+def test_given_truth_sets_come_first_at_any_depth():
+    atom = f.Named("danger", ("SV", "POV"), f.TRUE)
+    formula = f.Eventually(f.FOREVER, f.And((atom, f.TRUE)))
+    assert judge(formula, None, {atom: NEVER}).truth(formula) == NEVER
+    assert judge(formula, None, {atom: span(3, 4)}).truth(formula) == span(0, 4)
+    assert judge(formula).holds
+
+
+def test_abstract_signals_are_constant_on_pieces():
+    speed = t.Signal("v_lon", "A")
+    trace = AbstractSignals({speed: ((Fraction(0), Fraction(3)), (Fraction(2), Fraction(1)))}, {})
+    formula = f.Compare(speed, ">", t.number(2))
+    assert judge(formula, trace).truth(formula) == span(0, 2, "[)")
+    with pytest.raises(UsageError, match="no d of vehicle=A"):
+        judge(f.Compare(t.Signal("d", "A"), ">", t.number(2)), trace)
+
+
+def test_parts_that_were_not_judged_are_refused():
+    with pytest.raises(UsageError, match="no judged part"):
+        judge(f.TRUE).truth(f.FALSE)
+
+
+@pytest.mark.parametrize(
+    ("formula", "message"),
+    [
+        (f.Occupies("A", "m1"), "bound to a road"),
+        (f.Compare(t.Parameter("rho"), ">", t.number(0)), "'rho' has no value"),
+        (f.Compare(t.Sum((t.Inverse(t.number(1)), t.number(1))), ">", t.number(0)), "stand alone"),
+        (f.Compare(t.Quotient(t.number(1), t.number(0)), ">", t.number(0)), "other than zero"),
+        (f.Compare(t.Quotient(t.number(1), t.Signal("s", "A")), ">", t.number(0)), "same at all times"),
+        (f.Compare(t.Power(t.Signal("s", "A"), 10**9), ">", t.number(0)), "exponent=1000000000"),
+        (f.Compare(t.Power(t.Signal("s", "A"), 20), ">", t.number(0)), "degree="),
+        (f.Eventually(f.Interval(t.Parameter("minSafe"), None), f.TRUE), "still holds a parameter"),
+        (f.Always(f.Interval(t.number(2), t.number(1)), f.TRUE), "low=2, high=1"),
+    ],
+)
+def test_formulas_that_are_not_bound_are_refused(formula, message):
+    with pytest.raises(InputError, match=message):
+        judge(formula, alone(v_lon=1, last=(1, 0)))
+
+
+def test_a_missing_vehicle_is_named():
+    with pytest.raises(UsageError, match="vehicle=B, but the drive has A"):
+        judge(bound("given A, B: vehicle: s(B) > 0 m"), alone())

@@ -1,0 +1,104 @@
+"""Replay: overlaps of boxes and breaches of limits, at their first instant."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import pytest
+
+from judge.test_exact import motion
+from roadproof.errors import UsageError
+from roadproof.judge.algebraic import real_roots
+from roadproof.judge.replay import first_breach, first_overlap, states_at
+from roadproof.world.drive import Drive
+
+ONE, TEN = Fraction(1), Fraction(10)
+
+
+@dataclass(frozen=True)
+class Car:
+    v_lon: tuple = (Fraction(0), Fraction(50))
+    v_lat: tuple = (Fraction(-2), Fraction(2))
+    a_lon: tuple = (Fraction(-8), Fraction(4))
+    a_lat: tuple = (Fraction(-2), Fraction(2))
+    lateral_share: Fraction = Fraction(1, 10)
+
+
+def test_states_are_exact():
+    drive = Drive({"A": motion(1, 2, 3, 0, [(Fraction(1, 3), 3, 0)], last=(0, 6))})
+    state = states_at(drive, Fraction(4, 3))["A"]
+    assert (state.s, state.d) == (1 + 1 + Fraction(1, 6) + 4, 2 + 3)
+    assert (state.v_lon, state.v_lat, state.a_lon, state.a_lat) == (4, 6, 0, 6)
+
+
+def test_boxes_overlap_when_the_rear_one_catches_up():
+    # The rear of B is at 14.5 m, A's front starts at 0 and gains 5 m/s: they touch at 2.9 s.
+    drive = Drive({"A": motion(0, 2, 25), "B": motion(19, 2, 20)})
+    found = first_overlap(drive, TEN)
+    assert (found.first, found.second, found.time, found.after) == ("A", "B", Fraction(29, 10), True)
+    assert "overlap from 2.9 s on" in str(found)
+    assert first_overlap(drive, Fraction(29, 10)) is None  # touching is no overlap
+    assert first_overlap(drive, Fraction(291, 100)) is not None
+    assert first_overlap(drive, None) is not None
+
+
+def test_boxes_beside_each_other_do_not_overlap():
+    beside = Drive({"A": motion(0, 2, 25), "B": motion(19, 2 + Fraction(9, 5), 20)})
+    assert first_overlap(beside, None) is None
+    nearer = Drive({"A": motion(0, 2, 25), "B": motion(19, 2 + Fraction(179, 100), 20)})
+    assert first_overlap(nearer, None).time == Fraction(29, 10)
+
+
+def test_overlap_from_the_start_and_the_first_of_several():
+    drive = Drive({"A": motion(0, 2), "B": motion(50, 2, -10), "C": motion(1, 3)})
+    found = first_overlap(drive, TEN)
+    assert (found.first, found.second, found.time, found.after) == ("A", "C", 0, False)
+
+
+def test_an_irrational_overlap():
+    # A gains t²/2 on the 1 m between the boxes.
+    drive = Drive({"A": motion(0, 2, last=(1, 0)), "B": motion(Fraction(11, 2), 2)})
+    assert first_overlap(drive, TEN).time == real_roots((-2, 0, 1))[1][0]
+
+
+@pytest.mark.parametrize(
+    ("state", "rule", "time", "after"),
+    [
+        ({"v_lon": 49, "last": (1, 0)}, "v_lon <= 50", 1, True),
+        ({"v_lon": 4, "last": (-2, 0)}, "v_lon >= 0", 2, True),
+        ({"v_lon": 20, "pieces": [(2, 0, 0), (1, 5, 0)]}, "a_lon <= 4", 2, False),
+        ({"v_lon": 20, "pieces": [(2, 0, 0), (1, -9, 0)]}, "a_lon >= -8", 2, False),
+        ({"v_lon": 30, "pieces": [(1, 0, 0), (1, 0, 3)]}, "a_lat <= 2", 1, False),
+        ({"v_lon": 30, "last": (0, 1)}, "v_lat <= 2", 2, True),
+        ({"v_lon": 30, "last": (0, -1)}, "v_lat >= -2", 2, True),
+        ({"v_lon": 10, "v_lat": 1, "last": (-1, 0)}, "lateral_share|heading", 0, True),
+        ({"v_lon": 10, "v_lat": -1, "last": (-1, 0)}, "lateral_share|heading", 0, True),
+        ({"v_lon": 5, "v_lat": 1}, "heading", 0, False),
+    ],
+)
+def test_a_breach_is_found_at_its_first_instant(state, rule, time, after):
+    drive = Drive({"A": motion(**state)})
+    found = first_breach(drive, {"A": Car()}, TEN)
+    assert any(part in found.rule for part in rule.split("|"))
+    assert (found.vehicle, found.time, found.after) == ("A", time, after)
+    if after:
+        assert first_breach(drive, {"A": Car()}, Fraction(time)) is None
+
+
+def test_reversing_is_a_breach_even_where_the_range_allows_it():
+    roomy = Car(v_lon=(Fraction(-5), Fraction(50)))
+    assert "no reversing" in first_breach(Drive({"A": motion(v_lon=-1)}), {"A": roomy}, ONE).rule
+
+
+def test_a_quiet_drive_breaks_nothing():
+    drive = Drive({"A": motion(0, 2, 25, 0, [(2, 1, Fraction(1, 2)), (2, 1, Fraction(-1, 2))])})
+    assert first_breach(drive, {"A": Car()}, None) is None
+
+
+def test_wrong_questions():
+    drive = Drive({"A": motion(), "B": motion(20)})
+    with pytest.raises(UsageError, match="vehicle=B has no limits"):
+        first_breach(drive, {"A": Car()}, ONE)
+    with pytest.raises(UsageError, match="horizon=-1"):
+        first_overlap(drive, -ONE)
+    with pytest.raises(UsageError, match="time=-1"):
+        states_at(drive, -ONE)
