@@ -7,8 +7,6 @@ from roadproof.judge import exact
 from roadproof.judge.algebraic import bounds
 from roadproof.logic import formula as f
 
-EPSILON = 1e-6
-
 
 def disagreement_on_sets(formula, given):
     """A sub-formula and instant on which the judge is not what the definition says, or None. Exact."""
@@ -26,11 +24,14 @@ def disagreement_on_sets(formula, given):
     return None
 
 
-def disagreement_on_drive(formula, drive):
-    """As above on a drive, in floats; ``"doubtful"`` where floats cannot tell."""
-    floats = FloatDrive(drive, EPSILON)
-    critical, doubtful = distinct(map(float, critical_times(formula, floats.switches)), EPSILON)
-    reference = Reference(floats.truth, critical, EPSILON)
+def disagreement_on_drive(formula, drive, epsilon=1e-6):
+    """As above on a drive, in floats; ``"doubtful"`` where floats cannot tell.
+
+    Times within ``epsilon`` seconds are one to the reference.
+    """
+    floats = FloatDrive(drive, epsilon)
+    critical, doubtful = distinct(map(float, critical_times(formula, floats.switches)), epsilon)
+    reference = Reference(floats.truth, critical, epsilon)
     expected = {p: [reference.holds(p, r) for r in reference.regions] for p in f.subformulas(formula)}
     if doubtful or floats.doubtful:
         return "doubtful"

@@ -206,8 +206,8 @@ class FloatDrive:
 
     def _settled(self, x):
         """Zero where floats cannot tell; an example that is close to that is doubtful."""
-        self.doubtful |= 1e-7 < abs(x) < 1e-5
-        return 0.0 if abs(x) <= 1e-7 else x
+        self.doubtful |= 1e-10 < abs(x) < 1e-7
+        return 0.0 if abs(x) <= 1e-10 else x
 
     def switches(self, compare):
         found = set(self.knots)

@@ -8,7 +8,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadproof.judge.algebraic import Root, bounds, compare, decimal, moved, real_roots
+from roadproof.judge.algebraic import Root, approximate, bounds, compare, decimal, moved, real_roots
 
 small = st.integers(-6, 6)
 rationals = st.fractions(-4, 4, max_denominator=12)
@@ -110,3 +110,8 @@ def test_decimals(point, places, shown):
 def test_decimal_of_a_root_keeps_its_bound():
     assert decimal(square_root(2), 6) == "1.414214 ± 0.000001"
     assert decimal(square_root(2, -1), 3) == "-1.414 ± 0.001"
+
+
+def test_floats_for_pictures():
+    assert approximate(square_root(2)) == pytest.approx(2**0.5, abs=1e-15)
+    assert approximate(Fraction(3, 4)) == 0.75

@@ -1,9 +1,11 @@
 """The judge against a reading by definition, on random truth sets and random drives; and mutants."""
 
+import pytest
 from hypothesis import HealthCheck, assume, given, settings
 
 from judge.cases import comparisons, drives, every_small_case, formulas, opaque_cases
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
+from judge.test_exact import bound, random_drive
 
 quiet = settings(
     deadline=None,
@@ -36,3 +38,9 @@ def test_formulas_on_drives(formula, drive):
     found = disagreement_on_drive(formula, drive)
     assume(found != "doubtful")
     assert found is None
+
+
+@pytest.mark.parametrize(("seed", "scenario"), [(0, 1), (2, 4), (3, 5), (4, 8)])
+def test_scenarios_on_drives(seed, scenario):
+    drive = random_drive(seed, ("SV", "POV"), count=3)
+    assert disagreement_on_drive(bound(f"scenario_{scenario}(SV, POV, L)"), drive, epsilon=1e-7) is None

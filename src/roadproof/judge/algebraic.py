@@ -75,6 +75,12 @@ def bounds(point: Point, width: Fraction) -> tuple[Fraction, Fraction]:
     return point.low, point.high
 
 
+def approximate(point: Point) -> float:
+    """A float near ``point``, for pictures; never for a decision."""
+    low, high = bounds(point, Fraction(1, 2**60))
+    return float((low + high) / 2)
+
+
 def decimal(point: Point, places: int = 6) -> str:
     """A decimal with its bound, or the number alone where it is exact.
 
