@@ -1,5 +1,6 @@
 """The judge on written-out drives, on the bundled library, and on input that is wrong."""
 
+import pickle
 import random
 import time
 from fractions import Fraction
@@ -241,6 +242,12 @@ def test_abstract_signals_are_constant_on_pieces():
     assert judge(formula, trace).truth(formula) == span(0, 2, "[)")
     with pytest.raises(UsageError, match="no d of vehicle=A"):
         judge(f.Compare(t.Signal("d", "A"), ">", t.number(2)), trace)
+
+
+def test_a_judgement_travels_between_processes():
+    formula = bound("scenario_4(SV, POV, L)")
+    judgement = judge(formula, random_drive(1, ("SV", "POV")))
+    assert pickle.loads(pickle.dumps(judgement)) == judgement
 
 
 def test_parts_that_were_not_judged_are_refused():

@@ -73,7 +73,7 @@ def judge(
     signals = DriveSignals(drive) if isinstance(drive, Drive) else drive
     judging = _Judging(Courses(signals or AbstractSignals({}, {})), given)
     judging.visit(formula)
-    return Judgement(formula, MappingProxyType(judging.truths))
+    return Judgement(formula, judging.truths)
 
 
 @dataclass(frozen=True)

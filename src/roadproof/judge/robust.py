@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
-from types import MappingProxyType
 from typing import Any, TypeAlias, assert_never
 
 import numpy as np
@@ -67,9 +66,7 @@ def robustness(formula: Formula, drive: Drive, dt: Fraction, horizon: Fraction) 
     sampling = _Sampling(Courses(DriveSignals(drive)), dt, last + 1)
     sampling.visit(formula)
     margins = {part: values[: wanted + 1] for part, values in sampling.known.items()}
-    return Robustness(
-        formula, dt, horizon, last * dt, _has_endless_window(formula), MappingProxyType(margins)
-    )
+    return Robustness(formula, dt, horizon, last * dt, _has_endless_window(formula), margins)
 
 
 def steps(time: Fraction, dt: Fraction, what: str = "interval bound") -> int:
