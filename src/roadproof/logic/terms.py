@@ -161,6 +161,29 @@ def children(term: Term) -> tuple[Term, ...]:
             assert_never(term)
 
 
+def with_children(term: Term, new: tuple[Term, ...]) -> Term:
+    """``term`` with its direct sub-terms replaced, in the order of ``children``."""
+    match term:
+        case Number() | Parameter() | Variable() | Signal() | Size():
+            return term
+        case Sum():
+            return Sum(new)
+        case Product():
+            return Product(new)
+        case Maximum():
+            return Maximum(new)
+        case Minimum():
+            return Minimum(new)
+        case Power(_, exponent):
+            return Power(new[0], exponent)
+        case Quotient():
+            return Quotient(new[0], new[1])
+        case Inverse():
+            return Inverse(new[0])
+        case _:
+            assert_never(term)
+
+
 def leaves(term: Term) -> Iterator[Leaf]:
     """Every leaf of ``term``, from left to right."""
     if isinstance(term, Number | Parameter | Variable | Signal | Size):
@@ -172,25 +195,9 @@ def leaves(term: Term) -> Iterator[Leaf]:
 
 def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:
     """``term`` with each leaf replaced by ``replace(leaf)``."""
-    match term:
-        case Number() | Parameter() | Variable() | Signal() | Size():
-            return replace(term)
-        case Sum(terms):
-            return Sum(tuple(replace_leaves(t, replace) for t in terms))
-        case Product(factors):
-            return Product(tuple(replace_leaves(f, replace) for f in factors))
-        case Power(base, exponent):
-            return Power(replace_leaves(base, replace), exponent)
-        case Quotient(numerator, denominator):
-            return Quotient(replace_leaves(numerator, replace), replace_leaves(denominator, replace))
-        case Maximum(terms):
-            return Maximum(tuple(replace_leaves(t, replace) for t in terms))
-        case Minimum(terms):
-            return Minimum(tuple(replace_leaves(t, replace) for t in terms))
-        case Inverse(inner):
-            return Inverse(replace_leaves(inner, replace))
-        case _:
-            assert_never(term)
+    if isinstance(term, Number | Parameter | Variable | Signal | Size):
+        return replace(term)
+    return with_children(term, tuple(replace_leaves(child, replace) for child in children(term)))
 
 
 def constant_value(term: Term) -> Fraction | None:
