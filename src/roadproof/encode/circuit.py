@@ -85,7 +85,13 @@ def fold(circuit: Circuit[T], leaf: Callable[[T], S], both: Callable[[list[S]], 
 
 def replace_leaves(circuit: Circuit[T], change: Callable[[T], Circuit[S]]) -> Circuit[S]:
     """``circuit`` with each leaf replaced by a circuit."""
-    return fold(circuit, change, all_of, any_of)
+    def both(parts: list[Circuit[S]]) -> Circuit[S]:
+        return all_of(parts)
+
+    def either(parts: list[Circuit[S]]) -> Circuit[S]:
+        return any_of(parts)
+
+    return fold(circuit, change, both, either)
 
 
 def evaluate(circuit: Circuit[T], truth: Callable[[T], bool]) -> bool:

@@ -95,7 +95,7 @@ def approximate(fact: ColumnFact, box: Box, side: Side, pieces: int = 1) -> Circ
     options = [_square(factor, form, box, side, pieces) for factor, form in squares]
     cases = []
     for chosen in product(*(o[0] for o in options)):
-        total, conditions = linear, []
+        total, conditions = linear, list[Bound]()
         for piece, window in chosen:
             total, conditions = total + piece, [*conditions, *window]
         cases.append(all_of([*(Leaf(c) for c in conditions), _leaf(total, fact, box)]))

@@ -204,7 +204,9 @@ def _run(
         constraints.append(matrix[below] @ x <= high[below])
     program = cvxpy.Problem(cvxpy.Minimize(weights @ x), constraints)
     try:
-        program.solve(solver=known.cvxpy_name, **known.options(time_limit, gap))
+        program.solve(  # type: ignore[no-untyped-call]
+            solver=known.cvxpy_name, **known.options(time_limit, gap)
+        )
     except cvxpy.error.SolverError:
         return Solution("unknown")
     if program.status in ("infeasible", "infeasible_or_unbounded"):

@@ -1,0 +1,88 @@
+"""A problem as an SMT query: exact polynomials, exact rationals, nothing approximated."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal, TypeAlias, assert_never
+
+from roadproof.encode.circuit import All, AnyOf, Leaf, nodes
+from roadproof.encode.polynomial import Polynomial
+from roadproof.encode.problem import ColumnFact, Problem, Row
+from roadproof.solve.smt import Session
+
+Status: TypeAlias = Literal["found", "infeasible", "unknown"]
+
+
+@dataclass(frozen=True)
+class ExactSolution:
+    """Rational values of the columns where ``status`` is found; no values where one is irrational."""
+
+    status: Status
+    values: tuple[Fraction, ...] = ()
+
+
+def solve_exactly(problem: Problem, time_limit: float | None = None) -> ExactSolution:
+    """Ask z3 for a solution; ``infeasible`` is an exact no."""
+    session = Session()
+    session.tell("\n".join(script(problem)))
+    answer = session.check_plainly(time_limit)
+    if answer != "sat":
+        return ExactSolution("infeasible" if answer == "unsat" else "unknown")
+    values = [v for v in session.values([f"c{k}" for k in range(len(problem.columns))]) if v is not None]
+    if len(values) < len(problem.columns):
+        return ExactSolution("unknown")
+    return ExactSolution("found", tuple(Fraction(v) for v in values))
+
+
+def script(problem: Problem) -> Iterator[str]:
+    """The problem as SMT-LIB 2 commands, column k being the constant ``ck``."""
+    for k, column in enumerate(problem.columns):
+        yield f"(declare-const c{k} Real) ; {column.name}"
+        yield f"(assert (<= {_number(column.low)} c{k} {_number(column.high)}))"
+    for row in problem.rows:
+        yield from _row(row)
+    names: dict[int, str] = {}
+    for node in nodes(problem.circuit):
+        name = f"n{len(names)}"
+        names[id(node)] = name
+        match node:
+            case Leaf(fact):
+                body = _fact(fact)
+            case All(parts):
+                body = f"(and true {' '.join(names[id(p)] for p in parts)})"
+            case AnyOf(parts):
+                body = f"(or false {' '.join(names[id(p)] for p in parts)})"
+            case _:
+                assert_never(node)
+        yield f"(define-fun {name} () Bool {body})"
+    yield f"(assert {names[id(problem.circuit)]})"
+
+
+def _row(row: Row) -> Iterator[str]:
+    total = _polynomial(Polynomial({(column,): factor for column, factor in row.terms.items()}))
+    if row.low is not None and row.low == row.high:
+        yield f"(assert (= {total} {_number(row.low)}))"
+        return
+    if row.low is not None:
+        yield f"(assert (>= {total} {_number(row.low)}))"
+    if row.high is not None:
+        yield f"(assert (<= {total} {_number(row.high)}))"
+
+
+def _fact(fact: ColumnFact) -> str:
+    return f"({'>' if fact.strict else '>='} {_polynomial(fact.polynomial)} 0.0)"
+
+
+def _polynomial(polynomial: Polynomial[int]) -> str:
+    summands = []
+    for monomial, factor in polynomial.terms.items():
+        variables = [f"c{column}" for column in monomial]
+        summands.append(f"(* {_number(factor)} {' '.join(variables)})" if variables else _number(factor))
+    return "0.0" if not summands else summands[0] if len(summands) == 1 else f"(+ {' '.join(summands)})"
+
+
+def _number(value: Fraction) -> str:
+    text = f"{abs(value.numerator)}.0"
+    if value.denominator != 1:
+        text = f"(/ {text} {value.denominator}.0)"
+    return f"(- {text})" if value < 0 else text
