@@ -16,14 +16,14 @@ def cut_in() -> Drive:
     return Drive(
         {
             "SV": motion(10, F(13, 5), 30),
-            "POV": motion(80, F(61, 10), 27, (F(8, 5), 0, F(-5, 4)), (F(8, 5), 0, F(5, 4))),
+            "POV": motion(90, F(61, 10), 25, (F(8, 5), 0, F(-5, 4)), (F(8, 5), 0, F(5, 4))),
         }
     )
 
 
 def braking() -> Drive:
     """POV ahead in the lane of SV brakes until it is too near: scenario 4."""
-    return Drive({"SV": motion(5, F(13, 5), 28), "POV": motion(80, F(13, 5), 28, (F(2), -4, 0))})
+    return Drive({"SV": motion(5, F(13, 5), 29), "POV": motion(80, F(13, 5), 28, (F(2), -4, 0))})
 
 
 def cut_out() -> Drive:
@@ -32,6 +32,6 @@ def cut_out() -> Drive:
         {
             "SV": motion(5, F(13, 5), 25),
             "POV1": motion(70, F(13, 5), 25, (F(8, 5), 0, F(5, 4)), (F(8, 5), 0, F(-5, 4))),
-            "POV2": motion(135, F(13, 5), 18),
+            "POV2": motion(105, F(13, 5), 18),
         }
     )

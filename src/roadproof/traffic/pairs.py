@@ -50,7 +50,7 @@ def common_pairs(recording: Recording, eligible: Bools) -> Pairs:
     ``eligible`` has one entry a vehicle. Pairs come in order of (first, second).
     """
     chosen = np.flatnonzero(eligible)
-    ways = np.unique(recording.direction)
+    ways = np.unique(recording.direction) if recording.vehicles else np.zeros(1, np.int64)
     made = [_meeting(recording, chosen[recording.direction[chosen] == way]) for way in ways]
     one, other = (np.concatenate([m[k] for m in made]) for k in (0, 1))
     first, second = np.minimum(one, other), np.maximum(one, other)

@@ -28,7 +28,7 @@ class Traffic:
     flow: float = 3350.0
     truck_share: float = 0.18
     section: float = 420.0
-    lane_width: float = 3.5
+    lane_width: float = 3.75
     rate: int = 25
 
     def __post_init__(self) -> None:

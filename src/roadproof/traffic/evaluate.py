@@ -1,0 +1,241 @@
+"""The highD experiment on one recording (SPEC §7): which disturbance matches which scenario."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from roadproof.logic.terms import SignalName
+from roadproof.monitor.answers import Convention
+from roadproof.monitor.compiled import Monitor, Observation
+from roadproof.traffic.disturbances import (
+    NEVER,
+    CutTriples,
+    Disturbances,
+    cut_triples,
+    find_disturbances,
+)
+from roadproof.traffic.pairs import triples_of
+from roadproof.traffic.questions import PAIR, TRIPLE, Questions
+from roadproof.traffic.recording import Bools, Integers, Recording
+from roadproof.traffic.traces import NEEDED, gather
+
+SIGNALS: tuple[SignalName, ...] = (*NEEDED, "a_lon")
+OTHER: Mapping[Convention, Convention] = {"truncated": "clip", "clip": "truncated"}
+
+
+@dataclass(frozen=True)
+class Match:
+    """One row of matches.csv; ``min_danger`` is an index into the settings', ids are the recording's."""
+
+    sv: int
+    pov: int
+    pov2: int | None
+    lane: str
+    start_frame: int
+    end_frame: int
+    min_danger: int
+    set_name: str
+    scenario: int
+
+    @property
+    def pair(self) -> tuple[int, int]:
+        """The unordered pair that the match counts for: SV and its POV, or POV2 where there is one."""
+        other = self.pov if self.pov2 is None else self.pov2
+        return min(self.sv, other), max(self.sv, other)
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One disturbance trace: an unordered pair under one minDanger. Lanes are those at its start."""
+
+    first: int
+    second: int
+    min_danger: int
+    start_frame: int
+    end_frame: int
+    first_lane: str
+    second_lane: str
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What was found in one recording. ``violating``: pairs with an rssViolation in some frame.
+
+    ``undecided`` counts questions whose answer depends on what comes after the trace, ``differing``
+    those that the other convention for the end of a trace answers otherwise.
+    """
+
+    recording: str
+    vehicles: int
+    samples: int
+    violating: int
+    triples: int
+    asked: int
+    undecided: int
+    differing: int
+    traces: tuple[Trace, ...]
+    matches: tuple[Match, ...]
+    notes: tuple[str, ...]
+
+
+def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
+    """Filter, cut and match all pairs, and all triples for the scenarios of three cars."""
+    if recording.rate != questions.rate:
+        raise ValueError(f"questions for {questions.rate} Hz put to a recording of {recording.rate} Hz")
+    found = find_disturbances(recording, questions)
+    tally = _Tally(questions)
+    matches = list(_match_pairs(recording, questions, found, tally))
+    cut = None
+    if questions.triple_start is not None:
+        cut = _candidates(recording, questions, found)
+        matches += _match_triples(recording, questions, cut, tally)
+    return Findings(
+        recording=recording.name,
+        vehicles=recording.vehicles,
+        samples=len(recording.s),
+        violating=len(found.pairs),
+        triples=0 if cut is None else len(cut.triples),
+        asked=tally.asked,
+        undecided=tally.undecided,
+        differing=tally.differing,
+        traces=tuple(_traces(recording, found)),
+        matches=tuple(sorted(matches, key=_order)),
+        notes=recording.notes,
+    )
+
+
+def _order(match: Match) -> tuple[object, ...]:
+    return (match.sv, match.pov, match.pov2 or 0, match.min_danger, match.set_name, match.scenario)
+
+
+@dataclass
+class _Tally:
+    questions: Questions
+    asked: int = 0
+    undecided: int = 0
+    differing: int = 0
+
+    def ask(self, monitor: Monitor, seen: Observation, arises: Bools) -> Mapping[str, Bools]:
+        """For each formula which traces, of those where danger ``arises``, satisfy it."""
+        convention = self.questions.settings.convention
+        answers = monitor.evaluate(seen, convention).answers
+        others = monitor.evaluate(seen, OTHER[convention]).answers
+        true = {}
+        for name, answer in answers.items():
+            true[name] = answer.true & arises
+            self.asked += int(np.count_nonzero(arises))
+            self.undecided += int(np.count_nonzero(answer.undecided & arises))
+            self.differing += int(np.count_nonzero((answer.true != others[name].true) & arises))
+        return true
+
+
+def _match_pairs(
+    recording: Recording, questions: Questions, found: Disturbances, tally: _Tally
+) -> Iterator[Match]:
+    end = np.max(found.end, axis=0, initial=-1)
+    chosen = np.flatnonzero(end >= 0)
+    if not len(chosen) or not questions.pairs:
+        return
+    pairs, start = found.pairs.choose(chosen), found.start[chosen]
+    lanes = {
+        "L": _lane_at(recording, pairs.first, start),
+        "L1": _lane_at(recording, pairs.second, start),
+    }
+    vehicles = dict(zip(PAIR, (pairs.first, pairs.second), strict=True))
+    ends = tuple(x[chosen] for x in found.end)
+    ids = recording.vehicle_id
+    for k, name, hits in _ask_all(recording, questions, questions.pairs, vehicles, start, ends, lanes, tally):
+        asked = questions.asked[name]
+        for p in hits:
+            pair = int(ids[pairs.first[p]]), int(ids[pairs.second[p]])
+            sv, pov = pair if asked.sv == "first" else pair[::-1]
+            lane = recording.lanes[lanes[asked.lane][p]].name
+            yield Match(sv, pov, None, lane, int(start[p]), int(ends[k][p]), k, asked.set_name, asked.number)
+
+
+def _candidates(recording: Recording, questions: Questions, found: Disturbances) -> CutTriples:
+    """Triples in which danger arises and whose start allows a scenario of three cars."""
+    cut = cut_triples(questions, found, triples_of(recording, found.pairs, found.meeting))
+    assert questions.triple_start is not None
+    if not len(cut.triples):
+        return cut
+    lanes = {"L": _lane_at(recording, cut.triples.sv, cut.start)}
+    batch = gather(
+        recording,
+        dict(zip(TRIPLE, (cut.triples.sv, cut.triples.pov1, cut.triples.pov2), strict=True)),
+        cut.start,
+        cut.start,
+        SIGNALS,
+        lanes,
+        questions.lane_atoms,
+    )
+    return cut.choose(questions.triple_start.evaluate(batch).answers["start"].true)
+
+
+def _match_triples(
+    recording: Recording, questions: Questions, cut: CutTriples, tally: _Tally
+) -> Iterator[Match]:
+    triples, start = cut.triples, cut.start
+    if not len(triples):
+        return
+    lanes = {"L": _lane_at(recording, triples.sv, start)}
+    vehicles = dict(zip(TRIPLE, (triples.sv, triples.pov1, triples.pov2), strict=True))
+    ids = recording.vehicle_id
+    hits = _ask_all(recording, questions, questions.triples, vehicles, start, cut.end, lanes, tally)
+    for k, name, places in hits:
+        asked = questions.asked[name]
+        for p in places:
+            sv, pov, pov2 = (int(ids[x[p]]) for x in (triples.sv, triples.pov1, triples.pov2))
+            lane = recording.lanes[lanes["L"][p]].name
+            yield Match(
+                sv, pov, pov2, lane, int(start[p]), int(cut.end[k][p]), k, asked.set_name, asked.number
+            )
+
+
+def _ask_all(
+    recording: Recording,
+    questions: Questions,
+    monitors: tuple[Monitor, ...],
+    vehicles: Mapping[str, Integers],
+    start: Integers,
+    ends: tuple[Integers, ...],
+    lanes: Mapping[str, Integers],
+    tally: _Tally,
+) -> Iterator[tuple[int, str, Integers]]:
+    """For each minDanger and formula the traces that satisfy it, each cut at its own end."""
+    last = np.max(ends, axis=0)
+    batch = gather(recording, vehicles, start, last, SIGNALS, lanes, questions.lane_atoms)
+    seen: Observation | None = None
+    for k, (monitor, end) in enumerate(zip(monitors, ends, strict=True)):
+        seen = monitor.observe(batch, known=seen)
+        arises = end >= 0
+        lengths = np.where(arises, end - start + 1, batch.lengths)
+        for name, true in tally.ask(monitor, seen.cut(lengths), arises).items():
+            yield k, name, np.flatnonzero(true)
+
+
+def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:
+    lane: Integers = recording.lane[recording.start[vehicle] + frame - recording.first_frame[vehicle]]
+    return lane
+
+
+def _traces(recording: Recording, found: Disturbances) -> Iterator[Trace]:
+    names = [*(lane.name for lane in recording.lanes), ""]
+    pairs, ids = found.pairs, recording.vehicle_id
+    known = np.flatnonzero(found.start != NEVER)
+    first_lane, second_lane = np.full(len(pairs), -1), np.full(len(pairs), -1)
+    for lane, vehicle in ((first_lane, pairs.first), (second_lane, pairs.second)):
+        lane[known] = _lane_at(recording, vehicle[known], found.start[known])
+    for p in range(len(pairs)):
+        for k, end in enumerate(found.end):
+            if end[p] >= 0:
+                yield Trace(
+                    int(ids[pairs.first[p]]),
+                    int(ids[pairs.second[p]]),
+                    k,
+                    int(found.start[p]),
+                    int(end[p]),
+                    names[first_lane[p]],
+                    names[second_lane[p]],
+                )

@@ -1,0 +1,279 @@
+"""What an evaluation writes: one file a recording, so that a killed run resumes, then the whole.
+
+Every file appears whole or not at all, and the whole is made from the files of the recordings alone:
+a run that was killed and started again ends with the same bytes as one that was not.
+"""
+
+import csv
+import hashlib
+import json
+import os
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, TextIO
+
+from roadproof.errors import InputError
+from roadproof.traffic.evaluate import Findings, Match, Trace
+from roadproof.traffic.questions import Settings
+
+RECORDING_SCHEMA = "roadproof/recording-findings/1"
+RESULTS_SCHEMA = "roadproof/traffic-results/1"
+MATCH_COLUMNS = tuple(
+    "recording sv pov pov2 lane start_frame end_frame min_danger set scenario".split()  # noqa: SIM905
+)
+PAIR_COLUMNS = tuple(
+    "recording first second min_danger start_frame end_frame first_lane second_lane".split()  # noqa: SIM905
+)
+
+
+def fingerprint(settings: Settings, stamp: list[list[int]]) -> str:
+    """Changes whenever the settings, the specification or a file of the recording do."""
+    told = {
+        "schema": RECORDING_SCHEMA,
+        "settings": describe(settings),
+        "specification": {name: source.text for name, source in sorted(settings.library.sources.items())},
+        "files": stamp,
+    }
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def describe(settings: Settings) -> dict[str, Any]:
+    """The settings as plain data."""
+    return {
+        "sets": list(settings.sets),
+        "minDanger": [str(x) for x in settings.min_danger],
+        "scenarios": list(settings.scenarios),
+        "classes": list(settings.classes),
+        "convention": settings.convention,
+        "options": dict(sorted(settings.options.items())),
+        "parameters": {k: str(v) for k, v in sorted(settings.values.items()) if k != "minDanger"},
+    }
+
+
+def save_findings(path: Path, findings: Findings, mark: str) -> None:
+    """Write the findings of one recording; ``mark`` is their fingerprint."""
+    told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "findings": asdict(findings)}
+    write_whole(path, lambda file: file.write(json.dumps(told, sort_keys=True) + "\n"))
+
+
+def load_findings(path: Path, mark: str) -> Findings | None:
+    """Findings that were saved under the same fingerprint, else None."""
+    try:
+        told = json.loads(path.read_text())
+        if told["schema"] != RECORDING_SCHEMA or told["fingerprint"] != mark:
+            return None
+        found = told["findings"]
+        made = {name: tuple(kind(**row) for row in found[name]) for name, kind in _ROWS.items()}
+        return Findings(**{**found, **made, "notes": tuple(found["notes"])})
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+_ROWS: Mapping[str, Callable[..., Any]] = {"traces": Trace, "matches": Match}
+
+
+def write_whole(path: Path, write: Callable[[TextIO], object]) -> None:
+    """Let ``write`` fill a file that appears whole or not at all. Raises ``InputError``."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(descriptor, "w", encoding="utf-8", newline="") as file:
+                write(file)
+            os.chmod(temporary, 0o644)
+            os.replace(temporary, path)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror}); choose another folder") from None
+
+
+@dataclass
+class Row:
+    """One row of the results table (paper, Table of results): a spec set under one minDanger.
+
+    Counts are of unordered pairs. ``matching`` is by scenarios of two cars, as in the paper;
+    ``matching_with_three`` counts those of three cars too. ``together`` counts how many traces
+    match two scenarios at once.
+    """
+
+    min_danger: Fraction
+    set_name: str
+    traces: int = 0
+    matching: int = 0
+    matching_with_three: int = 0
+    scenarios: Counter[int] = field(default_factory=Counter)
+    together: Counter[tuple[int, int]] = field(default_factory=Counter)
+
+    @property
+    def recall(self) -> float | None:
+        """Matching traces by traces; None where there are none."""
+        return self.matching / self.traces if self.traces else None
+
+
+@dataclass
+class Totals:
+    """Everything that the tables need, added up recording by recording."""
+
+    settings: Settings
+    rows: list[Row]
+    recordings: int = 0
+    vehicles: int = 0
+    samples: int = 0
+    violating: int = 0
+    asked: int = 0
+    undecided: int = 0
+    differing: int = 0
+    unequal_3_4: list[tuple[str, int, int, str]] = field(default_factory=list)
+    broken: list[str] = field(default_factory=list)
+
+
+def begin_totals(settings: Settings) -> Totals:
+    """No recordings yet."""
+    return Totals(settings, [Row(m, s) for m in settings.min_danger for s in settings.sets])
+
+
+def add_findings(totals: Totals, findings: Findings) -> None:
+    """Count one recording, and check the facts of SPEC §6 on it."""
+    totals.recordings += 1
+    for name in ("vehicles", "samples", "violating", "asked", "undecided", "differing"):
+        setattr(totals, name, getattr(totals, name) + getattr(findings, name))
+    sets = totals.settings.sets
+    for index, row in enumerate(totals.rows):
+        k = index // len(sets)
+        traces = {(t.first, t.second): t for t in findings.traces if t.min_danger == k}
+        matched = _matched(findings, k, row.set_name)
+        _count(row, traces, matched)
+        _check(totals, findings, traces, matched, k, row.set_name)
+
+
+def _matched(findings: Findings, k: int, set_name: str) -> dict[tuple[int, int], set[int]]:
+    """The scenarios of each pair that matches some."""
+    matched: dict[tuple[int, int], set[int]] = {}
+    for match in findings.matches:
+        if match.min_danger == k and match.set_name == set_name:
+            matched.setdefault(match.pair, set()).add(match.scenario)
+    return matched
+
+
+def _count(
+    row: Row, traces: Mapping[tuple[int, int], Trace], matched: Mapping[tuple[int, int], set[int]]
+) -> None:
+    row.traces += len(traces)
+    row.matching_with_three += len(matched)
+    for numbers in matched.values():
+        row.matching += any(number % 8 != 2 for number in numbers)
+        row.scenarios.update(numbers)
+        row.together.update((i, j) for i in numbers for j in numbers if i < j)
+
+
+def _check(
+    totals: Totals,
+    findings: Findings,
+    traces: Mapping[tuple[int, int], Trace],
+    matched: Mapping[tuple[int, int], set[int]],
+    k: int,
+    set_name: str,
+) -> None:
+    """SPEC §6: matches are disturbances; a set matches all that the one before it does; s3 = s4."""
+    where = f"recording {findings.recording}, minDanger {totals.settings.min_danger[k]}, {set_name}"
+    totals.broken += [
+        f"{where}: {pair} matches but is no disturbance" for pair in matched if pair not in traces
+    ]
+    wider = {"base": "extA", "extA": "ext"}.get(set_name)
+    if wider in totals.settings.sets:
+        other = _matched(findings, k, wider)
+        lost = [p for p, numbers in matched.items() if not numbers <= other.get(p, set())]
+        totals.broken += [f"{where}: {pair} does not match as much in {wider}" for pair in lost]
+    if set_name == "base" and {3, 4} <= set(totals.settings.scenarios):
+        for pair, numbers in matched.items():
+            if (3 in numbers) != (4 in numbers):
+                straddles = traces[pair].first_lane != traces[pair].second_lane
+                totals.unequal_3_4.append((findings.recording, *pair, str(totals.settings.min_danger[k])))
+                totals.broken += (
+                    [] if straddles else [f"{where}: {pair} matches only one of scenarios 3 and 4"]
+                )
+
+
+def write_results(
+    folder: Path, settings: Settings, findings: Callable[[], Iterable[Findings]], failed: Mapping[str, str]
+) -> Totals:
+    """Write matches.csv, pairs.csv and results.json; ``findings`` gives the recordings, in order, anew.
+
+    Recordings are read one at a time. ``failed`` says which recordings are left out and why.
+    """
+    totals = begin_totals(settings)
+    for found in findings():
+        add_findings(totals, found)
+    write_whole(
+        folder / "matches.csv", lambda f: _write_csv(f, MATCH_COLUMNS, _match_rows(settings, findings()))
+    )
+    columns = (*PAIR_COLUMNS, *settings.sets)
+    write_whole(folder / "pairs.csv", lambda f: _write_csv(f, columns, _pair_rows(settings, findings())))
+    notes = {found.recording: list(found.notes) for found in findings() if found.notes}
+    told = {**as_json(totals), "notes": notes, "failed": dict(failed)}
+    write_whole(folder / "results.json", lambda f: f.write(json.dumps(told, indent=1) + "\n"))
+    return totals
+
+
+def as_json(totals: Totals) -> dict[str, Any]:
+    """The totals as plain data."""
+    names = ("recordings", "vehicles", "samples", "violating", "asked", "undecided", "differing")
+    return {
+        "schema": RESULTS_SCHEMA,
+        "settings": describe(totals.settings),
+        **{name: getattr(totals, name) for name in names},
+        "table": [
+            {
+                "minDanger": str(row.min_danger),
+                "set": row.set_name,
+                "traces": row.traces,
+                "matching": row.matching,
+                "matchingWithThreeCars": row.matching_with_three,
+                "recall": row.recall,
+                "recallWithoutInitSafe": row.matching / totals.violating if totals.violating else None,
+                "scenarios": {str(i): row.scenarios[i] for i in totals.settings.scenarios},
+                "together": {f"{i}-{j}": n for (i, j), n in sorted(row.together.items())},
+            }
+            for row in totals.rows
+        ],
+        "checks": {
+            "broken": totals.broken,
+            "scenario3And4Differ": [list(x) for x in totals.unequal_3_4],
+        },
+    }
+
+
+def _write_csv(file: TextIO, columns: tuple[str, ...], rows: Iterable[list[object]]) -> None:
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(rows)
+
+
+def _match_rows(settings: Settings, findings: Iterable[Findings]) -> Iterator[list[object]]:
+    for found in findings:
+        for m in found.matches:
+            pov2 = "" if m.pov2 is None else m.pov2
+            frames = (m.start_frame, m.end_frame, _decimal(settings.min_danger[m.min_danger]))
+            yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, m.set_name, m.scenario]
+
+
+def _pair_rows(settings: Settings, findings: Iterable[Findings]) -> Iterator[list[object]]:
+    for found in findings:
+        matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
+        for t in found.traces:
+            hits = [int(((t.first, t.second), t.min_danger, s) in matched) for s in settings.sets]
+            danger = _decimal(settings.min_danger[t.min_danger])
+            frames = (danger, t.start_frame, t.end_frame, t.first_lane, t.second_lane)
+            yield [found.recording, t.first, t.second, *frames, *hits]
+
+
+def _decimal(value: Fraction) -> str:
+    """0.6 for 3/5; a fraction that is no short decimal stays one."""
+    text = f"{float(value):g}"
+    return text if Fraction(text) == value else str(value)

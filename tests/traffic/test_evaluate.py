@@ -1,0 +1,174 @@
+"""The evaluation against the slow reference, on planted drives, and its invariants."""
+
+from collections import Counter
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from roadproof.errors import InputError, UsageError
+from roadproof.spec.library import Source, build_library, bundled_library
+from roadproof.traffic.evaluate import Findings, evaluate_recording
+from roadproof.traffic.plant import Place, plant
+from roadproof.traffic.questions import Questions, ask, default_settings
+from roadproof.traffic.recording import Recording, keep_vehicles
+from roadproof.traffic.simulate import Traffic
+from roadproof.traffic.synthetic import simulate
+from traffic.drives import braking, cut_in, cut_out
+from traffic.make_recording import Track, cruise, make_recording
+from traffic.reference import Reference, Row
+
+
+@pytest.fixture(scope="module")
+def questions() -> Questions:
+    return ask(default_settings(), 25)
+
+
+def rows_of(findings: Findings) -> list[Row]:
+    return [
+        (m.sv, m.pov, m.pov2, m.lane, m.start_frame, m.end_frame, m.min_danger, m.set_name, m.scenario)
+        for m in findings.matches
+    ]
+
+
+def planted_traffic(direction: int) -> tuple[Recording, dict[str, dict[str, int]]]:
+    """A short recording of few cars with three drives in it, and who is who in each."""
+    recording = simulate(Traffic(seconds=24, flow=1200, lane_width=3.5), seed=4)
+    who = {}
+    for k, (name, drive) in enumerate(
+        {"cut-in": cut_in(), "braking": braking(), "cut-out": cut_out()}.items()
+    ):
+        right = min(x.d[0] for x in recording.lanes if x.direction == direction and x.d)
+        start = -410.0 if direction == 1 else 10.0
+        recording, truth = plant(recording, drive, Place(direction, 20 + 190 * k, Fraction(6), start, right))
+        who[name] = dict(truth.vehicles)
+    return recording, who
+
+
+@pytest.mark.parametrize("direction", [1, 2])
+def test_against_the_reference(direction: int, questions: Questions) -> None:
+    recording, who = planted_traffic(direction)
+    recording = keep_vehicles(recording, recording.direction == direction)
+    findings = evaluate_recording(recording, questions)
+    reference = Reference(recording, questions.settings)
+    assert Counter(rows_of(findings)) == Counter(reference.matches())
+    found = [(t.first, t.second, t.min_danger, t.start_frame, t.end_frame) for t in findings.traces]
+    assert sorted(found) == sorted(reference.traces())
+    assert findings.violating == len(list(reference.pairs()))
+    assert len({m.scenario for m in findings.matches}) >= 4
+    # Planted drives are found at the right pair, scenario and start, in all sets.
+    cut, brake, out = who["cut-in"], who["braking"], who["cut-out"]
+    expected = {
+        (cut["SV"], cut["POV"], None, 20, 1),
+        (brake["SV"], brake["POV"], None, 210, 4),
+        (out["SV"], out["POV1"], out["POV2"], 400, 2),
+    }
+    for set_name in ("base", "extA", "ext"):
+        for k in (0, 1):
+            rows = {
+                (m.sv, m.pov, m.pov2, m.start_frame, m.scenario)
+                for m in findings.matches
+                if m.set_name == set_name and m.min_danger == k
+            }
+            assert expected <= rows
+
+
+def test_sets_grow_and_matches_are_disturbances(questions: Questions) -> None:
+    recording = simulate(Traffic(seconds=60, lane_width=3.5), seed=8)
+    findings = evaluate_recording(recording, questions)
+    assert len(findings.matches) > 50
+    traces = {(t.first, t.second, t.min_danger): t for t in findings.traces}
+    by_set = {name: set() for name in ("base", "extA", "ext")}
+    for m in findings.matches:
+        by_set[m.set_name].add((m.sv, m.pov, m.pov2, m.min_danger, m.scenario))
+        trace = traces[*m.pair, m.min_danger]
+        if m.pov2 is None:
+            assert (m.start_frame, m.end_frame) == (trace.start_frame, trace.end_frame)
+    assert by_set["base"] < by_set["extA"] < by_set["ext"]
+    # s3 = s4 in base, up to pairs that begin in different lanes (SPEC §6).
+    straddling = {key[:2] for key, t in traces.items() if t.first_lane != t.second_lane}
+    for k in (0, 1):
+        three, four = (
+            {(min(x[:2]), max(x[:2])) for x in by_set["base"] if x[3] == k and x[4] == number}
+            for number in (3, 4)
+        )
+        assert three ^ four <= straddling
+        assert three & four
+
+
+def test_start_and_end_by_hand(questions: Questions) -> None:
+    """SV closes in at 10 m/s from 200 m; the RSS distance of 30 and 20 m/s is 84.65 m beside the length."""
+    distance = 84.65
+    tracks = [Track(2, 5, cruise(0.0, 30.0, 400)), Track(2, 1, cruise(200.0, 20.0, 340))]
+    r = make_recording(tracks)
+    findings = evaluate_recording(r, questions)
+    # From frame 5 to 340 the gap of the fronts is 200 + 4·0.8 - 0.4·k at frame 5 + k.
+    first = next(k for k in range(400) if 203.2 - 0.4 * k <= 4.5 + distance)
+    assert 5 + first < 320
+    assert findings.violating == 1
+    starts = [(t.min_danger, t.start_frame, t.end_frame) for t in findings.traces]
+    assert starts == [(0, 5, 340), (1, 5, 340)]
+    assert {(m.sv, m.pov, m.scenario) for m in findings.matches if m.set_name == "base"} == {
+        (1, 2, 4),
+        (2, 1, 3),
+    }
+    # Cut off just before the violation there is no disturbance; with it, minDanger 0 alone.
+    for frames, ends in ((first, []), (first + 1, [0]), (first + 15, [0]), (first + 16, [0, 1])):
+        short = make_recording([Track(2, 5, cruise(0.0, 30.0, frames)), tracks[1]])
+        found = evaluate_recording(short, questions)
+        assert [t.min_danger for t in found.traces] == ends
+
+
+def test_start_needs_its_whole_window(questions: Questions) -> None:
+    """Safe for 15 samples only (0.56 s): no start there; for 16 samples (0.6 s): a start."""
+    for safe_samples, found in ((15, 0), (16, 1)):
+        rest = (-28.0, 30.0, 0.0, 0.0, 0.0)
+        rows = [(1000.0, *rest) for _ in range(safe_samples + 20)]
+        ahead = [(1150.0 if k < safe_samples else 1010.0, *rest) for k in range(safe_samples + 20)]
+        findings = evaluate_recording(make_recording([Track(2, 1, rows), Track(2, 1, ahead)]), questions)
+        assert sum(t.min_danger == 0 for t in findings.traces) == found
+
+
+def test_trucks_only_on_request(questions: Questions) -> None:
+    tracks = [Track(2, 1, cruise(0.0, 30.0, 300)), Track(2, 1, cruise(200.0, 20.0, 300), kind="Truck")]
+    r = make_recording(tracks)
+    assert evaluate_recording(r, questions).violating == 0
+    wide = ask(replace(questions.settings, classes=("Car", "Truck")), 25)
+    assert evaluate_recording(r, wide).violating == 1
+
+
+def test_prefilter_is_dropped_for_other_dangers(questions: Questions) -> None:
+    """With a danger of the user's own the pairs are all looked at: this one reaches 300 m."""
+    text = "def rssViolation_lon(a, b: vehicle) := s(b) - s(a) <= 300 m and s(a) - s(b) <= 300 m"
+    library = build_library([Source("mine.spec", text)], bundled_library())
+    settings = replace(questions.settings, library=library)
+    mine = ask(settings, 25)
+    assert questions.reach is not None
+    assert mine.reach is None
+    tracks = [Track(2, 1, cruise(0.0, 30.0, 500)), Track(2, 1, cruise(400.0, 20.0, 500))]
+    r = make_recording(tracks)
+    assert evaluate_recording(r, questions).violating == 0
+    assert evaluate_recording(r, mine).violating == 1
+
+
+def test_empty_and_lonely(questions: Questions) -> None:
+    r = make_recording([Track(2, 1, cruise(0.0, 30.0, 50))])
+    findings = evaluate_recording(r, questions)
+    assert (findings.violating, findings.traces, findings.matches) == (0, (), ())
+    none = keep_vehicles(r, np.zeros(1, bool))
+    assert evaluate_recording(none, questions).vehicles == 0
+
+
+def test_wrong_settings() -> None:
+    settings = default_settings()
+    with pytest.raises(UsageError, match="scenarios"):
+        replace(settings, scenarios=(25,))
+    with pytest.raises(UsageError, match="sets"):
+        replace(settings, sets=())
+    with pytest.raises(UsageError, match="minDanger"):
+        replace(settings, min_danger=(Fraction(-1),))
+    with pytest.raises(InputError, match=r"0\.6 s is no multiple of the time step"):
+        ask(settings, 7)
+    with pytest.raises(InputError, match="no spec set"):
+        ask(replace(settings, sets=("bass",)), 25)
