@@ -1,0 +1,216 @@
+"""Runs over several recordings: resumed after a kill, jobs, bad recordings, and what is written."""
+
+import csv
+import json
+import shutil
+from collections import Counter
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.traffic import experiment as module
+from roadproof.traffic import results
+from roadproof.traffic.evaluate import Findings, Match, Trace
+from roadproof.traffic.experiment import Experiment, run_experiment
+from roadproof.traffic.questions import default_settings
+from roadproof.traffic.results import add_findings, as_json, begin_totals
+from roadproof.traffic.simulate import Traffic
+from roadproof.traffic.sources import find_sources
+from roadproof.traffic.synthetic import simulate
+from roadproof.traffic.write_highd import write_highd
+
+US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("recordings")
+    for number in (1, 2, 3):
+        write_highd(simulate(Traffic(seconds=20, lane_width=3.5), seed=6, number=number), path)
+    return path
+
+
+def contents(out: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(out)): p.read_bytes() for p in sorted(out.rglob("*")) if p.is_file()}
+
+
+@pytest.fixture(scope="module")
+def undisturbed(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    out = tmp_path_factory.mktemp("undisturbed")
+    run_experiment(Experiment(folder, out, default_settings()))
+    return contents(out)
+
+
+def test_files_and_their_numbers(undisturbed: dict[str, bytes]) -> None:
+    assert set(undisturbed) == {
+        "matches.csv",
+        "pairs.csv",
+        "results.json",
+        *(f"recordings/{x}.json" for x in ("01", "02", "03")),
+    }
+    told = json.loads(undisturbed["results.json"])
+    assert told["schema"] == "roadproof/traffic-results/1"
+    assert told["recordings"] == 3
+    assert told["checks"]["broken"] == []
+    matches = list(csv.DictReader(undisturbed["matches.csv"].decode().splitlines()))
+    pairs = list(csv.DictReader(undisturbed["pairs.csv"].decode().splitlines()))
+    assert len(told["table"]) == 6
+    for row in told["table"]:
+        danger = {"0": "0", "3/5": "0.6"}[row["minDanger"]]
+        ours = [m for m in matches if (m["min_danger"], m["set"]) == (danger, row["set"])]
+        chosen = [p for p in pairs if p["min_danger"] == danger]
+        assert row["traces"] == len(chosen) > 0
+        two = {(m["recording"], *sorted((m["sv"], m["pov"]))) for m in ours if not m["pov2"]}
+        assert row["matching"] == len(two) > 0
+        assert row["recall"] == len(two) / len(chosen)
+        assert row["matchingWithThreeCars"] == sum(int(p[row["set"]]) for p in chosen)
+        for i, count in row["scenarios"].items():
+            who = {
+                (m["recording"], *sorted((m["sv"], m["pov2"] or m["pov"])))
+                for m in ours
+                if m["scenario"] == i
+            }
+            assert count == len(who)
+    assert set(Counter(m["recording"] for m in matches)) == {"01", "02", "03"}
+
+
+@pytest.mark.parametrize("moment", [1, 2, 3, 4, 5])
+def test_killed_and_started_again(
+    moment: int, folder: Path, undisturbed: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Killed while the ``moment``-th file is being put in its place: the next run ends the same."""
+    replace_file, calls = results.os.replace, [0]
+
+    def killed(source: str, target: Path) -> None:
+        calls[0] += 1
+        if calls[0] == moment:
+            raise KeyboardInterrupt
+        replace_file(source, target)
+
+    monkeypatch.setattr(results.os, "replace", killed)
+    with pytest.raises(KeyboardInterrupt):
+        run_experiment(Experiment(folder, tmp_path, default_settings()))
+    monkeypatch.setattr(results.os, "replace", replace_file)
+    assert not list(tmp_path.rglob(".*"))
+    (tmp_path / "recordings").mkdir(exist_ok=True)
+    (tmp_path / "recordings" / ".03.json.killed").write_text("{")  # what a hard kill may leave
+    told: list[str] = []
+    run_experiment(Experiment(folder, tmp_path, default_settings()), told.append)
+    (tmp_path / "recordings" / ".03.json.killed").unlink()
+    assert contents(tmp_path) == undisturbed
+    evaluated = [line for line in told if line.startswith("[")]
+    assert len(evaluated) == max(0, 4 - moment)
+
+
+def test_two_jobs_give_the_same_bytes(folder: Path, undisturbed: dict[str, bytes], tmp_path: Path) -> None:
+    run_experiment(Experiment(folder, tmp_path, default_settings(), jobs=2))
+    assert contents(tmp_path) == undisturbed
+
+
+def test_results_of_other_settings_or_files_are_not_reused(folder: Path, tmp_path: Path) -> None:
+    ours = tmp_path / "ours"
+    shutil.copytree(folder, ours)
+    (ours / "03_tracks.csv").unlink()
+    (ours / "03_tracksMeta.csv").unlink()
+    (ours / "03_recordingMeta.csv").unlink()
+    out = tmp_path / "out"
+    settings = default_settings()
+    run_experiment(Experiment(ours, out, settings))
+
+    def evaluated(chosen: object) -> int:
+        told: list[str] = []
+        run_experiment(Experiment(ours, out, chosen), told.append)  # type: ignore[arg-type]
+        return sum(line.startswith("[") for line in told)
+
+    assert evaluated(settings) == 0
+    assert evaluated(replace(settings, values={**settings.values, "rho": Fraction(1)})) == 2
+    assert evaluated(settings) == 2
+    write_highd(simulate(Traffic(seconds=21), seed=9, number=1), ours)
+    assert evaluated(settings) == 1
+    (out / "recordings" / "02.json").write_text('{"schema": "roadproof/recording-findings/1"')
+    assert evaluated(settings) == 1
+
+
+def test_bad_recordings(folder: Path, tmp_path: Path) -> None:
+    ours = tmp_path / "ours"
+    shutil.copytree(folder, ours)
+    text = (ours / "02_tracks.csv").read_text().splitlines()
+    (ours / "02_tracks.csv").write_text("\n".join(text[:-30]) + "\n")
+    with pytest.raises(InputError, match="02_tracks"):
+        run_experiment(Experiment(ours, tmp_path / "a", default_settings()))
+    assert not (tmp_path / "a" / "results.json").exists()
+    told: list[str] = []
+    outcome = run_experiment(
+        Experiment(ours, tmp_path / "b", default_settings(), keep_going=True), told.append
+    )
+    assert list(outcome.failed) == ["02"]
+    assert outcome.totals.recordings == 2
+    assert any("left out" in line for line in told)
+    assert "02" in json.loads((tmp_path / "b" / "results.json").read_text())["failed"]
+    for number in ("01", "03"):
+        (ours / f"{number}_tracks.csv").write_text("")
+    with pytest.raises(InputError, match="none could be used"):
+        run_experiment(Experiment(ours, tmp_path / "c", default_settings(), keep_going=True))
+
+
+def test_unwritable_output(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be written"):
+        run_experiment(Experiment(folder, tmp_path / "file" / "out", default_settings()))
+
+
+def match(sv: int, pov: int, set_name: str, scenario: int) -> Match:
+    return Match(sv, pov, None, "2", 1, 50, 0, set_name, scenario)
+
+
+@pytest.mark.parametrize(
+    ("matches", "lanes", "broken"),
+    [
+        ([match(1, 2, s, n) for s in ("base", "extA", "ext") for n in (3, 4)], ("2", "2"), None),
+        ([match(1, 2, s, 4) for s in ("base", "extA", "ext")], ("2", "3"), None),
+        ([match(1, 2, s, 4) for s in ("base", "extA", "ext")], ("2", "2"), "only one of scenarios 3 and 4"),
+        ([match(1, 2, "base", 1)], ("2", "2"), "does not match as much in extA"),
+        ([match(1, 2, s, 1) for s in ("extA", "base")], ("2", "2"), "does not match as much in ext"),
+        ([match(1, 5, s, 1) for s in ("base", "extA", "ext")], ("2", "2"), "is no disturbance"),
+    ],
+)
+def test_facts_are_checked(matches: list[Match], lanes: tuple[str, str], broken: str | None) -> None:
+    traces = (Trace(1, 2, 0, 1, 50, *lanes),)
+    totals = begin_totals(default_settings())
+    add_findings(totals, Findings("01", 9, 99, 1, 0, 1, 0, 0, traces, tuple(matches), ()))
+    told = as_json(totals)["checks"]
+    assert (broken is None and told["broken"] == []) or any(str(broken) in x for x in told["broken"])
+    three_and_four = {m.scenario for m in matches} & {3, 4}
+    assert len(told["scenario3And4Differ"]) == (len(three_and_four) == 1)
+
+
+def test_sources(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="not a folder"):
+        find_sources(tmp_path / "nothing")
+    (tmp_path / "a.xml").write_text("")
+    assert [s.name for s in find_sources(tmp_path)] == ["a"]
+    assert [s.name for s in find_sources(tmp_path / "a.xml")] == ["a"]
+    (tmp_path / "01_tracks.csv").write_text("")
+    with pytest.raises(InputError, match="in one folder"):
+        find_sources(tmp_path)
+
+
+@pytest.mark.skipif(not US101.is_dir(), reason="the US-101 recordings are not here: ../shared/data/us101")
+def test_us101(tmp_path: Path) -> None:
+    """Real traffic at 10 Hz: facts hold, something is found, noise is reported."""
+    outcome = run_experiment(Experiment(US101, tmp_path, default_settings()))
+    told = json.loads((tmp_path / "results.json").read_text())
+    assert outcome.totals.recordings == 8
+    assert told["checks"]["broken"] == []
+    assert all(row["matching"] > 0 for row in told["table"])
+    assert any("overlap" in note for notes in told["notes"].values() for note in notes)
+
+
+def test_questions_are_compiled_once(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, ask = [], module.ask
+    monkeypatch.setattr(module, "ask", lambda settings, rate: asked.append(rate) or ask(settings, rate))
+    run_experiment(Experiment(folder, tmp_path, default_settings()))
+    assert asked == [25]
