@@ -97,7 +97,7 @@ def apply_definition(specification: Specification, name: str, arguments: tuple[s
     """The formula of a definition applied to names; to its own parameters where none are given.
 
     >>> apply_definition(bundled_library().select(), "scenario_2").vehicles
-    ('SV', 'POV1', 'POV2')
+    ('POV1', 'POV2', 'SV')
     """
     roles = arguments or signature(specification, name)
     return read_claim(specification, f"{name}({', '.join(roles)})")

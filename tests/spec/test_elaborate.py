@@ -1,0 +1,239 @@
+"""Names, sorts, arities, units and cycles."""
+
+import pytest
+
+from roadproof.errors import TextError
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import FOREVER, Formula
+from roadproof.spec.elaborate import Query, apply_definition, read_claim, signature, unit_name
+from roadproof.spec.library import Source, Specification, build_library, bundled_library
+
+BASE = bundled_library().select()
+SECONDS = (0, 1)
+SPEED = t.Signal("v_lon", "SV")
+FAST = f.Compare(SPEED, ">", t.number(3, (1, -1)))
+
+
+def read(text: str, more: str = "") -> Query:
+    return read_claim(with_definitions(more) if more else BASE, text)
+
+
+def with_definitions(text: str) -> Specification:
+    return build_library([Source("mine.spec", text)], bundled_library()).select()
+
+
+def formula(text: str, more: str = "") -> Formula:
+    return read(text, more).formula
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("v_lon(SV) > 3 m/s", FAST),
+        ("v_lon(SV) > 10.8 km/h", FAST),
+        ("not not v_lon(SV) > 3 m/s", FAST),
+        ("true and v_lon(SV) > 3 m/s", FAST),
+        ("false or v_lon(SV) > 3 m/s", FAST),
+        ("false -> v_lon(SV) > 3 m/s", f.TRUE),
+        ("v_lon(SV) > 3 m/s -> false", f.Not(FAST)),
+        ("F v_lon(SV) > 3 m/s", f.Eventually(FOREVER, FAST)),
+        (
+            "v_lon(SV) = 3 m/s",
+            f.And((f.Compare(SPEED, "<=", FAST.right), f.Compare(SPEED, ">=", FAST.right))),
+        ),
+        (
+            "v_lon(SV) != 3 m/s",
+            f.Or((f.Compare(SPEED, "<", FAST.right), f.Compare(SPEED, ">", FAST.right))),
+        ),
+        (
+            "G[500 ms, 1] v_lon(SV) > 3 m/s",
+            f.Always(f.Interval(t.Number(t.Fraction(1, 2), SECONDS), t.number(1, SECONDS)), FAST),
+        ),
+        (
+            "some l in lanelets(L): occ(SV, l)",
+            f.Some("l", f.Domain("lanelets", "L"), f.Occupies("SV", "l")),
+        ),
+        ("every x in {SV}: v_lon(x) > 3 m/s", FAST),
+        (
+            "abs(v_lon(SV)) > 3 m/s",
+            f.Compare(t.Maximum((SPEED, t.negate(SPEED))), ">", FAST.right),
+        ),
+    ],
+)
+def test_formulas(text: str, expected: Formula) -> None:
+    assert formula(text) == expected
+
+
+def test_calls_are_named_and_substituted() -> None:
+    made = formula("near(POV, SV)", "def near(a, b: vehicle) := s(a) <= s(b)")
+    body = f.Compare(t.Signal("s", "POV"), "<=", t.Signal("s", "SV"))
+    assert made == f.Named("near", ("POV", "SV"), body)
+
+
+def test_functions_of_numbers_are_put_in_place() -> None:
+    made = formula("v_lon(SV) > twice(1.5 m/s)", "def twice(v: m/s) := v + v")
+    half = t.Number(t.Fraction(3, 2), (1, -1))
+    assert made == f.Compare(SPEED, ">", t.Sum((half, half)))
+
+
+def test_quantified_vehicles() -> None:
+    made = formula("(some x in {SV, POV}: v_lon(x) > 3 m/s)")
+    other = f.Compare(t.Signal("v_lon", "POV"), ">", FAST.right)
+    assert made == f.Or((FAST, other))
+
+
+def test_groups_take_what_other_arguments_leave() -> None:
+    text = "def all(a: vehicle, others: vehicles, L: lane) := every x in others: aheadOf(a, x)"
+    made = formula("all(SV, POV1, POV2, L)", text)
+    assert isinstance(made, f.Named)
+    assert isinstance(made.body, f.And)
+    assert [part.arguments for part in made.body.parts if isinstance(part, f.Named)] == [
+        ("SV", "POV1"),
+        ("SV", "POV2"),
+    ]
+
+
+def test_bound_variables_never_capture_arguments() -> None:
+    made = read("given M: lane: inAdjLanes(SV, POV, M)").formula
+    assert isinstance(made, f.Named)
+    assert isinstance(made.body, f.And)
+    inner = made.body.parts[1]
+    assert isinstance(inner, f.Some)
+    assert inner.domain == f.Domain("adjacent", "M")
+    assert inner.variable != "M"
+    assert isinstance(inner.body, f.Named)
+    assert inner.body.arguments == ("POV", inner.variable)
+
+
+def test_free_names_are_reported() -> None:
+    query = read("given A: vehicle; K: lane: laneKeep(A, K) and aheadOf(A, POV3) and laneKeep(SV, L2)")
+    assert set(query.vehicles) == {"A", "POV3", "SV"}
+    assert set(query.lanes) == {"K", "L2"}
+    assert query.text.startswith("given A")
+
+
+def test_given_numbers_are_variables() -> None:
+    made = formula("given v: m/s: v_lon(SV) > v")
+    assert made == f.Compare(SPEED, ">", t.Variable("v", (1, -1)))
+
+
+def test_definitions_of_other_sets() -> None:
+    ours, theirs = formula("accel(POV, SV, L)"), formula("accel@ext(POV, SV, L)")
+    assert isinstance(theirs, f.Named)
+    assert theirs.name == "accel@ext"
+    assert theirs.body != ours
+    ext = bundled_library().select("ext")
+    assert read_claim(ext, "accel(POV, SV, L)").formula.body == theirs.body  # type: ignore[union-attr]
+    # What does not differ between the sets keeps its plain name, so that it stays one atom.
+    assert formula("danger@ext(SV, POV)") == formula("danger(SV, POV)")
+    assert formula("danger@base(SV, POV)") == formula("danger(SV, POV)")
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "message"),
+    [
+        ("dangr(SV, POV)", 1, "there is no definition 'dangr'; did you mean 'danger'"),
+        ("danger(SV)", 1, "'danger' takes 2 arguments but got 1"),
+        ("scenario_4(SV, POV)", 1, "'scenario_4' takes at least 3 arguments but got 2"),
+        ("danger(SV, L)", 12, "there is no vehicle 'L'"),
+        ("laneKeep(SV, SV)", 14, "there is no lane 'SV'"),
+        ("danger(SV, ego)", 12, "there is no vehicle 'ego'"),
+        ("danger(SV, 3 m)", 12, "a vehicle is expected here"),
+        ("danger", 1, "'danger' needs its arguments"),
+        ("v_lon(SV)", 1, "a formula is expected here, but this is a number"),
+        ("v_lon(SV) > danger(SV, POV)", 13, "a number is expected here, but this is a formula"),
+        ("v_lon(SV) > 3", 1, "m/s and no unit cannot be compared"),
+        ("v_lon(SV) > s(SV)", 1, "m/s and m cannot be compared"),
+        ("v_lon(SV) + s(SV) > 0", 1, "m/s and m cannot be added"),
+        ("max(v_lon(SV), s(SV)) > 0", 1, "m/s and m cannot be compared"),
+        ("s(SV) / v_lon(SV) > 0", 1, "the divisor must be greater than zero"),
+        ("s(SV) / 0 > 0", 1, "the divisor must be greater than zero"),
+        ("s(SV) / rho > 0", 1, "the divisor must be greater than zero"),
+        ("1 + inverse(s(SV)) > 0", 1, "inverse(…) may only stand alone"),
+        ("max(inverse(s(SV)), 0) > 0", 1, "inverse(…) may only stand alone"),
+        ("F[2, 1] true", 2, "the interval is empty: low=2 is above high=1"),
+        ("F[-1, 1] true", 2, "an interval may not start in the past"),
+        ("F[0, 3 m] true", 6, "an interval bound is a time, but this is in m"),
+        ("F[0, v_lon(SV)] true", 6, "an interval bound is a time"),
+        ("F[0, s(SV)/(1 m/s)] true", 6, "may not depend on a vehicle's motion"),
+        ("some x in roads: true", 11, "this is no domain to quantify over"),
+        ("some l in zone(side): true", 16, "there is no zone 'side'"),
+        ("lanes(SV) > 0", 1, "'lanes' is a domain"),
+        ("occ(SV, L)", 9, "there is no lanelet 'L'"),
+        ("length(SV, POV) > 0 m", 1, "'length' takes 1 argument but got 2"),
+        ("max() > 0", 1, "'max' needs at least one argument"),
+        ("given A: car: true", 7, "there is no sort or unit 'car'"),
+        ("given A: vehicle; A: lane: true", 19, "'A' is given twice"),
+        ("accel@exta(POV, SV, L)", 1, "there is no spec set 'exta'; did you mean 'ext"),
+        ("dRSS_lon(SV, 3 m/s) > 0", 10, "is a vehicle|there is no"),
+        ("dRSS_lon(3 m, 3 m/s) > 0", 10, "argument v_r of 'dRSS_lon' is in m/s, but this is in m"),
+    ],
+)
+def test_mistakes(text: str, column: int, message: str) -> None:
+    with pytest.raises(TextError, match=message.replace("(", r"\(").replace(")", r"\)")) as raised:
+        read(text)
+    assert raised.value.position is not None
+    assert raised.value.position.column == column
+
+
+@pytest.mark.parametrize(
+    ("text", "cycle"),
+    [
+        ("def p(a: vehicle) := F p(a)", "p -> p"),
+        ("def p(a: vehicle) := q(a) def q(a: vehicle) := not p(a)", "p -> q -> p"),
+    ],
+)
+def test_cycles(text: str, cycle: str) -> None:
+    with pytest.raises(TextError, match=f"is defined by itself: {cycle}"):
+        formula("p(SV)", text)
+
+
+def test_long_chains_are_refused_before_the_stack_ends() -> None:
+    chain = "def p_0(a: vehicle) := true each i in 1..900 { def p_{i}(a: vehicle) := p_{i-1}(a) }"
+    assert formula("p_50(SV)", chain)
+    with pytest.raises(TextError, match="nested deeper than 100"):
+        formula("p_900(SV)", chain)
+
+
+def test_a_definition_is_elaborated_once() -> None:
+    """Doubling at every level would take 2^40 steps."""
+    step = "def p_{i}(a: vehicle) := p_{i-1}(a) and F p_{i-1}(a)"
+    assert formula("p_40(SV)", f"def p_0(a: vehicle) := v_lon(a) > 0 each i in 1..60 {{ {step} }}")
+
+
+def test_names_inside_definitions_must_be_their_own() -> None:
+    with pytest.raises(TextError, match="there is no vehicle 'SV'"):
+        formula("p(POV)", "def p(a: vehicle) := v_lon(SV) > 0")
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("scenario_1", ("SV", "POV", "L")),
+        ("scenario_2", ("SV", "POV1", "POV2", "L")),
+        ("scenario_18", ("SV", "POV1", "POV2", "L")),
+        ("mainRoad", ("a",)),
+        ("sameLane_3", ("a", "b", "c", "L")),
+        ("dRSS_lon", ("v_r", "v_f")),
+    ],
+)
+def test_signatures(name: str, expected: tuple[str, ...]) -> None:
+    assert signature(BASE, name) == expected
+
+
+def test_definitions_are_applied_to_names() -> None:
+    swapped = apply_definition(BASE, "scenario_4", ("POV", "SV", "L"))
+    assert swapped.formula == formula("scenario_4(POV, SV, L)")
+    with pytest.raises(TextError, match="there is no definition 'scenario_25'"):
+        apply_definition(BASE, "scenario_25")
+
+
+def test_units() -> None:
+    assert [unit_name(d) for d in [(1, -2), (0, 1), (0, 0), None, (2, -2)]] == [
+        "m/s^2",
+        "s",
+        "no unit",
+        "no unit",
+        "m^2*s^-2",
+    ]
