@@ -1,0 +1,156 @@
+"""Dispatch, exit codes, and how long it takes to start."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from roadproof.cli import main as command_line
+from roadproof.cli.main import COMMANDS, TRACEBACK, main
+from roadproof.errors import MissingSolverError
+
+ROADPROOF = Path(sys.executable).parent / "roadproof"
+
+
+def run_as(monkeypatch: pytest.MonkeyPatch, error: BaseException) -> int:
+    """The exit code of a sub-command that fails with ``error``."""
+
+    def fail(*_: object) -> int:
+        raise error
+
+    monkeypatch.setattr(command_line, "_run", fail)
+    return main(["list"])
+
+
+def test_errors_become_exit_codes(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv(TRACEBACK, raising=False)
+    assert run_as(monkeypatch, MissingSolverError("solver=x is missing")) == 4
+    assert capsys.readouterr().err == "roadproof: solver=x is missing\n"
+    assert run_as(monkeypatch, KeyboardInterrupt()) == 130
+    assert capsys.readouterr().err == "roadproof: interrupted\n"
+    assert run_as(monkeypatch, ZeroDivisionError("division by zero")) == 70
+    said = capsys.readouterr().err
+    assert "our fault: ZeroDivisionError: division by zero" in said
+    assert "Traceback" not in said
+    assert TRACEBACK in said
+
+
+def test_a_traceback_is_there_for_the_asking(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(TRACEBACK, "1")
+    with pytest.raises(ZeroDivisionError):
+        run_as(monkeypatch, ZeroDivisionError())
+
+
+def test_results_go_to_stdout_and_complaints_to_stderr(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "fasterThan"]) == 0
+    good = capsys.readouterr()
+    assert good.out.startswith("def fasterThan")
+    assert good.err == ""
+    assert main(["show", "fasterTan"]) == 3
+    bad = capsys.readouterr()
+    assert bad.out == ""
+    assert bad.err.startswith("roadproof: there is no definition 'fasterTan'; did you mean 'fasterThan'?")
+
+
+def test_every_subcommand_keeps_the_contract() -> None:
+    from importlib import import_module
+
+    found = dict(command_line._available())
+    assert {"list", "show"} <= set(found) <= set(COMMANDS)
+    for name in found:
+        module = import_module(COMMANDS[name])
+        assert command_line._summary(found[name]) == module.SUMMARY
+        assert callable(module.add_arguments)
+        assert callable(module.run)
+
+
+def test_every_subcommand_helps_by_example(capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ["", *dict(command_line._available())]:
+        with pytest.raises(SystemExit) as raised:
+            main([name, "--help"] if name else ["--help"])
+        assert raised.value.code == 0
+        shown = capsys.readouterr().out
+        assert "examples:" in shown
+        assert f"roadproof {name}".strip() in shown.split("examples:")[1]
+
+
+def test_list_as_json(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["list", "--set", "ext", "--json", "-"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert listed["schema"] == "roadproof/list/1"
+    assert listed["set"] == "ext"
+    assert [s["name"] for s in listed["scenarios"]] == [f"scenario_{i}" for i in range(1, 25)]
+    assert listed["scenarios"][1]["arguments"] == ["SV", "POV1", "POV2", "L"]
+    assert {
+        "name": "rho",
+        "value": "3/5",
+        "unit": "s",
+        "bound": ">=",
+        "doc": "response time of the rear vehicle",
+    } in (listed["parameters"])
+    assert main(["list", "--set", "ext", "--json", str(tmp_path / "list.json")]) == 0
+    assert json.loads((tmp_path / "list.json").read_text("utf-8")) == listed
+
+
+@pytest.mark.parametrize(("arguments", "seconds"), [(["--help"], 0.4), (["list"], 1.0), (["show", "4"], 1.0)])
+def test_starts_quickly(arguments: list[str], seconds: float) -> None:
+    """Processor time, which does not depend on what else the machine is doing; the best of three."""
+    best = min(_processor_seconds(arguments) for _ in range(3))
+    assert best < seconds
+
+
+def _processor_seconds(arguments: list[str]) -> float:
+    import resource
+
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([str(ROADPROOF), *arguments], check=True, stdout=subprocess.DEVNULL)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["list"]])
+def test_nothing_heavy_is_imported(arguments: list[str]) -> None:
+    heavy = ["z3", "cvc5", "cvxpy", "polars", "matplotlib", "sympy", "numba", "numpy"]
+    code = (
+        "import sys\nfrom roadproof.cli.main import main\n"
+        f"try:\n    main({arguments!r})\nexcept SystemExit:\n    pass\n"
+        f"print([m for m in {heavy!r} if m in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.strip() == "[]"
+
+
+def test_a_closed_pipe_is_no_error() -> None:
+    process = subprocess.Popen([str(ROADPROOF), "list"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert process.stdout is not None
+    assert process.stderr is not None
+    process.stdout.close()
+    assert process.wait(30) == 0
+    assert process.stderr.read() == b""
+    process.stderr.close()
+
+
+def test_an_interrupt_ends_quietly() -> None:
+    import signal
+
+    code = (
+        "import time\nfrom roadproof.cli import main as m\n"
+        "def wait(_):\n    print('ready', flush=True)\n    time.sleep(60)\n"
+        "m._run = wait\nraise SystemExit(m.main(['list']))"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    started = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert said == "roadproof: interrupted\n"
+    assert time.monotonic() - started < 10

@@ -1,0 +1,107 @@
+"""Options that sub-commands share."""
+
+import argparse
+import os
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from roadproof.cli import options
+from roadproof.errors import InputError, UsageError
+from roadproof.spec.library import bundled_library
+
+
+def parsed(*arguments: str) -> argparse.Namespace:
+    parser = argparse.ArgumentParser()
+    options.add_specification_options(parser)
+    options.add_parameter_option(parser)
+    options.add_json_option(parser)
+    return parser.parse_args(arguments)
+
+
+@pytest.mark.parametrize(
+    ("given", "name", "value"),
+    [
+        ("rho=0.6", "rho", Fraction(3, 5)),
+        ("rho=3/5", "rho", Fraction(3, 5)),
+        ("rho=600 ms", "rho", Fraction(3, 5)),
+        ("rho=600ms", "rho", Fraction(3, 5)),
+        ("rho = 1 s", "rho", Fraction(1)),
+        ("minDanger=0", "minDanger", Fraction(0)),
+        ("b_max=8.5 m/s^2", "b_max", Fraction(17, 2)),
+        ("a_max=1/3", "a_max", Fraction(1, 3)),
+    ],
+)
+def test_parameters_are_rationals_with_units(given: str, name: str, value: Fraction) -> None:
+    values = options.parameter_values(parsed("--param", given), bundled_library())
+    assert values[name] == value
+    others = options.parameter_values(parsed(), bundled_library())
+    assert {n for n in values if values[n] != others[n]} <= {name}
+
+
+def test_the_last_value_counts() -> None:
+    assert (
+        options.parameter_values(parsed("--param", "rho=1", "--param", "rho=2"), bundled_library())["rho"]
+        == 2
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("roh=1", "there is no parameter 'roh'; did you mean 'rho'"),
+        ("rho=fast", "this is no value"),
+        ("rho=1e3", "there is no unit|this is no value"),
+        ("rho=1/0", "the denominator is zero"),
+        ("rho=-1", "the library demands rho >= 0"),
+        ("b_min=0", "the library demands b_min > 0"),
+        ("rho=1 m", "rho is in s, which m does not measure"),
+        ("rho=1 hour", "there is no unit 'hour'"),
+        ("rho=" + "9" * 4000, "this is no value"),
+    ],
+)
+def test_parameters_that_make_no_sense(given: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        options.parameter_values(parsed("--param", given), bundled_library())
+
+
+@pytest.mark.parametrize("given", ["rho", "=1", "rho="])
+def test_assignments_need_two_sides(given: str) -> None:
+    with pytest.raises(UsageError, match="NAME=VALUE"):
+        options.parameter_values(parsed("--param", given), bundled_library())
+
+
+def test_specification_is_selected(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.spec"
+    mine.write_text("set mine extends ext {}\ndef p(a: vehicle) := true", "utf-8")
+    chosen = options.select_specification(
+        parsed("--spec", str(mine), "--set", "mine", "--option", "lateral_sign=literal")
+    )
+    assert chosen.set_name == "mine"
+    assert chosen.options["lateral_sign"] == "literal"
+    assert "p" in chosen.definitions
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    target = tmp_path / "answer.json"
+    options.write_text(target, "before")
+    monkeypatch.setattr(os, "replace", _interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        options.write_text(target, "after")
+    assert target.read_text("utf-8") == "before"
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def _interrupted(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def test_json_is_readable_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options.write_json({"schema": "x/1", "name": "größer"}, str(tmp_path / "a.json"))
+    options.write_json({"schema": "x/1", "name": "größer"}, "-")
+    expected = '{\n  "schema": "x/1",\n  "name": "größer"\n}\n'
+    assert (tmp_path / "a.json").read_text("utf-8") == expected
+    assert capsys.readouterr().out == expected
+    with pytest.raises(InputError, match="cannot write"):
+        options.write_json({}, str(tmp_path / "missing" / "a.json"))
