@@ -65,7 +65,7 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
                 yield found
 
     in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
-    return Outcome(write_results(experiment.out, experiment.settings, findings, in_order), in_order)
+    return Outcome(write_results(experiment.out, experiment.settings, findings(), in_order), in_order)
 
 
 def _path(out: Path, source: RecordingSource) -> Path:

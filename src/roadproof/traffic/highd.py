@@ -63,7 +63,7 @@ _VEHICLE_KINDS: Mapping[str, Kind] = {
     "class": "text",
     "drivingDirection": "integer",
 }
-_SAMPLE_KINDS: Mapping[str, Kind] = {
+SAMPLE_KINDS: Mapping[str, Kind] = {
     "frame": "integer",
     "id": "integer",
     "x": "number",
@@ -101,7 +101,7 @@ def read_highd(folder: Path, name: str) -> Recording:
     """
     rate, lanes, counts = _read_recording(folder / f"{name}_recordingMeta.csv", name)
     meta = _read_vehicles(folder / f"{name}_tracksMeta.csv", counts)
-    tracks = read_table(folder / f"{name}_tracks.csv", SAMPLE_COLUMNS, _SAMPLE_KINDS)
+    tracks = read_table(folder / f"{name}_tracks.csv", SAMPLE_COLUMNS, SAMPLE_KINDS)
     tracks, notes = _in_order(tracks)
     start = _match_vehicles(meta, tracks)
     sizes = np.diff(start)

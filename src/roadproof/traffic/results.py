@@ -11,7 +11,8 @@ import os
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, TextIO
@@ -56,8 +57,12 @@ def describe(settings: Settings) -> dict[str, Any]:
 
 def save_findings(path: Path, findings: Findings, mark: str) -> None:
     """Write the findings of one recording; ``mark`` is their fingerprint."""
-    told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "findings": asdict(findings)}
-    write_whole(path, lambda file: file.write(json.dumps(told, sort_keys=True) + "\n"))
+    found: dict[str, Any] = {**vars(findings)}
+    for name in _ROWS:
+        found[name] = [list(vars(row).values()) for row in found[name]]
+    told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "findings": found}
+    with whole_file(path) as file:
+        file.write(json.dumps(told) + "\n")
 
 
 def load_findings(path: Path, mark: str) -> Findings | None:
@@ -67,7 +72,7 @@ def load_findings(path: Path, mark: str) -> Findings | None:
         if told["schema"] != RECORDING_SCHEMA or told["fingerprint"] != mark:
             return None
         found = told["findings"]
-        made = {name: tuple(kind(**row) for row in found[name]) for name, kind in _ROWS.items()}
+        made = {name: tuple(kind(*row) for row in found[name]) for name, kind in _ROWS.items()}
         return Findings(**{**found, **made, "notes": tuple(found["notes"])})
     except (OSError, ValueError, KeyError, TypeError):
         return None
@@ -76,14 +81,15 @@ def load_findings(path: Path, mark: str) -> Findings | None:
 _ROWS: Mapping[str, Callable[..., Any]] = {"traces": Trace, "matches": Match}
 
 
-def write_whole(path: Path, write: Callable[[TextIO], object]) -> None:
-    """Let ``write`` fill a file that appears whole or not at all. Raises ``InputError``."""
+@contextmanager
+def whole_file(path: Path) -> Iterator[TextIO]:
+    """A file to write to that appears whole, or not at all if anything fails. Raises ``InputError``."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
             with os.fdopen(descriptor, "w", encoding="utf-8", newline="") as file:
-                write(file)
+                yield file
             os.chmod(temporary, 0o644)
             os.replace(temporary, path)
         except BaseException:
@@ -201,23 +207,27 @@ def _check(
 
 
 def write_results(
-    folder: Path, settings: Settings, findings: Callable[[], Iterable[Findings]], failed: Mapping[str, str]
+    folder: Path, settings: Settings, findings: Iterable[Findings], failed: Mapping[str, str]
 ) -> Totals:
-    """Write matches.csv, pairs.csv and results.json; ``findings`` gives the recordings, in order, anew.
+    """Write matches.csv, pairs.csv and results.json; ``findings`` gives the recordings in order.
 
-    Recordings are read one at a time. ``failed`` says which recordings are left out and why.
+    Recordings are taken one at a time. ``failed`` says which are left out and why.
     """
     totals = begin_totals(settings)
-    for found in findings():
-        add_findings(totals, found)
-    write_whole(
-        folder / "matches.csv", lambda f: _write_csv(f, MATCH_COLUMNS, _match_rows(settings, findings()))
-    )
-    columns = (*PAIR_COLUMNS, *settings.sets)
-    write_whole(folder / "pairs.csv", lambda f: _write_csv(f, columns, _pair_rows(settings, findings())))
-    notes = {found.recording: list(found.notes) for found in findings() if found.notes}
-    told = {**as_json(totals), "notes": notes, "failed": dict(failed)}
-    write_whole(folder / "results.json", lambda f: f.write(json.dumps(told, indent=1) + "\n"))
+    notes = {}
+    with whole_file(folder / "matches.csv") as matches, whole_file(folder / "pairs.csv") as pairs:
+        match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
+        match_rows.writerow(MATCH_COLUMNS)
+        pair_rows.writerow((*PAIR_COLUMNS, *settings.sets))
+        for found in findings:
+            add_findings(totals, found)
+            match_rows.writerows(_match_rows(settings, found))
+            pair_rows.writerows(_pair_rows(settings, found))
+            if found.notes:
+                notes[found.recording] = list(found.notes)
+    with whole_file(folder / "results.json") as file:
+        told = {**as_json(totals), "notes": notes, "failed": dict(failed)}
+        file.write(json.dumps(told, indent=1) + "\n")
     return totals
 
 
@@ -249,28 +259,21 @@ def as_json(totals: Totals) -> dict[str, Any]:
     }
 
 
-def _write_csv(file: TextIO, columns: tuple[str, ...], rows: Iterable[list[object]]) -> None:
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(rows)
+def _match_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
+    dangers = [_decimal(x) for x in settings.min_danger]
+    for m in found.matches:
+        pov2 = "" if m.pov2 is None else m.pov2
+        frames = (m.start_frame, m.end_frame, dangers[m.min_danger])
+        yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, m.set_name, m.scenario]
 
 
-def _match_rows(settings: Settings, findings: Iterable[Findings]) -> Iterator[list[object]]:
-    for found in findings:
-        for m in found.matches:
-            pov2 = "" if m.pov2 is None else m.pov2
-            frames = (m.start_frame, m.end_frame, _decimal(settings.min_danger[m.min_danger]))
-            yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, m.set_name, m.scenario]
-
-
-def _pair_rows(settings: Settings, findings: Iterable[Findings]) -> Iterator[list[object]]:
-    for found in findings:
-        matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
-        for t in found.traces:
-            hits = [int(((t.first, t.second), t.min_danger, s) in matched) for s in settings.sets]
-            danger = _decimal(settings.min_danger[t.min_danger])
-            frames = (danger, t.start_frame, t.end_frame, t.first_lane, t.second_lane)
-            yield [found.recording, t.first, t.second, *frames, *hits]
+def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
+    dangers = [_decimal(x) for x in settings.min_danger]
+    matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
+    for t in found.traces:
+        hits = [int(((t.first, t.second), t.min_danger, s) in matched) for s in settings.sets]
+        frames = (dangers[t.min_danger], t.start_frame, t.end_frame, t.first_lane, t.second_lane)
+        yield [found.recording, t.first, t.second, *frames, *hits]
 
 
 def _decimal(value: Fraction) -> str:

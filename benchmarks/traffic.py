@@ -1,0 +1,88 @@
+"""How long the highD experiment takes on simulated recordings of highD's size, and beside plain reading.
+
+    python benchmarks/traffic.py --recordings 60 --folder /tmp/highd-shaped --jobs 2
+
+Makes the recordings that the folder does not have yet, then measures in one run: simulating and
+writing one recording; reading the needed columns of all tracks with nothing else; the whole
+experiment (three sets, minDanger 0 and 0.6, scenario 2 included), in as many processes as asked;
+and the peak memory of a process.
+"""
+
+import argparse
+import resource
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from roadproof.traffic.experiment import Experiment, run_experiment
+from roadproof.traffic.highd import SAMPLE_KINDS
+from roadproof.traffic.questions import default_settings
+from roadproof.traffic.simulate import Traffic
+from roadproof.traffic.synthetic import simulate
+from roadproof.traffic.table import read_columns
+from roadproof.traffic.write_highd import write_highd
+
+
+def seconds(work: Callable[[], object]) -> float:
+    begun = time.perf_counter()
+    work()
+    return time.perf_counter() - begun
+
+
+def make(folder: Path, number: int, length: float) -> float | None:
+    """Seconds that simulating and writing took; None where the recording is there already."""
+    if (folder / f"{number:02d}_tracks.csv").exists():
+        return None
+    return seconds(lambda: write_highd(simulate(Traffic(seconds=length), 34502, number), folder))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--recordings", type=int, default=6)
+    parser.add_argument("--seconds", type=float, default=990.0, help="length of a recording")
+    parser.add_argument("--folder", type=Path, help="keep the recordings here (default: a temporary folder)")
+    parser.add_argument("--jobs", type=int, default=2)
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = args.folder or Path(temporary) / "recordings"
+        made = [make(folder, k, args.seconds) for k in range(1, args.recordings + 1)]
+        took = [x for x in made if x is not None]
+        if took:
+            print(f"simulate and write: mean {sum(took) / len(took):.2f} s, worst {max(took):.2f} s")
+        paths = sorted(folder.glob("*_tracks.csv"))[: args.recordings]
+        reading = seconds(lambda: [read_columns(path, list(SAMPLE_KINDS)) for path in paths])
+        out = Path(temporary) / "out"
+        outcome = None
+
+        def experiment() -> None:
+            nonlocal outcome
+            outcome = run_experiment(Experiment(folder, out, default_settings(), jobs=args.jobs))
+
+        running = seconds(experiment)
+        again = seconds(lambda: [read_columns(path, list(SAMPLE_KINDS)) for path in paths])
+        assert outcome is not None
+        totals = outcome.totals
+        print(f"{totals.recordings} recordings, {totals.vehicles} vehicles, {totals.samples} samples")
+        print(f"reading the needed columns: {reading:.1f} s before, {again:.1f} s after")
+        print(
+            f"the whole experiment, {args.jobs} jobs: {running:.1f} s, {2 * running / (reading + again):.2f} times"
+        )
+        who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+        peaks = [resource.getrusage(x).ru_maxrss / 2**20 for x in who]
+        print(f"peak memory: {peaks[0]:.2f} GiB in this process, {peaks[1]:.2f} GiB in the largest worker")
+        for row in totals.rows:
+            recall = "" if row.recall is None else f"{100 * row.recall:.1f} %"
+            counts = " ".join(f"s{i}={row.scenarios[i]}" for i in totals.settings.scenarios)
+            print(
+                f"minDanger {row.min_danger}, {row.set_name}: {row.matching} of {row.traces}, {recall}; {counts}"
+            )
+        print(
+            f"broken facts: {len(totals.broken)}; s3 and s4 differ on {len(totals.unequal_3_4)} straddling pairs"
+        )
+
+
+if __name__ == "__main__":
+    main()
