@@ -67,21 +67,17 @@ def main() -> None:
         totals = outcome.totals
         print(f"{totals.recordings} recordings, {totals.vehicles} vehicles, {totals.samples} samples")
         print(f"reading the needed columns: {reading:.1f} s before, {again:.1f} s after")
-        print(
-            f"the whole experiment, {args.jobs} jobs: {running:.1f} s, {2 * running / (reading + again):.2f} times"
-        )
+        ratio = 2 * running / (reading + again)
+        print(f"the whole experiment, {args.jobs} jobs: {running:.1f} s, {ratio:.2f} times as long")
         who = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
         peaks = [resource.getrusage(x).ru_maxrss / 2**20 for x in who]
         print(f"peak memory: {peaks[0]:.2f} GiB in this process, {peaks[1]:.2f} GiB in the largest worker")
         for row in totals.rows:
             recall = "" if row.recall is None else f"{100 * row.recall:.1f} %"
             counts = " ".join(f"s{i}={row.scenarios[i]}" for i in totals.settings.scenarios)
-            print(
-                f"minDanger {row.min_danger}, {row.set_name}: {row.matching} of {row.traces}, {recall}; {counts}"
-            )
-        print(
-            f"broken facts: {len(totals.broken)}; s3 and s4 differ on {len(totals.unequal_3_4)} straddling pairs"
-        )
+            name = f"minDanger {row.min_danger}, {row.set_name}"
+            print(f"{name}: {row.matching} of {row.traces}, {recall}; {counts}")
+        print(f"broken facts: {len(totals.broken)}; s3 and s4 differ on {len(totals.unequal_3_4)} pairs")
 
 
 if __name__ == "__main__":
