@@ -24,5 +24,10 @@ def node(cls: type[T]) -> type[T]:
             self.__dict__["_hash"] = known
         return known
 
+    def state(self: Any) -> dict[str, Any]:
+        """What is pickled: all but the hash, which another process would compute differently."""
+        return {name: value for name, value in self.__dict__.items() if name != "_hash"}
+
+    made.__getstate__ = state  # type: ignore[method-assign,assignment]
     made.__hash__ = remembered  # type: ignore[method-assign]
     return made

@@ -1,6 +1,7 @@
 """Syntax trees to text: the inverse of ``logic.parse``, with as few parentheses as the grammar allows.
 
-``parse_claim(text(claim)) == claim`` for every claim that the parser can return.
+``parse_claim(text(claim)) == claim`` for every claim that the parser can return. A formula is shown by
+``text(as_syntax(formula))``.
 """
 
 from collections.abc import Iterator
@@ -10,6 +11,7 @@ from typing import assert_never
 
 from roadproof.logic import syntax
 from roadproof.logic.parse import LONGEST_EXPONENT, LONGEST_NUMBER
+from roadproof.logic.restore import as_syntax as as_syntax
 from roadproof.logic.syntax import Binding, Bounds, Claim, Definition, Expression
 
 # How tightly the parts of the grammar bind, loosest first. A quantifier reaches as far right as it can.
