@@ -28,6 +28,6 @@ def node(cls: type[T]) -> type[T]:
         """What is pickled: all but the hash, which another process would compute differently."""
         return {name: value for name, value in self.__dict__.items() if name != "_hash"}
 
-    made.__getstate__ = state  # type: ignore[method-assign,assignment]
+    made.__getstate__ = state  # type: ignore[method-assign]
     made.__hash__ = remembered  # type: ignore[method-assign]
     return made
