@@ -1,8 +1,9 @@
 """The opaque reading of a claim: state predicates become atoms, functions from time to truth.
 
-A definition whose body compares, occupies or quantifies is one atom (``aheadOf``, ``atLane``);
-definitions that only combine others (``danger``, ``accel``) are looked through. Two atoms are the
-same when their bodies are built alike, whatever they are called.
+A definition whose body compares, occupies or quantifies over lanelets is one atom (``aheadOf``,
+``atLane``); definitions that only combine others (``danger``, ``accel``) are looked through, and so
+are quantifiers over lanes. Two atoms are the same when their bodies are built alike, whatever they
+are called.
 """
 
 from collections.abc import Iterator
@@ -11,8 +12,9 @@ from dataclasses import dataclass, field
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Named
+from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import terms_of, without_names
-from roadproof.logic.show import as_syntax, text
+from roadproof.logic.show import text
 from roadproof.logic.terms import Signal, leaves
 
 
@@ -68,14 +70,20 @@ def is_atom(formula: Formula) -> bool:
     match formula:
         case f.Compare() | f.Occupies():
             return True
-        case f.Some() | f.Every():
-            return f.is_state(formula)
+        case f.Some(_, domain, _) | f.Every(_, domain, _):
+            return domain.kind in ("lanelets", "zone") and f.is_state(formula)
         case Named(_, _, body):
-            return f.is_state(body) and any(
-                isinstance(part, f.Compare | f.Occupies | f.Some | f.Every) for part in _combined(body)
+            return (
+                f.is_state(body)
+                and not any(_ranges_over_lanes(part) for part in f.subformulas(body))
+                and any(not isinstance(part, Named | f.Truth) for part in _combined(body))
             )
         case _:
             return False
+
+
+def _ranges_over_lanes(formula: Formula) -> bool:
+    return isinstance(formula, f.Some | f.Every) and formula.domain.kind in ("lanes", "adjacent")
 
 
 def is_rigid(formula: Formula) -> bool:

@@ -13,7 +13,7 @@ from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.derivation import Lemma, Site, derive_lemma_query, derive_query
+from roadproof.evidence.derivation import Lemma, Site, derive_lemma_queries, derive_query
 from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
@@ -52,10 +52,9 @@ def certify(
     atomised = atoms.atomise(formula)
     bounds = {name: p.bound for name, p in specification.library.parameters.items()}
     queries = [("claim", derive_query(atomised, atoms, instances, names, lemmas, bounds))]
-    queries += [
-        (f"lemma {number}", derive_lemma_query(atoms, lemma.literals, bounds))
-        for number, lemma in enumerate(lemmas, 1)
-    ]
+    for number, lemma in enumerate(lemmas, 1):
+        cases = derive_lemma_queries(atoms, lemma.literals, bounds)
+        queries += [(f"lemma {number}, case {k} of {len(cases)}", q) for k, q in enumerate(cases, 1)]
     assumptions = tuple(f"{n} {bounds[n]} 0" for n in parameters_of(formula) if bounds.get(n))
     return Certificate(
         label,
@@ -71,9 +70,7 @@ def certify(
     )
 
 
-def refusal(
-    certificate: Certificate, library: Library, ask: Callable[[str], str]
-) -> str | None:
+def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> str | None:
     """Why the certificate is not accepted, or None where it is.
 
     ``ask`` answers sat, unsat or unknown to an SMT-LIB script.
@@ -92,7 +89,9 @@ def refusal(
     except RoadproofError as error:
         return f"the query cannot be derived: {error}"
     if derived.assumptions != certificate.assumptions:
-        return f"the assumptions are {', '.join(derived.assumptions)}, not {', '.join(certificate.assumptions)}"
+        return (
+            f"the assumptions are {', '.join(derived.assumptions)}, not {', '.join(certificate.assumptions)}"
+        )
     if derived.queries != certificate.queries:
         return "the stored query is not the one that claim and instances give"
     for title, query in derived.queries:
@@ -131,9 +130,7 @@ def to_json(certificate: Certificate) -> str:
             {"clause": [[n, p] for n, p in lemma.literals], "at": list(lemma.moments)}
             for lemma in certificate.lemmas
         ],
-        "queries": [
-            {"title": title, "smtlib": query.splitlines()} for title, query in certificate.queries
-        ],
+        "queries": [{"title": title, "smtlib": query.splitlines()} for title, query in certificate.queries],
     }
     return json.dumps(data, indent=1) + "\n"
 

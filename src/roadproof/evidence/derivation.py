@@ -14,10 +14,12 @@ from typing import TypeAlias, assert_never
 from roadproof.errors import InputError
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms, is_rigid, membership, rename
+from roadproof.evidence.cases import split
 from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.show import as_syntax, text
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
 
 # What an instance says at a moment: its guards, and the body that they guard.
 Instance: TypeAlias = Callable[[Moment], tuple[list[str], str]]
@@ -120,21 +122,28 @@ def met_names(
     return {site: name for site, name in names.items() if site in derivation.met}
 
 
-def derive_lemma_query(
+def derive_lemma_queries(
     atoms: Atoms, literals: Sequence[tuple[str, bool]], bounds: Mapping[str, str]
-) -> str:
-    """SMT-LIB script about one instant that is unsatisfiable only if the clause always holds."""
-    meanings = [(atoms.meaning(name), positive) for name, positive in literals]
-    against = [state.state(f.negation(meaning) if positive else meaning) for meaning, positive in meanings]
-    return "\n".join(
-        [
-            "(set-logic QF_NRA)",
-            *state.declarations([meaning for meaning, _ in meanings], bounds),
-            *(f"(assert {literal})" for literal in against),
-            "(check-sat)",
-            "",
-        ]
-    )
+) -> list[str]:
+    """SMT-LIB scripts about one instant, all unsatisfiable only if the clause always holds.
+
+    There is one for each way in which the maxima and minima of the clause can fall.
+    """
+    against = [
+        f.negation(atoms.meaning(name)) if positive else atoms.meaning(name) for name, positive in literals
+    ]
+    return [
+        "\n".join(
+            [
+                "(set-logic QF_NRA)",
+                *state.declarations(case, bounds),
+                *(f"(assert {state.state(literal)})" for literal in case),
+                "(check-sat)",
+                "",
+            ]
+        )
+        for case in split(against)
+    ]
 
 
 @dataclass
@@ -218,7 +227,9 @@ class _Derivation:
                         self.truth(left, True, when),
                     ),
                 )
-                return _join("and", [*self._within(moment, interval, end), self.truth(right, True, end), before])
+                return _join(
+                    "and", [*self._within(moment, interval, end), self.truth(right, True, end), before]
+                )
             case f.Until():
                 return self._universal(site, lambda when: self._until_fails(formula, site, moment, when))
             case f.Some(variable, domain, body) | f.Every(variable, domain, body):
@@ -286,8 +297,8 @@ class _Derivation:
     def _universal(self, site: Site, instance: Instance) -> str:
         self.met.add(site)
         clauses: list[str] = []
-        for text in self.instances.get(site, ()):
-            guard, body = instance(read_moment(text))
+        for moment in map(read_moment, self.instances.get(site, ())):
+            guard, body = instance(moment)
             clauses.append(f"(=> {_join('and', guard)} {body})")
         return _join("and", clauses)
 

@@ -1,6 +1,7 @@
 """What a state predicate says about one instant, as SMT-LIB: signals are real constants."""
 
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from typing import assert_never
 
 from roadproof.evidence.times import rational
@@ -33,8 +34,8 @@ def term(expression: Term) -> str:
             return f"(* {' '.join(map(term, factors))})"
         case t.Power(base, exponent):
             return "1.0" if exponent == 0 else f"(* 1.0 {' '.join([term(base)] * exponent)})"
-        case t.Quotient(numerator, denominator):
-            return f"(/ {term(numerator)} {term(denominator)})"
+        case t.Quotient():
+            return _quotient(expression)
         case t.Maximum(terms):
             return _extremum(terms, ">=")
         case t.Minimum(terms):
@@ -43,6 +44,53 @@ def term(expression: Term) -> str:
             raise ValueError("an inverse stands only alone on one side of a comparison")
         case _:
             assert_never(expression)
+
+
+def _quotient(quotient: t.Quotient) -> str:
+    """A quotient; one by a symbolic divisor p is a constant q with q·p = numerator.
+
+    A power is divided through its base, x²/p = x·(x/p), so that equal quotients share their constant:
+    nonlinear solvers then eliminate x, where they would be lost among divisions.
+    """
+    numerator, scale, divisor = _parted(quotient)
+    if divisor is None:
+        return f"(/ {term(numerator)} {rational(scale)})"
+    if isinstance(numerator, t.Power) and numerator.exponent > 1:
+        rest = t.Power(numerator.base, numerator.exponent - 1)
+        return f"(/ (* {term(rest)} {_ratio(numerator.base, divisor)}) {rational(scale)})"
+    return f"(/ {_ratio(numerator, divisor)} {rational(scale)})"
+
+
+def _parted(quotient: t.Quotient) -> tuple[Term, Fraction, Term | None]:
+    """Numerator, constant part of the divisor, and its symbolic part (None where there is none)."""
+    factors = quotient.denominator.factors if isinstance(quotient.denominator, t.Product) else None
+    scale, symbolic = Fraction(1), []
+    for factor in factors or (quotient.denominator,):
+        value = t.constant_value(factor)
+        if value is None:
+            symbolic.append(factor)
+        else:
+            scale *= value
+    if not symbolic:
+        return quotient.numerator, scale, None
+    return quotient.numerator, scale, symbolic[0] if len(symbolic) == 1 else t.Product(tuple(symbolic))
+
+
+def _ratio(numerator: Term, divisor: Term) -> str:
+    """The constant that stands for numerator / divisor."""
+    shown = f"{term(numerator)} / {term(divisor)}".replace("|", "'")
+    return f"|{shown}|"
+
+
+def _ratios(expression: Term) -> Iterable[tuple[Term, Term]]:
+    """Numerator and divisor of every constant that ``term`` introduces, inner ones first."""
+    for child in t.children(expression):
+        yield from _ratios(child)
+    if isinstance(expression, t.Quotient):
+        numerator, _, divisor = _parted(expression)
+        if divisor is not None:
+            powered = isinstance(numerator, t.Power) and numerator.exponent > 1
+            yield (numerator.base if powered and isinstance(numerator, t.Power) else numerator), divisor
 
 
 def _extremum(terms: tuple[Term, ...], op: str) -> str:
@@ -114,7 +162,10 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
     """
     reals: dict[str, str] = {}
     booleans: set[str] = set()
+    ratios: dict[tuple[Term, Term], None] = {}
     for formula in formulas:
+        for side in terms_of(formula):
+            ratios |= dict.fromkeys(_ratios(side))
         for leaf in (leaf for side in terms_of(formula) for leaf in t.leaves(side)):
             match leaf:
                 case t.Number():
@@ -126,9 +177,43 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
                 case t.Signal() | t.Variable():
                     reals[symbol(leaf)] = ""
         booleans |= set(opaque_symbols(formula))
-    lines = [f"(declare-const {name} Real)" for name in sorted(reals)]
+    lines = [f"(declare-const {name} Real)" for name in sorted(_ratio(*r) for r in ratios)]
+    solved, equations = _solve(list(ratios))
+    lines += [f"(declare-const {name} Real)" for name in sorted(reals) if name not in solved]
+    lines += [f"(define-fun {name} () Real {value})" for name, value in solved.items()]
     lines += [f"(assert ({bound} {name} 0.0))" for name, bound in sorted(reals.items()) if bound]
+    lines += equations
     return lines + [f"(declare-const {name} Bool)" for name in sorted(booleans)]
+
+
+def _solve(ratios: list[tuple[Term, Term]]) -> tuple[dict[str, str], list[str]]:
+    """The equations q·divisor = numerator, solved for a variable of the numerator where that can be.
+
+    Solved are those whose variable no other solved numerator has: x + r = q·p becomes x = q·p - r.
+    """
+    solved: dict[str, str] = {}
+    equations: list[str] = []
+    used: set[t.Leaf] = set()
+    for numerator, divisor in ratios:
+        product = f"(* {_ratio(numerator, divisor)} {term(divisor)})"
+        first, rest = _first_summand(numerator)
+        free = isinstance(first, t.Variable | t.Signal) and first not in t.leaves(rest)
+        if free and isinstance(first, t.Variable | t.Signal) and not used & set(t.leaves(numerator)):
+            solved[symbol(first)] = f"(- {product} {term(rest)})"
+            used |= {leaf for leaf in t.leaves(numerator) if isinstance(leaf, t.Variable | t.Signal)}
+        else:
+            equations.append(f"(assert (= {product} {term(numerator)}))")
+    return solved, equations
+
+
+def _first_summand(expression: Term) -> tuple[Term, Term]:
+    """The leftmost summand of a sum and the rest of it."""
+    match expression:
+        case t.Sum((first, *others)) if others:
+            inner, rest = _first_summand(first)
+            return inner, t.Sum((rest, *others))
+        case _:
+            return expression, t.Number(Fraction(0))
 
 
 def opaque_symbols(formula: Formula) -> Iterable[str]:

@@ -220,7 +220,7 @@ class _Reader:
 
 def _rational(value: object, where: str) -> Fraction:
     if not isinstance(value, str) or not _RATIONAL.fullmatch(value):
-        raise InputError(f"{where}: {str(value)[:60]!r} is no rational as text, such as \"3/5\"")
+        raise InputError(f'{where}: {str(value)[:60]!r} is no rational as text, such as "3/5"')
     top, _, bottom = value.partition("/")
     if bottom and int(bottom) == 0:
         raise InputError(f"{where}: {value!r} divides by zero")

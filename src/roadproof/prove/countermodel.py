@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Literal
 
 from roadproof.evidence import state
+from roadproof.evidence.atoms import Atoms, is_atom, membership, rename
 from roadproof.judge import TruthSet, judge
 from roadproof.judge.signals import AbstractSignals
 from roadproof.judge.truth import from_switches
@@ -41,41 +42,59 @@ class Countermodel:
 
 
 def realise(
-    claim: Formula, atoms: Mapping[str, Formula], model: Model, defaults: Mapping[str, Fraction]
+    claim: Formula, atoms: Atoms, model: Model, defaults: Mapping[str, Fraction]
 ) -> Countermodel | None:
     """The model as a trace on which the atomised ``claim`` is judged false, or None.
 
     None also where two instants need different values of one parameter or one vehicle's size.
     """
-    if any(isinstance(p, f.Some | f.Every) and not f.is_state(p) for p in f.subformulas(claim)):
-        return None
     fixed = _fixed_values(model, defaults)
     if fixed is None:
         return None
-    bare = map_terms(without_names(claim), lambda term: _put_in(term, fixed))
-    truths = [_truths(bare, model, instant, fixed) for instant in model.states]
+
+    def put_in(formula: Formula) -> Formula:
+        return map_terms(without_names(formula), lambda term: _put_in(term, fixed))
+
+    bare = put_in(_on_road(claim, atoms, model))
+    named = {name: put_in(meaning) for name, meaning in atoms.named.items()}
+    parts = dict.fromkeys(part for x in (bare, *named.values()) for part in _parts(x))
+    truths = [{part: _holds(part, model.signals[instant]) for part in parts} for instant in model.states]
     times = list(model.states)
     helds: tuple[Literal["before", "after"], ...] = ("before", "after")
     for held in helds:
-        given = {part: _spread(times, [at[part] for at in truths], held) for part in truths[0]}
-        if not judge(bare, None, given).holds:
-            instants = [
-                Instant(
-                    time,
-                    {n.strip("|"): v for n, v in model.signals[time].items() if not isinstance(v, bool)},
-                    {
-                        name: judge(map_terms(meaning, lambda term: _put_in(term, fixed)), None, {
-                            part: _spread([Fraction(0)], [true], "before") for part, true in at.items()
-                        }).holds
-                        for name, meaning in atoms.items()
-                        if set(_parts(map_terms(meaning, lambda term: _put_in(term, fixed)))) <= set(at)
-                    },
-                )
-                for time, at in zip(times, truths, strict=True)
-            ]
-            parameters = {n: v for n, v in fixed.items() if n in defaults and not n.startswith("|")}
-            return Countermodel(tuple(instants), parameters, held)
+        given = {part: _spread(times, [at[part] for at in truths], held) for part in parts}
+        if judge(bare, None, given).holds:
+            continue
+        shown = {name: judge(meaning, None, given).truth(meaning) for name, meaning in named.items()}
+        instants = tuple(
+            Instant(time, _numbers(model.signals[time]), {n: truth.at(time) for n, truth in shown.items()})
+            for time in times
+        )
+        return Countermodel(instants, {n: v for n, v in fixed.items() if n in defaults}, held)
     return None
+
+
+def _on_road(claim: Formula, atoms: Atoms, model: Model) -> Formula:
+    """``claim`` with quantifiers over the road written out over the elements of the model."""
+
+    def visit(current: Formula) -> Formula:
+        if not isinstance(current, f.Some | f.Every) or is_atom(current):
+            if isinstance(current, f.Named):
+                return current
+            return f.with_children(current, tuple(visit(child) for child in f.children(current)))
+        elements = [
+            element
+            for element in model.elements
+            if current.domain.kind == "lanes" or membership(current.domain, element) in model.facts
+        ]
+        bodies = [visit(atoms.atomise(rename(current.body, current.variable, e))) for e in elements]
+        return f.disjunction(*bodies) if isinstance(current, f.Some) else f.conjunction(*bodies)
+
+    return visit(claim)
+
+
+def _numbers(found: Mapping[str, Fraction | bool]) -> dict[str, Fraction]:
+    return {name.strip("|"): value for name, value in found.items() if not isinstance(value, bool)}
 
 
 def _fixed_values(model: Model, defaults: Mapping[str, Fraction]) -> dict[str, Fraction] | None:
@@ -124,24 +143,17 @@ def _parts(formula: Formula) -> Iterator[Formula]:
             waiting.extend(f.children(current))
 
 
-def _truths(
-    bare: Formula, model: Model, instant: Fraction, fixed: Mapping[str, Fraction]
-) -> dict[Formula, bool]:
-    """Which comparisons and road predicates hold at an instant, evaluated exactly."""
-    found = model.signals[instant]
-    truths: dict[Formula, bool] = {}
-    for part in _parts(bare):
-        if isinstance(part, f.Occupies | f.Some | f.Every):
-            truths[part] = bool(found.get(state.opaque(part), False))
-            continue
-        signals = {
-            leaf: ((Fraction(0), Fraction(found.get(state.symbol(leaf), 0))),)
-            for side in terms_of(part)
-            for leaf in t.leaves(side)
-            if isinstance(leaf, t.Signal)
-        }
-        truths[part] = judge(part, AbstractSignals(signals, {})).holds
-    return truths
+def _holds(part: Formula, found: Mapping[str, Fraction | bool]) -> bool:
+    """Whether a comparison or road predicate holds in a state, evaluated exactly."""
+    if isinstance(part, f.Occupies | f.Some | f.Every):
+        return bool(found.get(state.opaque(part), False))
+    signals = {
+        leaf: ((Fraction(0), Fraction(found.get(state.symbol(leaf), 0))),)
+        for side in terms_of(part)
+        for leaf in t.leaves(side)
+        if isinstance(leaf, t.Signal)
+    }
+    return judge(part, AbstractSignals(signals, {})).holds
 
 
 def _spread(times: list[Fraction], values: list[bool], held: Literal["before", "after"]) -> TruthSet:

@@ -84,6 +84,7 @@ class Grounding:
     road_universals: list[RoadUniversal] = field(default_factory=list)
     moments: dict[Moment, None] = field(default_factory=lambda: {ZERO: None})
     elements: dict[str, None] = field(default_factory=dict)
+    facts: dict[str, None] = field(default_factory=dict)
     switches: dict[str, tuple[Site, str] | Lemma] = field(default_factory=dict)
     wishes: list[str] = field(default_factory=list)
     applied: dict[tuple[str, Moment], str] = field(default_factory=dict)
@@ -147,9 +148,7 @@ class Grounding:
                     when = self._name_time(site, window.low)
                     self._require(switch, *window.smt(when), self.truth(body, positive, when))
                 else:
-                    self._wait(
-                        site, switch, window, body, lambda when: self.truth(body, positive, when)
-                    )
+                    self._wait(site, switch, window, body, lambda when: self.truth(body, positive, when))
             case f.Until(left, interval, right) if positive:
                 window = self._window(moment, interval)
                 end = self._name_time(site, window.low)
@@ -221,9 +220,10 @@ class Grounding:
     def _fact(self, domain: f.Domain, element: str) -> str:
         if domain.kind == "lanes":
             return "true"
-        fact = f"|{membership(domain, element)}|"
-        self._declare(fact, f"(declare-const {fact} Bool)")
-        return fact
+        fact = membership(domain, element)
+        self.facts[fact] = None
+        self._declare(f"|{fact}|", f"(declare-const |{fact}| Bool)")
+        return f"|{fact}|"
 
     # --- growing ---------------------------------------------------------------------------------
 

@@ -77,7 +77,10 @@ def prove(
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
     certificate = _certificate(specification, claim, atomised, atoms, proofs, names, label, scenario)
+    settled = frozenset[str]().union(*(proof.settled for proof in proofs))
     for title, script in certificate.queries:
+        if script in settled:
+            continue
         answer = ask(script, timeout=max(1.0, deadline - time.monotonic()))
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
@@ -121,7 +124,7 @@ class _Attempt:
             search = self._search(goal, names, wishful)
             found = search.run(until)
             while not isinstance(found, Proof | GaveUp):
-                countermodel = realise(goal, self.atoms.named, found, self._defaults())
+                countermodel = realise(goal, self.atoms, found, self._defaults())
                 if countermodel is not None:
                     return countermodel
                 if not search.widen():

@@ -27,10 +27,14 @@ WISH_SECONDS = 0.25
 
 @dataclass(frozen=True)
 class Proof:
-    """What ``evidence.derivation`` needs, beside the names, to derive the ground query again."""
+    """What ``evidence.derivation`` needs, beside the names, to derive the ground query again.
+
+    ``settled`` are queries of lemmas that z3 has already answered unsat.
+    """
 
     instances: Mapping[Site, tuple[str, ...]]
     lemmas: tuple[Lemma, ...]
+    settled: frozenset[str]
 
 
 @dataclass(frozen=True)
@@ -38,11 +42,14 @@ class Model:
     """A model of all clauses: when the moments are, and which atoms are true there.
 
     ``states`` gives each instant its atoms, and ``signals`` each instant a state in which they hold.
+    ``elements`` are the lanes and lanelets spoken of, and ``facts`` what is true of the road.
     """
 
     values: Mapping[str, Fraction]
     states: Mapping[Fraction, Mapping[str, bool]]
     signals: Mapping[Fraction, Mapping[str, Fraction | bool]]
+    elements: tuple[str, ...]
+    facts: frozenset[str]
 
 
 @dataclass(frozen=True)
@@ -95,7 +102,8 @@ class Search:
             states = self._states(values)
             refused = self._lemmas(states, values, deadline)
             if refused is None:
-                return Model(values, states, {v: self.states.signals(s) for v, s in states.items()})
+                signals = {instant: self.states.signals(state) for instant, state in states.items()}
+                return Model(values, states, signals, tuple(self.grounding.elements), self._facts())
             if isinstance(refused, GaveUp):
                 return refused
         return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation")
@@ -156,7 +164,7 @@ class Search:
     def _instantiate(self, values: dict[str, Fraction]) -> bool:
         """Instantiate what the model violates; whether there was anything."""
         grounding = self.grounding
-        switches = [u.switch for u in (*grounding.universals, *grounding.road_universals)]
+        switches = [u.switch for u in grounding.universals] + [u.switch for u in grounding.road_universals]
         active = {s for s, on in zip(switches, grounding.session.values(switches), strict=True) if on}
         wanted: list[tuple[Universal, Moment]] = []
         for universal in grounding.universals:
@@ -195,6 +203,12 @@ class Search:
         for ((name, moment), _), true in zip(applied, truths, strict=True):
             states.setdefault(moment.value(values), {})[name] = bool(true)
         return dict(sorted(states.items()))
+
+    def _facts(self) -> frozenset[str]:
+        """Memberships of lanes and lanelets that the model makes true."""
+        facts = self.grounding.facts
+        truths = self.grounding.session.values([f"|{fact}|" for fact in facts])
+        return frozenset(fact for fact, true in zip(facts, truths, strict=True) if true)
 
     def _lemmas(
         self,
@@ -239,6 +253,7 @@ class Search:
         return Proof(
             {site: tuple(texts) for site, texts in instances.items()},
             tuple(Lemma(literals, tuple(moments)) for literals, moments in lemmas.items()),
+            frozenset(self.states.settled),
         )
 
 

@@ -1,22 +1,40 @@
 """Which truth values of atoms can hold together at one instant.
 
-A combination is first tried with every parameter at its declared value and boxes of a car, where
-the arithmetic is easiest; only what is impossible there is asked in general. An impossible
+A combination is first tried with parameters at or near their declared values, boxes of a car and
+speeds of a motorway, where the arithmetic is easiest; only what is impossible there is asked in
+general. An impossible
 combination comes back as a clause that holds at every instant.
 """
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
+from typing import Literal, TypeAlias
 
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.derivation import derive_lemma_queries
 from roadproof.evidence.times import rational
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.rewrite import terms_of
-from roadproof.solve.smt import Session
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import map_terms, terms_of
+from roadproof.solve.smt import Session, ask
 
+Assumed: TypeAlias = Literal["typical", "near", "nothing"]
+ASSUMED: tuple[Assumed, ...] = ("typical", "near", "nothing")
+Clause: TypeAlias = tuple[tuple[str, bool], ...]
+QUICK_SECONDS = 0.5
+CASE_SECONDS = 5.0
+SHRINK_SECONDS = 0.1
+PLAUSIBLE: Mapping[t.SignalName, tuple[Fraction, Fraction]] = {
+    "s": (Fraction(0), Fraction(500)),
+    "d": (Fraction(0), Fraction(11)),
+    "v_lon": (Fraction(5), Fraction(40)),
+    "v_lat": (Fraction(-2), Fraction(2)),
+    "a_lon": (Fraction(-8), Fraction(5)),
+    "a_lat": (Fraction(-3), Fraction(3)),
+}
 TYPICAL_SIZE: Mapping[t.SizeName, Fraction] = {"length": Fraction(9, 2), "width": Fraction(9, 5)}
 
 
@@ -25,24 +43,46 @@ class StateChecker:
         self.atoms = atoms
         self.bounds = bounds
         self.defaults = defaults
+        self.settled: set[str] = set()
         self.known: dict[frozenset[tuple[str, bool]], Mapping[str, Fraction | bool]] = {}
 
-    def refute(self, wanted: Mapping[str, bool], deadline: float) -> tuple[tuple[str, bool], ...] | str | None:
+    def refute(self, wanted: Mapping[str, bool], deadline: float) -> Clause | str | None:
         """None where a state with these truth values exists; else a clause against it, or why not known."""
         key = frozenset(wanted.items())
         if key in self.known:
             return None
-        for general in (False, True):
-            asked = _Question(self, wanted, general)
-            answer = asked.session.check(list(asked.switches), timeout=_left(deadline, general))
+        literals = list(wanted.items())
+        for assumed in ASSUMED:
+            question = _Question(self, wanted, assumed)
+            answer = question.session.check(list(question.switches), _left(deadline, QUICK_SECONDS))
             if answer == "sat":
-                self.known[key] = asked.values()
+                self.known[key] = question.values()
                 return None
-            if answer == "unsat" and general:
-                return tuple((name, not positive) for name, positive in asked.shrink(deadline))
+            if answer == "unsat":
+                literals = question.core()
+            clause = tuple((name, not positive) for name, positive in literals)
+            if self._always_holds(clause, deadline):
+                return self._shrink(clause, deadline)
         return "z3 gave no answer about a state: " + ", ".join(
-            name if positive else f"not {name}" for name, positive in wanted.items()
+            name if positive else f"not {name}" for name, positive in literals
         )
+
+    def _always_holds(self, clause: Clause, deadline: float, seconds: float = CASE_SECONDS) -> bool:
+        """Whether each query of the clause, as a certificate will hold it, is answered unsat in time."""
+        for query in derive_lemma_queries(self.atoms, clause, self.bounds):
+            if query not in self.settled:
+                if ask(query, timeout=_left(deadline, seconds)) != "unsat":
+                    return False
+                self.settled.add(query)
+        return True
+
+    def _shrink(self, clause: Clause, deadline: float) -> Clause:
+        """The clause without the literals that it holds without."""
+        for literal in clause:
+            shorter = tuple(kept for kept in clause if kept != literal)
+            if shorter and self._always_holds(shorter, deadline, SHRINK_SECONDS):
+                clause = shorter
+        return clause
 
     def signals(self, wanted: Mapping[str, bool]) -> Mapping[str, Fraction | bool]:
         """Values of signals, sizes, parameters and road predicates in the state found for ``wanted``.
@@ -52,31 +92,31 @@ class StateChecker:
         return self.known[frozenset(wanted.items())]
 
 
-def _left(deadline: float, general: bool) -> float:
-    left = max(0.01, deadline - time.monotonic())
-    return left if general else min(left, 2.0)
+def _left(deadline: float, most: float) -> float:
+    return min(most, max(0.01, deadline - time.monotonic()))
 
 
 class _Question:
-    def __init__(self, checker: StateChecker, wanted: Mapping[str, bool], general: bool) -> None:
+    """A combination of atoms put to the solver, under ``assumed``.
+
+    ``typical``: parameters and sizes are numbers; ``near``: parameters within a factor of three of
+    them; both with plausible signals; ``nothing``: whatever is declared.
+    """
+
+    def __init__(self, checker: StateChecker, wanted: Mapping[str, bool], assumed: Assumed) -> None:
         self.session = Session()
+        self.numbers: dict[str, Fraction] = {}
         self.meanings = {name: checker.atoms.meaning(name) for name in wanted}
-        self.leaves = sorted(
-            {
-                leaf
-                for meaning in self.meanings.values()
-                for side in terms_of(meaning)
-                for leaf in t.leaves(side)
-                if not isinstance(leaf, t.Number)
-            },
-            key=state.symbol,
-        )
+        if assumed == "typical":
+            self.meanings = {
+                name: map_terms(meaning, lambda term: t.replace_leaves(term, self._number(checker.defaults)))
+                for name, meaning in self.meanings.items()
+            }
+        self.leaves = _leaves(self.meanings.values())
         self.session.tell("\n".join(state.declarations(self.meanings.values(), checker.bounds)))
-        if not general:
+        if assumed != "nothing":
             for leaf in self.leaves:
-                value = _typical(leaf, checker.defaults)
-                if value is not None:
-                    self.session.tell(f"(assert (= {state.symbol(leaf)} {rational(value)}))")
+                self.session.tell(_plausible(leaf, checker.defaults))
         self.switches: dict[str, tuple[str, bool]] = {}
         for name, positive in wanted.items():
             switch = f"a{len(self.switches) + 1}"
@@ -85,29 +125,45 @@ class _Question:
             asserted = state.state(meaning if positive else f.negation(meaning))
             self.session.tell(f"(declare-const {switch} Bool)(assert (=> {switch} {asserted}))")
 
+    def _number(self, defaults: Mapping[str, Fraction]) -> Callable[[t.Leaf], t.Term]:
+        def put_in(leaf: t.Leaf) -> t.Term:
+            match leaf:
+                case t.Parameter(name, dimension) if name in defaults:
+                    self.numbers[name] = defaults[name]
+                    return t.Number(defaults[name], dimension)
+                case t.Size(name, _):
+                    self.numbers[state.symbol(leaf)] = TYPICAL_SIZE[name]
+                    return t.Number(TYPICAL_SIZE[name], t.SIZE_DIMENSIONS[name])
+                case _:
+                    return leaf
+
+        return put_in
+
     def values(self) -> Mapping[str, Fraction | bool]:
         symbols = [state.symbol(leaf) for leaf in self.leaves]
         symbols += sorted({s for meaning in self.meanings.values() for s in state.opaque_symbols(meaning)})
         read = self.session.values(symbols)
-        return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
+        return {**self.numbers, **{s: v for s, v in zip(symbols, read, strict=True) if v is not None}}
 
-    def shrink(self, deadline: float) -> list[tuple[str, bool]]:
-        """The literals of an impossible combination, each one needed."""
-        needed = self.session.core()
-        for switch in list(needed):
-            without = [s for s in needed if s != switch]
-            if self.session.check(without, timeout=min(2.0, _left(deadline, True))) == "unsat":
-                needed = without
-        return [self.switches[switch] for switch in needed]
+    def core(self) -> list[tuple[str, bool]]:
+        """The literals that the last refutation used."""
+        return [self.switches[switch] for switch in self.session.core()]
 
 
-def _typical(
-    leaf: t.Parameter | t.Variable | t.Signal | t.Size, defaults: Mapping[str, Fraction]
-) -> Fraction | None:
+def _leaves(formulas: Iterable[Formula]) -> list[t.Parameter | t.Variable | t.Signal | t.Size]:
+    found = {leaf for x in formulas for side in terms_of(x) for leaf in t.leaves(side)}
+    return sorted((leaf for leaf in found if not isinstance(leaf, t.Number)), key=state.symbol)
+
+
+def _plausible(leaf: t.Parameter | t.Variable | t.Signal | t.Size, defaults: Mapping[str, Fraction]) -> str:
+    """What a reader expects of a signal on a motorway, or of a parameter; only to look there first."""
     match leaf:
-        case t.Parameter(name, _):
-            return defaults.get(name)
-        case t.Size(name, _):
-            return TYPICAL_SIZE[name]
+        case t.Signal(name, _):
+            low, high = PLAUSIBLE[name]
+        case t.Parameter(name, _) if name in defaults:
+            low, high = sorted((defaults[name] / 3, defaults[name] * 3))
+        case t.Size(size, _):
+            low = high = TYPICAL_SIZE[size]
         case _:
-            return None
+            return ""
+    return f"(assert (<= {rational(low)} {state.symbol(leaf)} {rational(high)}))"
