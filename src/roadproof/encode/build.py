@@ -40,6 +40,10 @@ class Manners:
     inside: Fraction = Fraction(1, 100)
     off_centre: Fraction = Fraction(3, 10)
 
+    def plain(self) -> "Manners":
+        """Whatever the limits of the vehicles allow."""
+        return replace(self, natural=False, straight=frozenset(), margin=Fraction(1, 100))
+
 
 def build_problem(
     formula: Formula, road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, manners: Manners
@@ -83,7 +87,9 @@ def surroundings(
     return parts
 
 
-def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout, margin: Fraction) -> Circuit[ColumnFact]:
+def ground(
+    circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout, margin: Fraction
+) -> Circuit[ColumnFact]:
     """A circuit of comparisons at samples as one of facts about columns."""
     sizes = {(name, "length"): v.length for name, v in vehicles.items()}
     sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
@@ -91,7 +97,9 @@ def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout
 
     def at(leaf: At) -> Circuit[ColumnFact]:
         if leaf.atom not in known:
-            known[leaf.atom] = replace_leaves(facts_of(leaf.atom, sizes), lambda fact: Leaf(replace(fact, margin=margin)))
+            known[leaf.atom] = replace_leaves(
+                facts_of(leaf.atom, sizes), lambda fact: Leaf(replace(fact, margin=margin))
+            )
         if leaf.step < layout.grid.steps:
             return replace_leaves(known[leaf.atom], lambda fact: Leaf(fact_at(fact, layout, leaf.step)))
         return replace_leaves(known[leaf.atom], lambda fact: fact_for_ever(fact, layout))
@@ -101,7 +109,9 @@ def ground(circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout
 
 def fact_at(fact: Fact[Quantity], layout: Layout, step: int) -> ColumnFact:
     """A fact about signals as one about the columns of a sample."""
-    return Fact(fact.polynomial.substitute(lambda q: layout.state(q[0], q[1], step)), fact.strict, fact.margin)
+    return Fact(
+        fact.polynomial.substitute(lambda q: layout.state(q[0], q[1], step)), fact.strict, fact.margin
+    )
 
 
 def fact_for_ever(fact: Fact[Quantity], layout: Layout) -> Circuit[ColumnFact]:
@@ -127,7 +137,9 @@ def fact_for_ever(fact: Fact[Quantity], layout: Layout) -> Circuit[ColumnFact]:
         powers.setdefault(power, {})[rest] = factor
     return all_of(
         Leaf(
-            Fact(Polynomial(terms), fact.strict, fact.margin) if power == 0 else Fact(Polynomial(terms), False)
+            Fact(Polynomial(terms), fact.strict, fact.margin)
+            if power == 0
+            else Fact(Polynomial(terms), False)
         )
         for power, terms in sorted(powers.items())
     )

@@ -67,7 +67,9 @@ def nodes(circuit: Circuit[T]) -> Iterator[Circuit[T]]:
                 waiting.extend((part, False) for part in reversed(node.parts))
 
 
-def fold(circuit: Circuit[T], leaf: Callable[[T], S], both: Callable[[list[S]], S], either: Callable[[list[S]], S]) -> S:
+def fold(
+    circuit: Circuit[T], leaf: Callable[[T], S], both: Callable[[list[S]], S], either: Callable[[list[S]], S]
+) -> S:
     """The value of ``circuit`` computed from its leaves up, each node once."""
     done: dict[int, S] = {}
     for node in nodes(circuit):
@@ -85,6 +87,7 @@ def fold(circuit: Circuit[T], leaf: Callable[[T], S], both: Callable[[list[S]], 
 
 def replace_leaves(circuit: Circuit[T], change: Callable[[T], Circuit[S]]) -> Circuit[S]:
     """``circuit`` with each leaf replaced by a circuit."""
+
     def both(parts: list[Circuit[S]]) -> Circuit[S]:
         return all_of(parts)
 

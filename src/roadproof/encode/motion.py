@@ -26,7 +26,9 @@ class Layout:
 
     def column(self, vehicle: str, signal: str, step: int) -> int:
         per_vehicle = len(SIGNALS) * (self.grid.steps + 1)
-        return self.vehicles.index(vehicle) * per_vehicle + SIGNALS.index(signal) * (self.grid.steps + 1) + step
+        return (
+            self.vehicles.index(vehicle) * per_vehicle + SIGNALS.index(signal) * (self.grid.steps + 1) + step
+        )
 
     def state(self, vehicle: str, signal: str, step: int) -> Polynomial[int]:
         """A signal at a sample; an acceleration is that of the piece which begins there."""
@@ -49,7 +51,13 @@ class Motions:
 
 
 def encode_motions(
-    vehicles: Mapping[str, Vehicle], grid: Grid, starts: Mapping[str, Range], across: Mapping[str, Range], natural: bool, inside: Fraction, straight: Collection[str] = ()
+    vehicles: Mapping[str, Vehicle],
+    grid: Grid,
+    starts: Mapping[str, Range],
+    across: Mapping[str, Range],
+    natural: bool,
+    inside: Fraction,
+    straight: Collection[str] = (),
 ) -> Motions:
     """Columns and rows for ``vehicles``.
 
@@ -57,7 +65,8 @@ def encode_motions(
     be at all (m). ``natural`` asks in addition that no vehicle moves across the road at the first
     and last sample and that accelerations change by no more than the vehicle's jumps, from and to
     none at the end; the first speed is then the vehicle's cruising speed. ``inside`` is how far
-    accelerations stay inside their limits, so that rounding cannot break them. Vehicles in ``straight`` never move across the road.
+    accelerations stay inside their limits, so that rounding cannot break them. Vehicles in
+    ``straight`` never move across the road.
     """
     layout = Layout(tuple(vehicles), grid)
     columns = [
@@ -65,7 +74,9 @@ def encode_motions(
         for name, vehicle in vehicles.items()
         for column in _columns(name, vehicle, grid, starts[name], across[name], natural, name in straight)
     ]
-    rows = [row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural, inside)]
+    rows = [
+        row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural, inside)
+    ]
     return Motions(layout, tuple(columns), tuple(rows))
 
 

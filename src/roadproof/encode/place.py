@@ -84,7 +84,9 @@ def stay_on_road(layout: Layout, road: Road, name: str, vehicle: Vehicle) -> Cir
     return all_of(conditions)
 
 
-def _box_inside(layout: Layout, name: str, vehicle: Vehicle, place: Rectangle, step: int) -> Circuit[ColumnFact]:
+def _box_inside(
+    layout: Layout, name: str, vehicle: Vehicle, place: Rectangle, step: int
+) -> Circuit[ColumnFact]:
     (from_, to), (right, left) = place
     s, d = layout.state(name, "s", step), layout.state(name, "d", step)
     parts = [_at_least(d, right + vehicle.width), _at_least(d.scaled(Fraction(-1)), -left)]
@@ -99,17 +101,25 @@ def _at_least(value: Polynomial[int], bound: Fraction) -> Circuit[ColumnFact]:
     return Leaf(Fact(value + constant(-bound), False))
 
 
-def stay_apart(layout: Layout, first: tuple[str, Vehicle], second: tuple[str, Vehicle], margin: Fraction) -> Circuit[ColumnFact]:
+def stay_apart(
+    layout: Layout, first: tuple[str, Vehicle], second: tuple[str, Vehicle], margin: Fraction
+) -> Circuit[ColumnFact]:
     """Between two samples, one of four sides separates the boxes at both ends."""
     (a, vehicle_a), (b, vehicle_b) = first, second
     conditions = []
     for k in range(layout.grid.steps):
         sides = []
-        for signal, sizes in (("s", (vehicle_a.length, vehicle_b.length)), ("d", (vehicle_a.width, vehicle_b.width))):
+        for signal, sizes in (
+            ("s", (vehicle_a.length, vehicle_b.length)),
+            ("d", (vehicle_a.width, vehicle_b.width)),
+        ):
             for low, high, size in ((a, b, sizes[1]), (b, a, sizes[0])):
                 gaps = [
                     affine(
-                        [(layout.column(high, signal, e), Fraction(1)), (layout.column(low, signal, e), Fraction(-1))],
+                        [
+                            (layout.column(high, signal, e), Fraction(1)),
+                            (layout.column(low, signal, e), Fraction(-1)),
+                        ],
                         -size,
                     )
                     for e in (k, k + 1)

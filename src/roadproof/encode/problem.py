@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
-from roadproof.encode.circuit import Circuit, all_of, nodes, Leaf
+from roadproof.encode.circuit import Circuit, Leaf, all_of, nodes
 from roadproof.encode.polynomial import Fact, Polynomial
 
 # A fact over column numbers.

@@ -58,7 +58,12 @@ def unroll(formula: Formula, grid: Grid) -> Circuit[At]:
 
     ``formula`` is bound: no parameters, quantifiers or lane atoms.
     """
-    return _Unrolling(grid).at(formula, True, 0)
+    return unroll_at(formula, grid, 0)
+
+
+def unroll_at(formula: Formula, grid: Grid, step: int) -> Circuit[At]:
+    """The same at another sample."""
+    return _Unrolling(grid).at(formula, True, step)
 
 
 _OPPOSITE: dict[Comparison, Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}

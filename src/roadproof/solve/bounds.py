@@ -9,7 +9,7 @@ Programming 10, 1976). All in floating point: solutions are judged exactly elsew
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 from typing import Literal, TypeAlias
 
 from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
@@ -121,7 +121,7 @@ def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> t
         return made, side == "outer"
     cuts = [low + (high - low) * k / pieces for k in range(pieces + 1)]
     windows: list[Piece] = []
-    for a, b in zip(cuts, cuts[1:], strict=False):
+    for a, b in pairwise(cuts):
         secant = form.scaled(a + b) + Affine((), -a * b)
         inside = (Bound(form + Affine((), -a)), Bound(form.scaled(-1) + Affine((), b)))
         windows.append((secant.scaled(factor), inside if pieces > 1 else ()))

@@ -7,6 +7,7 @@ its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth``
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from importlib.util import find_spec
 from typing import Any, Literal, TypeAlias, assert_never
 
@@ -43,7 +44,9 @@ SOLVERS: Mapping[str, SolverFacts] = {
     ),
     "gurobi": SolverFacts("GUROBI", "gurobipy", lambda limit, gap: {"TimeLimit": limit, "MIPGap": gap}),
     "cbc": SolverFacts("CBC", "cylp", lambda limit, gap: {"maximumSeconds": limit, "allowableGap": gap}),
-    "glpk": SolverFacts("GLPK_MI", "cvxopt", lambda limit, gap: {"tm_lim": int(limit * 1000), "mip_gap": gap}),
+    "glpk": SolverFacts(
+        "GLPK_MI", "cvxopt", lambda limit, gap: {"tm_lim": int(limit * 1000), "mip_gap": gap}
+    ),
 }
 
 
@@ -52,7 +55,7 @@ class Solution:
     """Values of the problem's columns where ``status`` is found."""
 
     status: Status
-    values: tuple[float, ...] = ()
+    values: tuple[float, ...] | tuple[Fraction, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -214,6 +217,12 @@ def _run(
     if x.value is None:
         return Solution("unknown")
     return Solution("found", tuple(float(v) for v in x.value[:wanted]))
+
+
+def prepare() -> None:
+    """Import cvxpy now rather than at the first question, for processes that are about to be forked."""
+    if find_spec("cvxpy") is not None:
+        import cvxpy  # noqa: F401
 
 
 def box_of(problem: Problem) -> list[tuple[float, float]]:

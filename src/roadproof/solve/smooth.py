@@ -124,4 +124,6 @@ class _Triplets:
         shift = len(self.right)
         rows = self.rows + [r + shift for r in other.rows]
         shape = (shift + len(other.right), count)
-        return coo_array((self.values + other.values, (rows, self.columns + other.columns)), shape=shape).tocsc()
+        return coo_array(
+            (self.values + other.values, (rows, self.columns + other.columns)), shape=shape
+        ).tocsc()

@@ -26,11 +26,11 @@ def round_drive(
     place = None if grain is None else grain * 10
     motions = {}
     for name in layout.vehicles:
-        starts = {
-            signal: rounded(values[layout.column(name, signal, 0)], place) for signal in ("s", "d")
-        }
+        starts = {signal: rounded(values[layout.column(name, signal, 0)], place) for signal in ("s", "d")}
         speeds = {
-            signal: [rounded(values[layout.column(name, signal, k)], grain) for k in range(layout.grid.steps + 1)]
+            signal: [
+                rounded(values[layout.column(name, signal, k)], grain) for k in range(layout.grid.steps + 1)
+            ]
             for signal in ("v_lon", "v_lat")
         }
         motions[name] = Motion(
@@ -51,7 +51,11 @@ def _pieces(along: Sequence[Fraction], across: Sequence[Fraction], dt: Fraction)
     for k in range(len(along) - 1):
         a_lon, a_lat = (along[k + 1] - along[k]) / dt, (across[k + 1] - across[k]) / dt
         before = pieces[-1] if pieces else None
-        if before is not None and before.duration is not None and (before.a_lon, before.a_lat) == (a_lon, a_lat):
+        if (
+            before is not None
+            and before.duration is not None
+            and (before.a_lon, before.a_lat) == (a_lon, a_lat)
+        ):
             pieces[-1] = Piece(before.duration + dt, a_lon, a_lat)
         else:
             pieces.append(Piece(dt, a_lon, a_lat))

@@ -2,67 +2,27 @@
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import combinations
 
 from roadproof.encode.build import Manners, build_problem
 from roadproof.encode.motion import Layout
-from roadproof.encode.problem import Problem
+from roadproof.encode.problem import ColumnFact, Problem
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
 from roadproof.judge.exact import judge
 from roadproof.judge.replay import first_breach, first_overlap
 from roadproof.logic.formula import Formula
 from roadproof.solve.bounds import TooNonlinearError
+from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import Solution, box_of, solve_mixed
-from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import Query
 from roadproof.verdict import Verdict
+from roadproof.witness.question import Found, Means, Question
 from roadproof.witness.rounding import round_drive
-from roadproof.witness.shape import Objective, reshape
+from roadproof.witness.shape import reshape, violation_depths
+from roadproof.witness.variety import differ
 from roadproof.world.drive import Drive
-from roadproof.world.road import Road
-from roadproof.world.vehicle import Vehicle
-
-
-@dataclass(frozen=True)
-class Question:
-    """For which drive does ``query`` hold on ``road``? ``lanes`` are the assignments to be tried, in order."""
-
-    query: Query
-    road: Road
-    vehicles: Mapping[str, Vehicle]
-    values: Mapping[str, Fraction]
-    lanes: tuple[Mapping[str, str], ...]
-    grid: Grid
-    manners: Manners = Manners()
-
-    def bound(self, lanes: Mapping[str, str]) -> Formula:
-        """The formula under one assignment of lanes."""
-        return bind(self.query.formula, self.road, lanes, self.values)
-
-
-@dataclass(frozen=True)
-class Means:
-    """How to search: engine, solver, objective, seconds for one answer, finer grids to try."""
-
-    objective: Objective = "smooth"
-    engine: str = "milp"
-    solver: str = "highs"
-    time_limit: float = 60.0
-    refinements: int = 2
-
-
-@dataclass(frozen=True)
-class Found:
-    """A judged drive, with the lanes it was judged under and the manners it keeps."""
-
-    drive: Drive
-    lanes: Mapping[str, str]
-    formula: Formula
-    grid: Grid
-    manners: Manners
 
 
 @dataclass(frozen=True)
@@ -72,38 +32,49 @@ class Answer:
     verdict: Verdict
     found: Found | None
     reason: str
-    seconds: Mapping[str, float]
-    sizes: Mapping[str, int]
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
 
 
-def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[dict[str, str], ...]:
-    """Every way to give the free lanes of ``query`` lanes of ``road`` that agrees with ``chosen``.
+def find_witness(question: Question, means: Means, unlike: tuple[Drive, ...] = ()) -> Answer:
+    """Search for a drive clearly different from those in ``unlike``.
 
-    Raises ``UsageError`` for a lane that the road does not have or the query does not speak of.
+    Whatever is found has been judged exactly in dense and unbounded time. NONE-WITHIN means that
+    the problem on the grid has no solution for any assignment of lanes. Raises ``UsageError`` for
+    interval bounds off the grid, ``MissingSolverError``.
     """
-    for name, lane in chosen.items():
-        if lane not in road.lanes:
-            raise UsageError(f"lane {name}={lane}: road '{road.name}' has the lanes {', '.join(road.lanes)}")
-        if name not in query.lanes:
-            known = ", ".join(query.lanes) or "no lane"
-            raise UsageError(f"lane {name}={lane}: the formula speaks of {known}")
-    options = [[chosen[name]] if name in chosen else list(road.lanes) for name in query.lanes]
-    return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
+    if means.objective == "short":
+        return _shortest(question, means, unlike)
+    return _Search(question, means, unlike).run()
 
 
-def find_witness(question: Question, means: Means) -> Answer:
-    """Search for a drive; whatever is found has been judged exactly in dense and unbounded time."""
-    return _Search(question, means).run()
+def _shortest(question: Question, means: Means, unlike: tuple[Drive, ...]) -> Answer:
+    """The fewest steps for which there is a drive, by halving; each answer is judged by itself."""
+    means = replace(means, objective="smooth")
+    best = find_witness(question, means, unlike)
+    if best.found is None:
+        return best
+    low, high = 0, question.grid.steps
+    while high - low > 1:
+        middle = (low + high) // 2
+        shorter = replace(question, grid=Grid(question.grid.dt, middle))
+        answer = _Search(shorter, replace(means, refinements=0, explain=False), unlike).run()
+        if answer.found is not None and answer.found.manners.natural == best.found.manners.natural:
+            best, high = answer, middle
+        else:
+            low = middle
+    return best
 
 
 class _Search:
-    def __init__(self, question: Question, means: Means) -> None:
+    def __init__(self, question: Question, means: Means, unlike: tuple[Drive, ...]) -> None:
         self.question = question
         self.means = means
+        self.unlike = unlike
         self.seconds: dict[str, float] = {}
         self.sizes: dict[str, int] = {}
         self.deadline = time.monotonic() + means.time_limit
-        self.rejected = ""
+        self.doubt = ""
 
     def run(self) -> Answer:
         for lanes, grid, manners in self._attempts():
@@ -112,24 +83,27 @@ class _Search:
             found = self._attempt(lanes, grid, manners)
             if found is not None:
                 return self._answer(Verdict.WITNESSED, found, "")
-        return self._answer(Verdict.UNKNOWN, None, self.rejected or "no drive was found")
+        if self.doubt:
+            return self._answer(Verdict.UNKNOWN, None, self.doubt)
+        if not self.means.explain:
+            return self._answer(Verdict.UNKNOWN, None, "none was found")
+        return self._none()
 
     def _answer(self, verdict: Verdict, found: Found | None, reason: str) -> Answer:
         return Answer(verdict, found, reason, self.seconds, self.sizes)
 
     def _attempts(self) -> Iterator[tuple[Mapping[str, str], Grid, Manners]]:
         """Natural drives first, on the grid and on finer ones; then whatever the limits allow."""
-        plain = replace(self.question.manners, natural=False, margin=Fraction(1, 100))
-        every = [plain]
+        every = [self.question.manners.plain()]
         if self.question.manners.natural:
-            every = [*self._straightest(), self.question.manners, plain]
+            every = [*self._straightest(), self.question.manners, *every]
         for manners in every:
             for halvings in range(self.means.refinements + 1):
                 grid = Grid(self.question.grid.dt / 2**halvings, self.question.grid.steps * 2**halvings)
-                before = self.rejected
+                self.doubt = ""
                 for lanes in self.question.lanes:
                     yield lanes, grid, manners
-                if self.rejected == before:
+                if not self.doubt:
                     break
 
     def _straightest(self) -> Iterator[Manners]:
@@ -142,27 +116,34 @@ class _Search:
     def _attempt(self, lanes: Mapping[str, str], grid: Grid, manners: Manners) -> Found | None:
         start = time.perf_counter()
         formula = self.question.bound(lanes)
-        problem, layout = build_problem(formula, self.question.road, self.question.vehicles, grid, manners)
+        problem, layout = self._problem(formula, grid, manners)
         self.sizes = problem.sizes()
         start = self._spent("encode", start)
         solution = self._solve(problem)
         start = self._spent("solve", start)
         if solution.status != "found":
-            if solution.status == "unknown":
-                self.rejected = "the solver gave up"
+            self.doubt = "the solver gave up" if solution.status == "unknown" else self.doubt
             return None
-        for values in self._shapes(problem, layout, solution):
+        for drive in self._drives(problem, layout, solution, formula):
             start = self._spent("shape", start)
-            drive = round_drive(layout, self.question.vehicles, values)
             complaint = self._complaint(formula, drive, grid, manners)
             start = self._spent("judge", start)
             if complaint is None:
                 return Found(drive, lanes, formula, grid, manners)
-            self.rejected = complaint
+            self.doubt = complaint
         return None
+
+    def _problem(self, formula: Formula, grid: Grid, manners: Manners) -> tuple[Problem, Layout]:
+        problem, layout = build_problem(formula, self.question.road, self.question.vehicles, grid, manners)
+        for other in self.unlike:
+            problem = problem.also(differ(layout, other))
+        return problem, layout
 
     def _solve(self, problem: Problem) -> Solution:
         left = max(0.1, self.deadline - time.monotonic())
+        if self.means.engine == "smt":
+            exact = solve_exactly(problem, left)
+            return Solution(exact.status, exact.values)
         try:
             return solve_mixed(problem, box_of(problem), solver=self.means.solver, time_limit=left)
         except TooNonlinearError:
@@ -171,17 +152,22 @@ class _Search:
                 "use --engine smt"
             ) from None
 
-    def _shapes(self, problem: Problem, layout: Layout, solution: Solution) -> Iterator[tuple[float, ...]]:
+    def _drives(
+        self, problem: Problem, layout: Layout, solution: Solution, formula: Formula
+    ) -> Iterator[Drive]:
+        """What the solver found in a better shape, then as it is."""
+        vehicles = self.question.vehicles
+        floats = tuple(float(v) for v in solution.values)
         if self.means.objective != "any":
-            yield reshape(
-                problem,
-                layout,
-                self.question.road,
-                self.question.vehicles,
-                solution.values,
-                self.means.objective,
-            )
-        yield solution.values
+            depths: tuple[ColumnFact, ...] = ()
+            if self.means.objective in ("mild", "severe"):
+                depths = violation_depths(formula, vehicles, layout, floats)
+            objective, road = self.means.objective, self.question.road
+            shaped = reshape(problem, layout, road, vehicles, floats, objective, depths)
+            yield round_drive(layout, vehicles, shaped)
+        yield round_drive(layout, vehicles, floats)
+        if self.means.engine == "smt":
+            yield round_drive(layout, vehicles, solution.values, None)
 
     def _complaint(self, formula: Formula, drive: Drive, grid: Grid, manners: Manners) -> str | None:
         """Why a drive is no witness, or None."""
@@ -192,8 +178,39 @@ class _Search:
         if overlap is not None:
             return f"between the samples, {overlap}"
         if not judge(formula, drive).holds:
-            return f"between the samples of dt={grid.dt} s the formula fails"
+            return f"the drives that were found fail the formula between the samples of dt={grid.dt} s"
         return None
+
+    def _none(self) -> Answer:
+        """Show that there is none on the grid: by a relaxation, else by the exact encoding."""
+        start = time.perf_counter()
+        manners = replace(self.question.manners.plain(), margin=Fraction(0), inside=Fraction(0))
+        how = set()
+        for lanes in self.question.lanes:
+            problem, _ = self._problem(self.question.bound(lanes), self.question.grid, manners)
+            by = self._refute(problem)
+            start = self._spent("refute", start)
+            if not by:
+                shown = ", ".join(f"{k}={v}" for k, v in lanes.items()) or "no lane"
+                reason = f"neither a drive nor a refutation was found for {shown}"
+                return self._answer(Verdict.UNKNOWN, None, reason)
+            how.add(by)
+        return self._answer(Verdict.NONE_WITHIN, None, f"{self.question.limits()} ({', '.join(sorted(how))})")
+
+    def _refute(self, problem: Problem) -> str:
+        """How it was shown that ``problem`` has no solution; empty where it was not."""
+        left = max(0.1, self.deadline - time.monotonic())
+        if self.means.engine == "milp":
+            try:
+                relaxed = solve_mixed(
+                    problem, box_of(problem), "outer", 2, None, self.means.solver, min(20.0, left)
+                )
+                if relaxed.status == "infeasible":
+                    return f"a relaxation is infeasible for {self.means.solver}"
+            except TooNonlinearError:
+                pass
+        exact = solve_exactly(problem, min(20.0, max(0.1, self.deadline - time.monotonic())))
+        return "the exact encoding is unsat for z3" if exact.status == "infeasible" else ""
 
     def _spent(self, stage: str, start: float) -> float:
         now = time.perf_counter()

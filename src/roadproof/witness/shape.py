@@ -1,20 +1,21 @@
 """What a drive should look like once its choices are made: objectives for ``solve.smooth``."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Literal, TypeAlias
+from fractions import Fraction
 
-from roadproof.encode.circuit import implicant
+from roadproof.encode.build import ground
+from roadproof.encode.circuit import evaluate, implicant
 from roadproof.encode.motion import Layout
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import ColumnFact, Problem
+from roadproof.encode.unroll import unroll_at
+from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.solve.bounds import Affine, Bound, value_of
 from roadproof.solve.milp import box_of
 from roadproof.solve.smooth import Square, minimise, narrow, near
+from roadproof.witness.question import Objective
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
-
-Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
-OBJECTIVES: tuple[Objective, ...] = ("any", "smooth", "margin", "mild", "severe", "short")
 
 # How far a signal may move in one round, so that squares are nearly straight.
 _TRUST = {"s": 400.0, "d": 10.0, "v_lon": 4.0, "v_lat": 0.6}
@@ -84,9 +85,7 @@ def _with_margin(
 ) -> tuple[list[tuple[float, float]], list[Bound], Affine]:
     """One more column that no fact with a margin may fall below, to be made great."""
     extra = len(box)
-    raised = [
-        Bound(b.affine + Affine(((extra, -1.0),), 0.0), 0.0) if b.margin > 0 else b for b in bounds
-    ]
+    raised = [Bound(b.affine + Affine(((extra, -1.0),), 0.0), 0.0) if b.margin > 0 else b for b in bounds]
     least = min((b.margin for b in bounds if b.margin > 0), default=0.0)
     return [*box, (least, 1000.0)], raised, Affine(((extra, -100.0),), 0.0)
 
@@ -97,8 +96,27 @@ def _depth(depths: Sequence[ColumnFact], point: Sequence[float], sign: float) ->
     for fact in depths:
         for monomial, coefficient in fact.polynomial.terms.items():
             for position, column in enumerate(monomial):
-                factor = float(coefficient)
+                factor = float(coefficient) * sign / len(depths)
                 for other in monomial[:position] + monomial[position + 1 :]:
                     factor *= point[other]
-                total = total + Affine(((column, factor * sign),), 0.0)
+                total = total + Affine(((column, factor),), 0.0)
     return total
+
+
+def violation_depths(
+    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, found: Sequence[float]
+) -> tuple[ColumnFact, ...]:
+    """By how much RSS distances fall short wherever ``found`` violates them: facts with that value.
+
+    They are the comparisons with a distance in each ``rssViolation`` that is true at a sample, which
+    are those of degree 2.
+    """
+    depths: list[ColumnFact] = []
+    for part in subformulas(formula):
+        if isinstance(part, Named) and part.name == "rssViolation":
+            for step in range(layout.grid.steps + 1):
+                circuit = ground(unroll_at(part, layout.grid, step), vehicles, layout, Fraction(0))
+                if evaluate(circuit, lambda fact: value_of(fact, found) > 0):
+                    chosen = implicant(circuit, lambda fact: value_of(fact, found))
+                    depths += [fact for fact in chosen if fact.polynomial.degree > 1]
+    return tuple(depths)

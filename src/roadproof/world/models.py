@@ -43,7 +43,18 @@ def load_road(name_or_path: str | Path) -> Road:
 def load_vehicle(name_or_path: str | Path) -> Vehicle:
     """A bundled vehicle by name, or a user's by path. Raises ``InputError``."""
     path, content = _read("vehicles", name_or_path)
-    fields = ("length", "width", "v_lon", "v_lat", "a_lon", "a_lat", "lateral_share", "cruise", "jump_lon", "jump_lat")
+    fields = (
+        "length",
+        "width",
+        "v_lon",
+        "v_lat",
+        "a_lon",
+        "a_lat",
+        "lateral_share",
+        "cruise",
+        "jump_lon",
+        "jump_lat",
+    )
     _only(content, {*fields, "name"}, str(path))
     for field in fields:
         if field not in content:
@@ -58,13 +69,17 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         if value <= 0:
             raise InputError(f"{path}: {field}={value}, but it must be greater than 0")
     if two["v_lon"][0] < 0:
-        raise InputError(f"{path}: v_lon starts at {two['v_lon'][0]}, but a vehicle never reverses: use 0 or more")
+        raise InputError(
+            f"{path}: v_lon starts at {two['v_lon'][0]}, but a vehicle never reverses: use 0 or more"
+        )
     if two["cruise"][0] < two["v_lon"][0] or two["cruise"][1] > two["v_lon"][1]:
         raise InputError(f"{path}: cruise={content['cruise']} is not inside v_lon={content['v_lon']}")
     for field in ("a_lon", "a_lat", "v_lat"):
         low, high = two[field]
         if not low <= 0 <= high:
-            raise InputError(f"{path}: {field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on")
+            raise InputError(
+                f"{path}: {field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on"
+            )
     return Vehicle(str(content.get("name", path.stem)), **one, **two)  # type: ignore[arg-type]
 
 
@@ -140,7 +155,9 @@ def _lanelet(entry: Any, where: str) -> Lanelet:
             raise InputError(f"{where}: {field}={entry[field]!r}, but it must be one of {', '.join(allowed)}")
     bounds = entry["s"]
     if not isinstance(bounds, list) or len(bounds) != 2:
-        raise InputError(f"{where}: s={bounds!r} is no range; write [from, to], with -inf and inf without bound")
+        raise InputError(
+            f"{where}: s={bounds!r} is no range; write [from, to], with -inf and inf without bound"
+        )
     low = None if bounds[0] == float("-inf") else _number(bounds[0], f"{where}, s")
     high = None if bounds[1] == float("inf") else _number(bounds[1], f"{where}, s")
     if low is not None and high is not None and low >= high:
@@ -172,7 +189,7 @@ def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
                 )
             if before.d[0] >= after.d[1] or after.d[0] >= before.d[1]:
                 raise InputError(
-                    f"{where}: in lane '{lane}', lanelets '{before.id}' and '{after.id}' do not meet across the road"
+                    f"{where}: in lane '{lane}', '{before.id}' and '{after.id}' do not meet across the road"
                 )
 
 
@@ -196,16 +213,16 @@ def _alongside(a: Lanelet, b: Lanelet) -> bool:
     return not starts or not ends or max(starts) < min(ends)
 
 
-def _declared(
-    entries: object, geometric: frozenset[frozenset[str]], where: str
-) -> frozenset[frozenset[str]]:
+def _declared(entries: object, geometric: frozenset[frozenset[str]], where: str) -> frozenset[frozenset[str]]:
     if not isinstance(entries, list) or not all(isinstance(e, list) and len(e) == 2 for e in entries):
         raise InputError(f"{where}: adjacent={entries!r}; write a list of pairs of lanes")
     declared = pairs((str(a), str(b)) for a, b in entries)
     for pair in sorted(declared ^ geometric, key=sorted):
         names = " and ".join(sorted(pair))
-        said = "are declared adjacent but share no boundary" if pair in declared else (
-            "share a boundary but are not declared adjacent"
+        said = (
+            "are declared adjacent but share no boundary"
+            if pair in declared
+            else ("share a boundary but are not declared adjacent")
         )
         raise InputError(f"{where}: lanes {names} {said}; correct 'adjacent' or leave it out")
     return declared

@@ -1,0 +1,260 @@
+"""``roadproof witness``: drives on which scenarios and formulas hold, each judged exactly."""
+
+import argparse
+import os
+import tempfile
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.cli.options import (
+    add_json_option,
+    add_parameter_option,
+    add_specification_options,
+    load_library_of,
+    parameter_values,
+    select_specification,
+    write_json,
+    write_text,
+)
+from roadproof.errors import InputError, UsageError
+from roadproof.verdict import Verdict, exit_code
+
+if TYPE_CHECKING:
+    from roadproof.spec.library import Library
+    from roadproof.witness.ask import Outcome, Request
+
+SUMMARY = "find a drive on which a scenario or a formula holds, and judge it exactly"
+SCHEMA = "roadproof/witness/1"
+
+_EXAMPLES = """\
+examples:
+  roadproof witness 4                                 a drive for scenario 4 on its reference road
+  roadproof witness 12 --set ext --out drives         drive file, CSV and picture
+  roadproof witness --all --set base,extA,ext --out drives
+  roadproof witness 'scenario_8(SV,POV,L) and not scenario_6(SV,POV,L)' --lane L=main-2 --road main-3
+  roadproof witness 1 --objective severe --count 3
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("what", metavar="N|FORMULA", nargs="*", help="a scenario's number, or a formula")
+    parser.add_argument(
+        "--all", action="store_true", help="all 24 scenarios; --set takes several, as base,ext"
+    )
+    add_specification_options(parser)
+    add_parameter_option(parser)
+    parser.add_argument(
+        "--road", metavar="R", help="a reference road or a .toml file (default: by the formula)"
+    )
+    parser.add_argument(
+        "--lane",
+        dest="lanes",
+        metavar="[L=]LANE",
+        action="append",
+        default=[],
+        help="the lane that L stands for (default: any that works, from the right)",
+    )
+    parser.add_argument(
+        "--vehicle",
+        dest="vehicles",
+        metavar="[NAME=]MODEL",
+        action="append",
+        default=[],
+        help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
+    )
+    parser.add_argument("--horizon", metavar="S", default="6", help="seconds that are searched (default: 6)")
+    parser.add_argument("--dt", metavar="S", default="3/5", help="seconds between samples (default: 3/5)")
+    parser.add_argument(
+        "--reach", metavar="M", default="80", help="how far apart vehicles may start (default: 80)"
+    )
+    parser.add_argument("--allow-collisions", action="store_true", help="boxes may overlap")
+    parser.add_argument("--engine", choices=("milp", "smt"), default="milp", help="default: milp")
+    parser.add_argument("--solver", default="highs", help="a mixed-integer solver for milp (default: highs)")
+    parser.add_argument(
+        "--objective",
+        choices=("any", "smooth", "margin", "mild", "severe", "short"),
+        default="smooth",
+        help="what the drive should be like (default: smooth)",
+    )
+    parser.add_argument("--count", type=int, default=1, metavar="K", help="K clearly different drives")
+    parser.add_argument(
+        "--timeout", type=float, default=60.0, metavar="S", help="seconds a question (default: 60)"
+    )
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write drive files, CSV and pictures")
+    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    parser.add_argument("--verbose", action="store_true", help="print sizes and seconds by stage")
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    begun = time.monotonic()
+    library = load_library_of(args)
+    requests = list(_requests(args, library))
+    if args.out is not None:
+        _make_folder(args.out)
+    outcomes: list[Outcome] = []
+    with _answers(requests, args.jobs) as answers:
+        for outcome in answers:
+            outcomes.append(outcome)
+            if args.json != "-":
+                print(_line(outcome, args.verbose), flush=True)
+            if args.out is not None:
+                _write(outcome, args.out, not args.no_pictures, library)
+    if args.json:
+        verdicts = [outcome.as_json() for outcome in outcomes]
+        write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
+    if args.json != "-" and len(outcomes) > 1:
+        found = sum(o.verdict is Verdict.WITNESSED for o in outcomes)
+        print(f"{found} of {len(outcomes)} witnessed in {time.monotonic() - begun:.1f} s")
+    return exit_code((outcome.verdict, Verdict.WITNESSED) for outcome in outcomes)
+
+
+def _requests(args: argparse.Namespace, library: "Library") -> "Iterator[Request]":
+    from roadproof.witness.ask import Request
+    from roadproof.witness.question import Means
+
+    if args.all == bool(args.what):
+        raise UsageError("name scenarios or formulas, or ask for --all: one of the two")
+    if args.count < 1 or not args.timeout > 0 or (args.jobs is not None and args.jobs < 1):
+        raise UsageError("--count, --timeout and --jobs must be greater than 0")
+    sets = str(args.set_name).split(",")
+    for name in sets:
+        library.select(name)
+    whats = list(args.what)
+    if args.all:
+        numbers = (d.removeprefix("scenario_") for d in library.select(sets[0]).definitions)
+        whats = [n for n in numbers if n.isdecimal()]
+    request = Request(
+        what="",
+        options=dict(_chosen_options(args, library, sets[0])),
+        specs=tuple(args.specs),
+        values=parameter_values(args, library),
+        road=args.road,
+        lanes=dict(_named(args.lanes, "L")),
+        vehicles=dict(_named(args.vehicles, "")),
+        horizon=_seconds("--horizon", args.horizon),
+        dt=_seconds("--dt", args.dt),
+        reach=_seconds("--reach", args.reach),
+        collisions=args.allow_collisions,
+        count=args.count,
+        means=Means(args.objective, args.engine, args.solver, args.timeout),
+    )
+    for set_name in sets:
+        for what in whats:
+            yield replace(request, what=what, set_name=set_name)
+
+
+def _chosen_options(args: argparse.Namespace, library: "Library", set_name: str) -> Mapping[str, str]:
+    one_set = argparse.Namespace(**{**vars(args), "set_name": set_name})
+    return select_specification(one_set, library).options
+
+
+def _named(texts: Sequence[str], usual: str) -> Iterator[tuple[str, str]]:
+    for text in texts:
+        name, equals, value = text.rpartition("=")
+        yield (name if equals else usual), value
+
+
+def _seconds(option: str, text: str) -> Fraction:
+    try:
+        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
+    except (ValueError, ZeroDivisionError):
+        value = None
+    if value is None or value <= 0:
+        raise UsageError(f"{option} {text[:40]}: write a number greater than 0, such as 6, 0.6 or 3/5")
+    return value
+
+
+@contextmanager
+def _answers(requests: "Sequence[Request]", jobs: int | None) -> "Iterator[Iterator[Outcome]]":
+    """The outcomes in the order of the requests; several processes where there are several requests."""
+    from roadproof.witness.ask import ask
+
+    workers = min(jobs or os.cpu_count() or 1, len(requests))
+    if workers <= 1:
+        yield map(ask, requests)
+        return
+    _warm_up()
+    pool = ProcessPoolExecutor(workers)
+    try:
+        yield pool.map(ask, requests)
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _warm_up() -> None:
+    """Import what every worker needs before they are forked, so that it is imported once."""
+    from roadproof.solve.milp import prepare
+
+    prepare()
+
+
+def _line(outcome: "Outcome", verbose: bool) -> str:
+    name = f"scenario {outcome.scenario}" if outcome.scenario is not None else outcome.formula
+    shown = f"{name:<12} {outcome.set_name:<5} {outcome.verdict:<11} road {outcome.road:<7}"
+    if outcome.drives:
+        lanes: Mapping[str, str] = outcome.drives[0].get("lanes", {})
+        lane = outcome.drives[0]["lane"]
+        shown += f" lane {lane}" if lane else ""
+        shown += "".join(f" {k}={v}" for k, v in lanes.items() if k != "L")
+        shown += f" horizon {outcome.drives[0]['horizon']} s"
+        shown += "" if outcome.natural else " (not natural: within the vehicles' limits only)"
+        shown += f" {len(outcome.drives)} drives" if len(outcome.drives) > 1 else ""
+    shown += f" {outcome.seconds['all']:.2f} s"
+    if outcome.reason:
+        shown += f"\n  {outcome.reason}"
+    if outcome.impossibility is not None:
+        kind = "minimal core" if outcome.impossibility.minimal else "core, not minimised in the time given"
+        shown += f"\n  proved for all time, on every road; {kind}:"
+        shown += "".join(f"\n    {part}" for part in outcome.impossibility.core)
+    if verbose:
+        shown += f"\n  sizes {dict(outcome.sizes)}"
+        shown += "\n  seconds " + ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
+    return shown
+
+
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the folder {folder}: {error.strerror}") from None
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"cannot write into {folder}: choose another --out")
+
+
+def _write(outcome: "Outcome", folder: Path, pictures: bool, library: "Library") -> None:
+    from roadproof.export.drive_csv import csv_of
+    from roadproof.report.drive import draw_drive
+
+    for k, data in enumerate(outcome.drives):
+        stem = (
+            f"scenario-{outcome.scenario:02d}-{outcome.set_name}"
+            if outcome.scenario is not None
+            else (f"formula-{outcome.set_name}")
+        )
+        stem += f"-{k + 1}" if len(outcome.drives) > 1 else ""
+        write_json(data, str(folder / f"{stem}.json"))
+        write_text(folder / f"{stem}.csv", csv_of(data))
+        if pictures:
+            for kind, content in draw_drive(data, library).items():
+                _write_bytes(folder / f"{stem}.{kind}", content)
+
+
+def _write_bytes(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}") from None

@@ -1,0 +1,68 @@
+"""No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
+
+import json
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from roadproof.evidence.certificate import to_json
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
+from roadproof.prove.prover import prove
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+from roadproof.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Impossibility:
+    """``certificate`` proves ``not formula`` for all time; ``core`` are parts that already clash.
+
+    ``minimal``: no part of the core can be left out and the rest still be proved to clash.
+    """
+
+    core: tuple[str, ...]
+    minimal: bool
+    certificate: Mapping[str, Any]
+
+
+def show_impossible(specification: Specification, formula: str, timeout: float) -> Impossibility | None:
+    """A proof in dense, unbounded time that ``formula`` never holds at 0, or None. ``timeout`` in s."""
+    deadline = time.monotonic() + timeout
+    whole = prove(specification, f"not ({formula})", timeout)
+    if whole.verdict not in (Verdict.PROVED, Verdict.VACUOUS) or whole.certificate is None:
+        return None
+    core, minimal = _core(specification, formula, deadline)
+    return Impossibility(core, minimal, json.loads(to_json(whole.certificate)))
+
+
+def _core(specification: Specification, formula: str, deadline: float) -> tuple[tuple[str, ...], bool]:
+    """Leave out one part after the other where the rest still clashes."""
+    kept = [text(as_syntax(part, expand=False)) for part in parts(read_claim(specification, formula).formula)]
+    kept = list(dict.fromkeys(kept))
+    for part in tuple(kept):
+        rest = [p for p in kept if p != part]
+        left = deadline - time.monotonic()
+        if left <= 0:
+            return tuple(kept), False
+        if not rest:
+            continue
+        claim = f"not ({' and '.join(f'({p})' for p in rest)})"
+        if prove(specification, claim, min(left, 1.5)).verdict in (Verdict.PROVED, Verdict.VACUOUS):
+            kept = rest
+    return tuple(kept), True
+
+
+def parts(formula: Formula) -> Iterator[Formula]:
+    """The parts of a conjunction, through the names of definitions, down to temporal operators."""
+    match formula:
+        case f.And(every):
+            for part in every:
+                yield from parts(part)
+        case f.Named(_, _, body) if isinstance(body, f.And | f.Named) and not f.is_state(body):
+            yield from parts(body)
+        case _:
+            yield formula

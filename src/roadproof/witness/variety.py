@@ -1,0 +1,27 @@
+"""What makes one drive clearly different from another, as a condition for the next search."""
+
+from fractions import Fraction
+
+from roadproof.encode.circuit import Circuit, Leaf, any_of
+from roadproof.encode.motion import Layout
+from roadproof.encode.polynomial import Fact, constant
+from roadproof.encode.problem import ColumnFact
+from roadproof.world.drive import Drive
+from roadproof.world.motion import state_at
+
+# How far a signal at the start or the end has to be from that of another drive, in m and m/s.
+CLEARLY = {"s": Fraction(15), "d": Fraction(5, 2), "v_lon": Fraction(4)}
+
+
+def differ(layout: Layout, other: Drive) -> Circuit[ColumnFact]:
+    """At the start or the end, a vehicle is in another lane, elsewhere along it, or at another speed."""
+    choices: list[Circuit[ColumnFact]] = []
+    for name in layout.vehicles:
+        for step in (0, layout.grid.steps):
+            state = state_at(other.vehicles[name], step * layout.grid.dt)
+            for signal, distance in CLEARLY.items():
+                value: Fraction = getattr(state, signal)
+                now = layout.state(name, signal, step)
+                choices.append(Leaf(Fact(now + constant(-value - distance), False)))
+                choices.append(Leaf(Fact(now.scaled(Fraction(-1)) + constant(value - distance), False)))
+    return any_of(choices)
