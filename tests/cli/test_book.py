@@ -15,7 +15,12 @@ from pathlib import Path
 
 import pytest
 
-PAGES = sorted(Path(__file__).parent.joinpath("book").glob("*.md"))
+ROOT = Path(__file__).parents[2]
+PAGES = [
+    *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
+    ROOT / "README.md",
+    ROOT / "docs/language.md",
+]
 SLOWEST = 10.0  # seconds for one command on a busy machine; test_main measures the real bound
 
 
