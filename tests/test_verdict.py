@@ -1,0 +1,57 @@
+"""Verdicts to exit codes, excerpts of mistakes, and files that come along."""
+
+from pathlib import Path
+
+import pytest
+
+from roadproof import shipped
+from roadproof.errors import Position, TextError
+from roadproof.verdict import ExitCode, Verdict, exit_code
+
+PROVED, REFUTED, UNKNOWN = Verdict.PROVED, Verdict.REFUTED, Verdict.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "code"),
+    [
+        ([], 0),
+        ([(PROVED, PROVED)], 0),
+        ([(REFUTED, REFUTED), (PROVED, PROVED)], 0),
+        ([(REFUTED, PROVED)], 10),
+        ([(PROVED, REFUTED)], 10),
+        ([(Verdict.PROVED_BOUNDED, PROVED)], 10),
+        ([(Verdict.VACUOUS, PROVED)], 10),
+        ([(PROVED, PROVED), (UNKNOWN, PROVED), (REFUTED, PROVED)], 20),
+        ([(UNKNOWN, UNKNOWN)], 20),
+        ([(UNKNOWN, PROVED), (Verdict.CROSSCHECK_FAILED, PROVED)], 30),
+        ([(Verdict.CROSSCHECK_FAILED, Verdict.CROSSCHECK_FAILED)], 30),
+    ],
+)
+def test_the_gravest_outcome_gives_the_exit_code(outcomes: list[tuple[Verdict, Verdict]], code: int) -> None:
+    assert exit_code(outcomes) is ExitCode(code)
+    assert exit_code(reversed(outcomes)) is ExitCode(code)
+
+
+def test_a_long_line_is_cut_around_the_mistake() -> None:
+    line = "a" * 5_000 + "!" + "b" * 5_000
+    shown = str(TextError("here", Position(1, 5_001)).locate("f.spec", line)).splitlines()
+    assert shown[0] == "f.spec, line 1, column 5001: here"
+    assert len(shown[1]) <= 102
+    assert shown[1][shown[2].index("^")] == "!"
+
+
+def test_the_nearest_reader_says_where() -> None:
+    error = TextError("here", Position(1, 1)).locate("inner.spec", "x").locate("outer", "y")
+    assert str(error).startswith("inner.spec, line 1, column 1: here\n  x\n  ^")
+
+
+def test_shipped_folders_are_found_in_a_checkout_and_in_a_wheel(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert (shipped.shipped("models") / "roads" / "main-2.toml").is_file()
+    package = tmp_path / "site-packages" / "roadproof"
+    (package / "models").mkdir(parents=True)
+    monkeypatch.setattr(shipped, "__file__", str(package / "shipped.py"))
+    assert shipped.shipped("models") == package / "models"
+    with pytest.raises(FileNotFoundError, match="without its folder 'proofs'"):
+        shipped.shipped("proofs")
