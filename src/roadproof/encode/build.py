@@ -26,6 +26,8 @@ class Manners:
 
     ``natural``: start and end in a lane, straight on, at cruising
     speed; move across the road in one direction only, within the vehicles' jumps of acceleration.
+    ``between``: whether to look after the time between samples too.
+    ``apart``: how far boxes stay from each other, along or across.
     ``reach``: how far from the first vehicle's start the others may start, in m.
     ``collisions``: whether boxes may overlap. ``straight``: vehicles that do not move across the road.
     ``margin`` and ``inside``: what a search in floating
@@ -39,10 +41,15 @@ class Manners:
     margin: Fraction = Fraction(1, 10)
     inside: Fraction = Fraction(1, 100)
     off_centre: Fraction = Fraction(3, 10)
+    between: bool = True
+    apart: tuple[Fraction, Fraction] = (Fraction(2), Fraction(7, 10))
 
     def plain(self) -> "Manners":
         """Whatever the limits of the vehicles allow."""
-        return replace(self, natural=False, straight=frozenset(), margin=Fraction(1, 100))
+        close = Fraction(1, 20)
+        return replace(
+            self, natural=False, straight=frozenset(), margin=Fraction(1, 100), apart=(close, close)
+        )
 
 
 def build_problem(
@@ -53,11 +60,29 @@ def build_problem(
     The first vehicle starts with its front at s = 0. Raises ``UsageError`` for interval bounds that
     are no multiples of dt.
     """
-    motions = _motions(road, vehicles, grid, manners)
-    layout = motions.layout
-    wanted = ground(unroll(formula, grid), vehicles, layout, manners.margin)
+    layout = Layout(tuple(vehicles), grid)
+    wanted = encode_formula(formula, vehicles, layout, manners.margin)
+    return frame(wanted, road, vehicles, layout, manners), layout
+
+
+def frame(
+    wanted: Circuit[ColumnFact],
+    road: Road,
+    vehicles: Mapping[str, Vehicle],
+    layout: Layout,
+    manners: Manners,
+) -> Problem:
+    """An encoded formula put among motions, road and manners."""
+    motions = _motions(road, vehicles, layout.grid, manners)
     around = surroundings(road, vehicles, layout, manners)
-    return Problem(motions.columns, motions.rows, all_of([wanted, *around])), layout
+    return Problem(motions.columns, motions.rows, all_of([wanted, *around]))
+
+
+def encode_formula(
+    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, margin: Fraction
+) -> Circuit[ColumnFact]:
+    """The formula as a circuit over the columns of ``layout``."""
+    return ground(unroll(formula, layout.grid), vehicles, layout, margin)
 
 
 def _motions(road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, manners: Manners) -> Motions:
@@ -74,9 +99,12 @@ def surroundings(
     road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, manners: Manners
 ) -> list[Circuit[ColumnFact]]:
     """Conditions on where vehicles are that do not come from the formula."""
-    parts = [stay_on_road(layout, road, name, vehicle) for name, vehicle in vehicles.items()]
+    parts = [stay_on_road(layout, road, name, vehicle, manners.between) for name, vehicle in vehicles.items()]
     if not manners.collisions:
-        parts += [stay_apart(layout, a, b, manners.margin) for a, b in combinations(vehicles.items(), 2)]
+        parts += [
+            stay_apart(layout, a, b, manners.apart, manners.between)
+            for a, b in combinations(vehicles.items(), 2)
+        ]
     if manners.natural:
         parts += [
             be_in_lane(layout, road, name, vehicle, step, manners.off_centre)

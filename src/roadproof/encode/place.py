@@ -67,20 +67,21 @@ def _inside(small: Rectangle, large: Rectangle) -> bool:
     )
 
 
-def stay_on_road(layout: Layout, road: Road, name: str, vehicle: Vehicle) -> Circuit[ColumnFact]:
-    """Between two samples the box is inside one rectangle of the road; after the last one, for ever along."""
+def stay_on_road(
+    layout: Layout, road: Road, name: str, vehicle: Vehicle, between: bool
+) -> Circuit[ColumnFact]:
+    """The box is inside one rectangle of the road at each sample; after the last one, for ever along.
+
+    Where ``between``, it is in the same one at both ends of a step, and so all the way.
+    """
     allowed = rectangles(road.lanelets)
+    last = layout.grid.steps
     conditions = []
-    for k in range(layout.grid.steps + 1):
-        ends = (k, min(k + 1, layout.grid.steps))
-        choices = []
-        for along, across in allowed:
-            if ends[0] == ends[1] and along[1] is not None:
-                continue
-            choices.append(
-                all_of(_box_inside(layout, name, vehicle, (along, across), e) for e in dict.fromkeys(ends))
-            )
-        conditions.append(any_of(choices))
+    for step in (*_spells(last, between), (last,)):
+        lasting = [r for r in allowed if step != (last,) or r[0][1] is None]
+        conditions.append(
+            any_of(all_of(_box_inside(layout, name, vehicle, r, e) for e in step) for r in lasting)
+        )
     return all_of(conditions)
 
 
@@ -102,31 +103,41 @@ def _at_least(value: Polynomial[int], bound: Fraction) -> Circuit[ColumnFact]:
 
 
 def stay_apart(
-    layout: Layout, first: tuple[str, Vehicle], second: tuple[str, Vehicle], margin: Fraction
+    layout: Layout,
+    first: tuple[str, Vehicle],
+    second: tuple[str, Vehicle],
+    gaps: tuple[Fraction, Fraction],
+    between: bool,
 ) -> Circuit[ColumnFact]:
-    """Between two samples, one of four sides separates the boxes at both ends."""
-    (a, vehicle_a), (b, vehicle_b) = first, second
+    """One of four sides separates the boxes at each sample; where ``between``, one at both ends of a step.
+
+    ``gaps``: what a search keeps free along or across, in m.
+    """
     conditions = []
-    for k in range(layout.grid.steps):
+    for step in _spells(layout.grid.steps, between):
         sides = []
-        for signal, sizes in (
-            ("s", (vehicle_a.length, vehicle_b.length)),
-            ("d", (vehicle_a.width, vehicle_b.width)),
-        ):
-            for low, high, size in ((a, b, sizes[1]), (b, a, sizes[0])):
-                gaps = [
-                    affine(
-                        [
-                            (layout.column(high, signal, e), Fraction(1)),
-                            (layout.column(low, signal, e), Fraction(-1)),
-                        ],
-                        -size,
-                    )
-                    for e in (k, k + 1)
-                ]
-                sides.append(all_of(Leaf(Fact(gap, False, margin)) for gap in gaps))
+        for signal, size, gap in (("s", "length", gaps[0]), ("d", "width", gaps[1])):
+            for (low, _), (high, body) in ((first, second), (second, first)):
+                extent: Fraction = getattr(body, size)
+                sides.append(all_of(_beyond(layout, signal, low, high, extent, gap, e) for e in step))
         conditions.append(any_of(sides))
     return all_of(conditions)
+
+
+def _beyond(
+    layout: Layout, signal: str, low: str, high: str, extent: Fraction, gap: Fraction, step: int
+) -> Circuit[ColumnFact]:
+    """``high`` less its own extent is not below ``low``."""
+    ends = [
+        (layout.column(high, signal, step), Fraction(1)),
+        (layout.column(low, signal, step), Fraction(-1)),
+    ]
+    return Leaf(Fact(affine(ends, -extent), False, gap))
+
+
+def _spells(steps: int, between: bool) -> list[tuple[int, ...]]:
+    """Samples that have to agree on what keeps them safe: both ends of each step, or each for itself."""
+    return [(k, k + 1) for k in range(steps)] if between else [(k,) for k in range(steps + 1)]
 
 
 def be_in_lane(

@@ -30,6 +30,10 @@ class Grid:
     def horizon(self) -> Fraction:
         return self.dt * self.steps
 
+    def finer(self, factor: int) -> "Grid":
+        """The same horizon in ``factor`` times as many steps."""
+        return Grid(self.dt / factor, self.steps * factor)
+
     def window(self, interval: Interval) -> tuple[int, int | None]:
         """An interval in steps; None is without end. Raises ``UsageError`` for no multiple of dt."""
         low, high = bounds_of(interval)

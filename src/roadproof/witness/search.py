@@ -4,9 +4,10 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, product
 
-from roadproof.encode.build import Manners, build_problem
+from roadproof.encode.build import Manners, encode_formula, frame
+from roadproof.encode.circuit import Circuit
 from roadproof.encode.motion import Layout
 from roadproof.encode.problem import ColumnFact, Problem
 from roadproof.encode.unroll import Grid
@@ -75,6 +76,8 @@ class _Search:
         self.sizes: dict[str, int] = {}
         self.deadline = time.monotonic() + means.time_limit
         self.doubt = ""
+        self.doubts: list[str] = []
+        self.encoded: dict[tuple[Formula, Grid, Fraction], Circuit[ColumnFact]] = {}
 
     def run(self) -> Answer:
         for lanes, grid, manners in self._attempts():
@@ -83,8 +86,8 @@ class _Search:
             found = self._attempt(lanes, grid, manners)
             if found is not None:
                 return self._answer(Verdict.WITNESSED, found, "")
-        if self.doubt:
-            return self._answer(Verdict.UNKNOWN, None, self.doubt)
+        if self.doubts:
+            return self._answer(Verdict.UNKNOWN, None, self.doubts[-1])
         if not self.means.explain:
             return self._answer(Verdict.UNKNOWN, None, "none was found")
         return self._none()
@@ -94,17 +97,17 @@ class _Search:
 
     def _attempts(self) -> Iterator[tuple[Mapping[str, str], Grid, Manners]]:
         """Natural drives first, on the grid and on finer ones; then whatever the limits allow."""
-        every = [self.question.manners.plain()]
+        groups = [[self.question.manners.plain()]]
         if self.question.manners.natural:
-            every = [*self._straightest(), self.question.manners, *every]
-        for manners in every:
-            for halvings in range(self.means.refinements + 1):
-                grid = Grid(self.question.grid.dt / 2**halvings, self.question.grid.steps * 2**halvings)
-                self.doubt = ""
-                for lanes in self.question.lanes:
-                    yield lanes, grid, manners
-                if not self.doubt:
-                    break
+            groups.insert(0, [*self._straightest(), self.question.manners])
+        for group in groups:
+            for lanes, manners in product(self.question.lanes, group):
+                for halvings in range(self.means.refinements + 1):
+                    self.doubt = ""
+                    yield lanes, self.question.grid.finer(2**halvings), manners
+                    if not self.doubt:
+                        break
+                    self.doubts.append(self.doubt)
 
     def _straightest(self) -> Iterator[Manners]:
         """The fewer vehicles change lanes, the easier a drive is to read, and to find."""
@@ -134,7 +137,12 @@ class _Search:
         return None
 
     def _problem(self, formula: Formula, grid: Grid, manners: Manners) -> tuple[Problem, Layout]:
-        problem, layout = build_problem(formula, self.question.road, self.question.vehicles, grid, manners)
+        vehicles = self.question.vehicles
+        layout = Layout(tuple(vehicles), grid)
+        key = (formula, grid, manners.margin)
+        if key not in self.encoded:
+            self.encoded[key] = encode_formula(formula, vehicles, layout, manners.margin)
+        problem = frame(self.encoded[key], self.question.road, vehicles, layout, manners)
         for other in self.unlike:
             problem = problem.also(differ(layout, other))
         return problem, layout
@@ -184,7 +192,13 @@ class _Search:
     def _none(self) -> Answer:
         """Show that there is none on the grid: by a relaxation, else by the exact encoding."""
         start = time.perf_counter()
-        manners = replace(self.question.manners.plain(), margin=Fraction(0), inside=Fraction(0))
+        manners = replace(
+            self.question.manners.plain(),
+            margin=Fraction(0),
+            inside=Fraction(0),
+            apart=(Fraction(0), Fraction(0)),
+            between=False,
+        )
         how = set()
         for lanes in self.question.lanes:
             problem, _ = self._problem(self.question.bound(lanes), self.question.grid, manners)
