@@ -35,3 +35,24 @@ def cut_out() -> Drive:
             "POV2": motion(105, F(13, 5), 18),
         }
     )
+
+
+def late_cut_out() -> Drive:
+    """As cut_out, but SV is too near to POV1 at first: the trace starts when the gap has opened."""
+    return Drive(
+        {
+            "SV": motion(5, F(13, 5), 25),
+            "POV1": motion(47, F(13, 5), 26, (F(3), 0, 0), (F(8, 5), 0, F(5, 4)), (F(8, 5), 0, F(-5, 4))),
+            "POV2": motion(105, F(13, 5), 18),
+        }
+    )
+
+
+def swerve() -> Drive:
+    """SV comes too near to a slow POV in its lane, then moves out of it, hardly far enough: scenario 8."""
+    return Drive(
+        {
+            "SV": motion(5, F(13, 5), 30, (F(3), 0, 0), (F(7, 5), 0, F(10, 7)), (F(7, 5), 0, F(-10, 7))),
+            "POV": motion(105, F(13, 5), 22),
+        }
+    )

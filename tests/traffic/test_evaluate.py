@@ -1,7 +1,8 @@
 """The evaluation against the slow reference, on planted drives, and its invariants."""
 
 from collections import Counter
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -9,13 +10,15 @@ import pytest
 
 from roadproof.errors import InputError, UsageError
 from roadproof.spec.library import Source, build_library, bundled_library
+from roadproof.traffic import disturbances, evaluate
+from roadproof.traffic import questions as module
 from roadproof.traffic.evaluate import Findings, evaluate_recording
 from roadproof.traffic.plant import Place, plant
 from roadproof.traffic.questions import Questions, ask, default_settings
 from roadproof.traffic.recording import Recording, keep_vehicles
 from roadproof.traffic.simulate import Traffic
 from roadproof.traffic.synthetic import simulate
-from traffic.drives import braking, cut_in, cut_out
+from traffic.drives import braking, cut_in, cut_out, late_cut_out, swerve
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.reference import Reference, Row
 
@@ -34,44 +37,135 @@ def rows_of(findings: Findings) -> list[Row]:
 
 def planted_traffic(direction: int) -> tuple[Recording, dict[str, dict[str, int]]]:
     """A short recording of few cars with three drives in it, and who is who in each."""
-    recording = simulate(Traffic(seconds=24, flow=1200, lane_width=3.5), seed=4)
+    recording = simulate(Traffic(seconds=40, flow=350, lane_width=3.5), seed=4)
+    drives = {
+        "cut-in": cut_in(),
+        "braking": braking(),
+        "cut-out": cut_out(),
+        "late cut-out": late_cut_out(),
+        "swerve": swerve(),
+    }
     who = {}
-    for k, (name, drive) in enumerate(
-        {"cut-in": cut_in(), "braking": braking(), "cut-out": cut_out()}.items()
-    ):
+    for k, (name, drive) in enumerate(drives.items()):
         right = min(x.d[0] for x in recording.lanes if x.direction == direction and x.d)
         start = -410.0 if direction == 1 else 10.0
-        recording, truth = plant(recording, drive, Place(direction, 20 + 190 * k, Fraction(6), start, right))
+        recording, truth = plant(
+            recording,
+            drive,
+            Place(direction, 20 + 190 * k, Fraction(7 if name == "swerve" else 6), start, right),
+        )
         who[name] = dict(truth.vehicles)
     return recording, who
 
 
-@pytest.mark.parametrize("direction", [1, 2])
-def test_against_the_reference(direction: int, questions: Questions) -> None:
-    recording, who = planted_traffic(direction)
-    recording = keep_vehicles(recording, recording.direction == direction)
-    findings = evaluate_recording(recording, questions)
+@dataclass(frozen=True)
+class Case:
+    """Traffic of one direction with planted drives, and what the slow reference finds in it."""
+
+    recording: Recording
+    who: dict[str, dict[str, int]]
+    matches: Counter[Row]
+    traces: list[tuple[int, int, int, int, int]]
+    violating: int
+
+
+@pytest.fixture(scope="module", params=[1, 2])
+def case(request: pytest.FixtureRequest, questions: Questions) -> Case:
+    recording, who = planted_traffic(request.param)
+    recording = keep_vehicles(recording, recording.direction == request.param)
     reference = Reference(recording, questions.settings)
-    assert Counter(rows_of(findings)) == Counter(reference.matches())
-    found = [(t.first, t.second, t.min_danger, t.start_frame, t.end_frame) for t in findings.traces]
-    assert sorted(found) == sorted(reference.traces())
-    assert findings.violating == len(list(reference.pairs()))
-    assert len({m.scenario for m in findings.matches}) >= 4
+    violating = len(list(reference.pairs()))
+    return Case(recording, who, Counter(reference.matches()), sorted(reference.traces()), violating)
+
+
+def agrees(case: Case, questions: Questions) -> bool:
+    findings = evaluate_recording(case.recording, questions)
+    traces = sorted((t.first, t.second, t.min_danger, t.start_frame, t.end_frame) for t in findings.traces)
+    return (Counter(rows_of(findings)), traces, findings.violating) == (
+        case.matches,
+        case.traces,
+        case.violating,
+    )
+
+
+def test_against_the_reference(case: Case, questions: Questions) -> None:
+    assert agrees(case, questions)
+    assert len({row[8] for row in case.matches}) >= 5
     # Planted drives are found at the right pair, scenario and start, in all sets.
-    cut, brake, out = who["cut-in"], who["braking"], who["cut-out"]
+    cut, brake, out, late, swerve = case.who.values()
     expected = {
         (cut["SV"], cut["POV"], None, 20, 1),
         (brake["SV"], brake["POV"], None, 210, 4),
         (out["SV"], out["POV1"], out["POV2"], 400, 2),
+        (swerve["SV"], swerve["POV"], None, 780, 8),
     }
     for set_name in ("base", "extA", "ext"):
         for k in (0, 1):
-            rows = {
-                (m.sv, m.pov, m.pov2, m.start_frame, m.scenario)
-                for m in findings.matches
-                if m.set_name == set_name and m.min_danger == k
-            }
+            rows = {(*r[:3], r[4], r[8]) for r in case.matches if (r[7], r[6]) == (set_name, k)}
             assert expected <= rows
+            late_starts = {r[3] for r in rows if r[:3] == (late["SV"], late["POV1"], late["POV2"])}
+            assert len(late_starts) == 1
+            assert 590 + 30 < min(late_starts) < 590 + 50
+
+
+def _cut_early(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+    return replace(questions, danger_steps=(0, 0))
+
+
+def _start_outside(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+    """Triples start in their first common frame, safe or not."""
+    monkeypatch.setattr(disturbances._Lookup, "next_safe", lambda self, index, frame, latest: frame)
+    return questions
+
+
+def _lane_at_the_end(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+    lane_at = evaluate._lane_at
+    monkeypatch.setattr(evaluate, "_lane_at", lambda r, v, frame: lane_at(r, v, r.last_frame[v]))
+    return questions
+
+
+def _own_lane_for_scenario_7(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+    monkeypatch.setattr(module, "POV_LANE", ())
+    return ask(questions.settings, 25)
+
+
+def _one_role(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+    kept = [
+        replace(m, plain={k: v for k, v in m.plain.items() if questions.asked[k].sv == "first"})
+        for m in questions.pairs
+    ]
+    return replace(questions, pairs=tuple(kept))
+
+
+def _short_reach(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+    assert questions.reach is not None
+    return replace(questions, reach=replace(questions.reach, rho=0.0))
+
+
+def _swapped_names(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
+    monkeypatch.setattr(evaluate, "TRIPLE", ("SV", "POV2", "POV1"))
+    return questions
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        _cut_early,
+        _start_outside,
+        _lane_at_the_end,
+        _own_lane_for_scenario_7,
+        _one_role,
+        _short_reach,
+        _swapped_names,
+    ],
+)
+def test_planted_faults_are_caught(
+    fault: Callable[[Questions, pytest.MonkeyPatch], Questions],
+    case: Case,
+    questions: Questions,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert not agrees(case, fault(questions, monkeypatch))
 
 
 def test_sets_grow_and_matches_are_disturbances(questions: Questions) -> None:
