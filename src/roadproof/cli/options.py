@@ -69,7 +69,12 @@ def load_library_of(args: argparse.Namespace) -> "Library":
 def select_specification(args: argparse.Namespace, library: "Library | None" = None) -> "Specification":
     """The definitions in force under ``--set``, ``--option`` and ``--spec``. Raises ``InputError``."""
     chosen = library or load_library_of(args)
-    return chosen.select(args.set_name or "base", dict(_assignments("--option", args.options)))
+    return chosen.select(args.set_name or "base", chosen_options(args))
+
+
+def chosen_options(args: argparse.Namespace) -> dict[str, str]:
+    """The values of ``--option`` by name. Raises ``UsageError`` where one is not NAME=VALUE."""
+    return dict(_assignments("--option", args.options))
 
 
 def parameter_values(args: argparse.Namespace, library: "Library") -> dict[str, Fraction]:

@@ -1,0 +1,166 @@
+"""``roadproof check``: certificates and drive files, checked again without what made them."""
+
+import argparse
+import json
+import os
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadproof.cli.options import add_json_option, write_json
+from roadproof.errors import InputError, RoadproofError
+from roadproof.verdict import ExitCode
+
+SUMMARY = "check certificates and drive files again, without the programs that made them"
+SCHEMA = "roadproof/check/1"
+
+_EXAMPLES = """\
+examples:
+  roadproof check proofs/                          every certificate of a folder
+  roadproof check proofs/ --solver cvc5            ask another solver
+  roadproof check drives/scenario-04-base.json     judge a drive again, exactly
+
+A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
+give the very query that is stored, and the solver answers unsat to it. A drive file is accepted when its
+formula holds on its drive, judged exactly in dense time. Exit code 10 where something is rejected.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
+    parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who is asked (default: z3)")
+    parser.add_argument(
+        "--timeout", type=float, default=60.0, metavar="S", help="seconds a query (default: 60)"
+    )
+    parser.add_argument(
+        "--spec",
+        dest="specs",
+        metavar="FILE",
+        action="append",
+        type=Path,
+        default=[],
+        help="a specification file that the claims were made with; may be repeated",
+    )
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_json_option(parser)
+
+
+@dataclass(frozen=True)
+class Job:
+    path: Path
+    specs: tuple[Path, ...]
+    solver: str
+    timeout: float
+
+
+@dataclass(frozen=True)
+class Finding:
+    """``reason`` says why a file is rejected, and is empty where it is accepted."""
+
+    path: Path
+    what: str
+    reason: str
+
+    @property
+    def accepted(self) -> bool:
+        return not self.reason
+
+
+def run(args: argparse.Namespace) -> int:
+    jobs = [Job(path, tuple(args.specs), args.solver, args.timeout) for path in _files(args.paths)]
+    findings: list[Finding] = []
+    with _findings(jobs, args.jobs) as found:
+        for finding in found:
+            findings.append(finding)
+            if not finding.accepted and args.json != "-":
+                print(f"rejected  {finding.path}: {finding.reason}", flush=True)
+    accepted = sum(finding.accepted for finding in findings)
+    if args.json != "-":
+        print(f"{accepted} of {len(findings)} accepted by {args.solver} and the exact judge")
+    if args.json:
+        entries = [
+            {"file": str(x.path), "kind": x.what, "accepted": x.accepted, "reason": x.reason}
+            for x in findings
+        ]
+        write_json({"schema": SCHEMA, "solver": args.solver, "findings": entries}, args.json)
+    return ExitCode.AS_EXPECTED if accepted == len(findings) else ExitCode.UNEXPECTED
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    """The files named, and the JSON files of the folders named, but for their index."""
+    files: list[Path] = []
+    for path in paths:
+        if path.is_dir():
+            inside = sorted(p for p in path.rglob("*.json") if p.name != "index.json")
+            if not inside:
+                raise InputError(
+                    f"{path} holds no .json file: name a folder with certificates or drive files"
+                )
+            files += inside
+        elif path.exists():
+            files.append(path)
+        else:
+            raise InputError(f"{path} does not exist")
+    return files
+
+
+@contextmanager
+def _findings(jobs: Sequence[Job], processes: int | None) -> Iterator[Iterator[Finding]]:
+    workers = min(processes or os.cpu_count() or 1, len(jobs))
+    if workers <= 1:
+        yield map(examine, jobs)
+        return
+    with ProcessPoolExecutor(workers) as pool:
+        try:
+            yield pool.map(examine, jobs, chunksize=4)
+        except BaseException:
+            for process in list((pool._processes or {}).values()):
+                process.kill()
+            raise
+
+
+def examine(job: Job) -> Finding:
+    """Check one file by what its schema says that it is."""
+    from roadproof.evidence import certificate, witness
+
+    try:
+        schema = _schema(job.path)
+        if schema == certificate.SCHEMA:
+            return Finding(job.path, "certificate", _examine_certificate(job))
+        if schema == witness.SCHEMA:
+            return Finding(job.path, "drive", _examine_drive(job))
+        known = f"{certificate.SCHEMA} or {witness.SCHEMA}"
+        return Finding(job.path, "unknown", f"its schema is {schema!r}, but must be {known}")
+    except RoadproofError as error:
+        return Finding(job.path, "damaged", str(error))
+
+
+def _schema(path: Path) -> object:
+    try:
+        data = json.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise InputError(f"it cannot be read: {error.strerror or error}") from None
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise InputError(f"it is no JSON text: {error}") from None
+    return data.get("schema") if isinstance(data, dict) else None
+
+
+def _examine_certificate(job: Job) -> str:
+    from roadproof.evidence.certificate import read_certificate, refusal
+    from roadproof.solve.smt import ask
+    from roadproof.spec.library import load_library
+
+    def answer(script: str) -> str:
+        return ask(script, job.solver, job.timeout)
+
+    return refusal(read_certificate(job.path), load_library(job.specs), answer) or ""
+
+
+def _examine_drive(job: Job) -> str:
+    from roadproof.evidence.witness import judge_file, load_drive
+    from roadproof.spec.library import load_library
+
+    return judge_file(load_drive(job.path), load_library(job.specs)).reason

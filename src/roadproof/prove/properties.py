@@ -1,0 +1,94 @@
+"""The list of template properties, and claims that users bring."""
+
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+from roadproof.errors import UsageError
+from roadproof.spec.library import read_specification, unknown
+from roadproof.verdict import Verdict
+
+_RANGE = re.compile(r"\s*(\d+)\s*(?:\.\.\s*(\d+)\s*)?")
+_INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
+
+
+@dataclass(frozen=True)
+class Task:
+    """One claim in one set, with the verdict that is expected; ``scenario`` None: of no single one."""
+
+    id: str
+    part: str
+    title: str
+    scenario: int | None
+    set_name: str
+    claim: str
+    expected: Verdict
+
+    @property
+    def name(self) -> str:
+        """A name that no other task of the list has, fit for a file: ``P1-scenario-04-base``."""
+        middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
+        return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}"
+
+
+def template_properties() -> list[Task]:
+    """P1 to P9 and the negative controls, in order."""
+    text = resources.files("roadproof.prove").joinpath("properties.toml").read_text("utf-8")
+    tasks = [task for entry in tomllib.loads(text)["property"] for task in _tasks(entry)]
+    headings = list(dict.fromkeys((task.id, task.title, task.set_name) for task in tasks))
+    return sorted(tasks, key=lambda x: (headings.index((x.id, x.title, x.set_name)), x.scenario or 0))
+
+
+def _tasks(entry: dict[str, str | list[str]]) -> list[Task]:
+    scenarios: list[int | None] = list(_numbers(str(entry["scenarios"]))) if "scenarios" in entry else [None]
+    return [
+        Task(
+            str(entry["id"]),
+            str(entry.get("part", "")),
+            str(entry["title"]),
+            scenario,
+            set_name,
+            _at(str(entry["claim"]), scenario),
+            Verdict(str(entry.get("expected", Verdict.PROVED))),
+        )
+        for set_name in entry["sets"]
+        for scenario in scenarios
+    ]
+
+
+def _numbers(text: str) -> list[int]:
+    numbers: list[int] = []
+    for piece in text.split(","):
+        found = _RANGE.fullmatch(piece)
+        assert found is not None, f"bad range {piece!r} in properties.toml"
+        numbers += range(int(found[1]), int(found[2] or found[1]) + 1)
+    return numbers
+
+
+def _at(claim: str, scenario: int | None) -> str:
+    return _INDEX.sub(lambda found: str((scenario or 0) + int(found[1] or 0)), claim)
+
+
+def choose(tasks: Sequence[Task], names: Sequence[str], set_name: str | None) -> list[Task]:
+    """The tasks of the named properties (all where none is named) in a set (in all where None).
+
+    Raises ``UsageError`` for a property that does not exist.
+    """
+    known = {task.id for task in tasks}
+    for name in names:
+        if name not in known:
+            raise UsageError(unknown("property", name, known))
+    return [task for task in tasks if (not names or task.id in names) and set_name in (None, task.set_name)]
+
+
+def read_claims(path: Path) -> list[str]:
+    """The claims of a file: paragraphs, with ``#`` comments. Raises ``InputError``."""
+    paragraphs = re.split(r"\n[ \t]*\n", read_specification(path).text.replace("\r\n", "\n"))
+    return [p.strip() for p in paragraphs if any(_is_claim_line(line) for line in p.splitlines())]
+
+
+def _is_claim_line(line: str) -> bool:
+    return bool(line.strip()) and not line.lstrip().startswith("#")
