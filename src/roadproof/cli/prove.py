@@ -258,18 +258,21 @@ def _details(settled: Settled) -> str:
 
 
 def _show_drive(drive: Mapping[str, Any]) -> list[str]:
-    lanes = ", ".join(f"{k}={v}" for k, v in (drive.get("lanes") or {}).items()) or str(
-        drive.get("lane") or ""
-    )
+    """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
+    lanes = ", ".join(f"{k}={v}" for k, v in (drive.get("lanes") or {}).items()) or str(drive.get("lane") or "")
     lines = [f"  false on this drive, judged exactly in dense time{f' (lane {lanes})' if lanes else ''}:"]
     for name, motion in drive["vehicles"].items():
-        start = ", ".join(f"{key}={_short(motion[key])}" for key in ("s", "d", "v_lon", "v_lat"))
-        pieces = "; ".join(
-            f"{_short(p['a_lon'])}, {_short(p['a_lat'])}"
-            + (f" for {_short(p['duration'])} s" if p["duration"] is not None else " for ever")
-            for p in motion["pieces"]
-        )
-        lines.append(f"    {name}: {start}; a_lon, a_lat: {pieces}")
+        start = f"starts at s={_short(motion['s'])} m, d={_short(motion['d'])} m"
+        speeds, across = [Fraction(motion["v_lon"])], Fraction(motion["d"])
+        v_lat = Fraction(motion["v_lat"])
+        for piece in motion["pieces"]:
+            if piece["duration"] is not None:
+                time, a_lat = Fraction(piece["duration"]), Fraction(piece["a_lat"])
+                across += v_lat * time + a_lat * time**2 / 2
+                v_lat += a_lat * time
+                speeds.append(speeds[-1] + Fraction(piece["a_lon"]) * time)
+        moved = f", moves to d={_short(str(across))} m" if abs(across - Fraction(motion["d"])) > 1 else ""
+        lines.append(f"    {name} {start}, {_short(str(speeds[0]))} -> {_short(str(speeds[-1]))} m/s{moved}")
     return lines
 
 
@@ -300,7 +303,7 @@ def _number(value: Fraction) -> str:
 
 def _as_json(settled: Settled, file: str | None) -> dict[str, Any]:
     task, result = settled.task, settled.result
-    data: dict[str, Any] = {
+    return {
         "property": task.id,
         "part": task.part,
         "scenario": task.scenario,
@@ -312,10 +315,9 @@ def _as_json(settled: Settled, file: str | None) -> dict[str, Any]:
         "seconds": round(result.seconds, 4),
         "reason": result.reason,
         "assumptions": list(result.certificate.assumptions) if result.certificate else [],
-        "certificate": file,
+        "certificate": file if result.certificate is not None else None,
         "counterexample": _counterexample(settled),
     }
-    return data
 
 
 def _counterexample(settled: Settled) -> dict[str, Any] | None:
@@ -340,7 +342,7 @@ def _make_folder(folder: Path) -> None:
 
 
 def _write_all(settled: Sequence[Settled], folder: Path) -> dict[str, str]:
-    """Certificates, one file each, and ``index.json``; file paths by task name."""
+    """Certificates and refuting drives, one file each, and ``index.json``; file paths by task name."""
     from roadproof.evidence.certificate import to_json
 
     files: dict[str, str] = {}
@@ -348,22 +350,24 @@ def _write_all(settled: Sequence[Settled], folder: Path) -> dict[str, str]:
         if s.result.certificate is not None:
             files[s.task.name] = str(folder / f"{s.task.name}.json")
             write_text(Path(files[s.task.name]), to_json(s.result.certificate))
-    index = [
-        {**_index_entry(s), "certificate": Path(files[s.task.name]).name if s.task.name in files else None}
-        for s in settled
-    ]
+        elif s.drive is not None:
+            files[s.task.name] = str(folder / f"{s.task.name}-drive.json")
+            write_json(s.drive, files[s.task.name])
+    index = [_index_entry(s, files.get(s.task.name)) for s in settled]
     write_json({"schema": "roadproof/index/1", "claims": index}, str(folder / "index.json"))
     return files
 
 
-def _index_entry(settled: Settled) -> dict[str, Any]:
+def _index_entry(settled: Settled, file: str | None) -> dict[str, Any]:
+    """What was asked and answered, and where the evidence is: a file beside the index, or in it."""
     task = settled.task
-    return {
+    entry = {
         "property": task.id,
         "part": task.part,
         "scenario": task.scenario,
         "set": task.set_name,
         "claim": task.claim,
         "verdict": str(settled.verdict),
-        "counterexample": _counterexample(settled),
+        "evidence": None if file is None else Path(file).name,
     }
+    return entry if file is not None else {**entry, "counterexample": _counterexample(settled)}
