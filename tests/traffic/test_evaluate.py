@@ -139,7 +139,7 @@ def _one_role(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Question
 
 def _short_reach(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
     assert questions.reach is not None
-    return replace(questions, reach=replace(questions.reach, rho=0.0))
+    return replace(questions, reach=replace(questions.reach, rho=0.0, a_max_lat=0.0))
 
 
 def _swapped_names(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:

@@ -14,7 +14,7 @@ from roadproof.traffic.simulate import Traffic
 from roadproof.traffic.synthetic import simulate
 from traffic.make_recording import Track, cruise, make_recording
 
-REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0)
+REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
 
 
 def frames_of(r: Recording, vehicle: int) -> range:
@@ -29,12 +29,28 @@ def distance(rear: float, front: float, reach: Reach) -> float:
     )
 
 
-def violates(r: Recording, one: int, other: int, frame: int, reach: Reach) -> bool:
-    """rssViolation_lon as the paper writes it."""
+def sideways(v_1: float, v_2: float, reach: Reach, signed: bool = False) -> float:
+    """The paper's dRSS_lat; ``signed`` leaves out what needs no braking."""
+    one, other = v_1 + reach.rho * reach.a_max_lat, v_2 - reach.rho * reach.a_max_lat
+    squares = (max(0, one) ** 2 + min(0, other) ** 2) if signed else (one**2 + other**2)
+    return max(
+        0.0, (v_1 - v_2) * reach.rho + reach.a_max_lat * reach.rho**2 + squares / (2 * reach.b_min_lat)
+    )
+
+
+def violates(r: Recording, one: int, other: int, frame: int, reach: Reach, reading: str = "rss") -> bool:
+    """rssViolation as the paper writes it, in any of its lateral readings."""
     i, j = (int(r.start[v] + frame - r.first_frame[v]) for v in (one, other))
-    return any(
+    sign = 1.0 if reading == "literal" else -1.0
+    along = any(
         0 <= r.s[f] - r.s[k] <= r.length[front] + distance(r.v_lon[k], r.v_lon[f], reach)
         for k, f, front in ((i, j, other), (j, i, one))
+    )
+    return along and any(
+        0
+        <= r.d[left] - r.d[right]
+        <= r.width[who] + sideways(sign * r.v_lat[left], sign * r.v_lat[right], reach, reading == "signed")
+        for right, left, who in ((i, j, other), (j, i, one))
     )
 
 
@@ -75,9 +91,12 @@ def test_pairs_and_filter_against_brute_force(r: Recording, seed: int) -> None:
     assert len(pairs) == len(expected)
     for a, b, low, high in zip(pairs.first, pairs.second, pairs.low, pairs.high, strict=True):
         assert (low, high) == (expected[a, b][0], expected[a, b][-1])
-    reach = Reach(*random.uniform([0, 0, 0.5, 0.5], [2, 8, 9, 9]).tolist())
-    violating = {p for p, frames in expected.items() if any(violates(r, *p, f, reach) for f in frames)}
-    assert violating <= as_set(near_pairs(r, pairs, reach))
+    reach = Reach(*random.uniform([0, 0, 0.5, 0.5, 0, 0.5], [2, 8, 9, 9, 3, 3]).tolist())
+    near = as_set(near_pairs(r, pairs, reach))
+    for reading in ("rss", "literal", "signed"):
+        for p, frames in expected.items():
+            if any(violates(r, *p, f, reach, reading) for f in frames):
+                assert p in near
 
 
 def test_simulated_traffic_loses_none() -> None:
@@ -89,7 +108,7 @@ def test_simulated_traffic_loses_none() -> None:
         if any(violates(r, *p, f, REACH) for f in frames):
             violating.add(p)
     assert violating <= near
-    assert len(near) < 2 * len(violating) < len(pairs)  # it is a filter, and a sharp one
+    assert len(near) < 2.5 * len(violating) < len(pairs)  # it is a filter, and a sharp one
 
 
 @pytest.mark.parametrize("swap", [False, True])
@@ -103,17 +122,39 @@ def test_filter_is_sharp_at_constant_speeds(swap: bool) -> None:
         assert len(near_pairs(r, pairs, REACH)) == kept
 
 
+def test_filter_is_sharp_across() -> None:
+    """Side by side at the same lateral speeds 0: SPEC §3 has dRSS_lat(0, 0) = 1.08."""
+    assert sideways(0, 0, REACH) == pytest.approx(1.08)
+    for extra, kept in ((0.0, True), (0.1, False)):
+        apart = 1.8 + 1.08 + extra
+        r = make_recording([Track(2, 1, cruise(0, 30, 1)), Track(2, 1, cruise(3, 30, 1, d=-28.0 + apart))])
+        assert len(near_pairs(r, common_pairs(r, np.ones(2, bool)), REACH)) == kept
+
+
+def test_both_bounds_must_hold_in_one_frame() -> None:
+    """Near along in one frame and near across in another is no violation, and is dropped."""
+    rows = [(0.0, -28.0, 30.0, 0.0, 0.0, 0.0)] * 2
+    other = [(20.0, -20.0, 30.0, 0.0, 0.0, 0.0), (300.0, -28.0, 30.0, 0.0, 0.0, 0.0)]
+    r = make_recording([Track(2, 1, rows), Track(2, 1, other)])
+    assert len(near_pairs(r, common_pairs(r, np.ones(2, bool)), REACH)) == 0
+
+
 def test_a_filter_that_forgets_a_case_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted faults: the test above must see each of them."""
-    true_bound = module._bound
+    true_bound = module._bound_along
     for fault in (
         lambda reach, rear, front: true_bound(reach, rear, front) - 0.2,
         lambda reach, rear, front: true_bound(reach, front, rear),
         lambda reach, rear, front: true_bound(reach, rear, front) * 0,
     ):
-        monkeypatch.setattr(module, "_bound", fault)
+        monkeypatch.setattr(module, "_bound_along", fault)
         with pytest.raises(AssertionError):
             test_filter_is_sharp_at_constant_speeds(False)
+    monkeypatch.setattr(module, "_bound_along", true_bound)
+    across = module._bound_across
+    monkeypatch.setattr(module, "_bound_across", lambda reach, speed: across(reach, speed) - 0.2)
+    with pytest.raises(AssertionError):
+        test_filter_is_sharp_across()
 
 
 def test_parts_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -152,4 +193,4 @@ def test_triples_against_brute_force(r: Recording, seed: int) -> None:
 def test_reach_must_make_sense() -> None:
     r = make_recording([Track(2, 1, cruise(0, 30, 2)), Track(2, 1, cruise(40, 30, 2))])
     with pytest.raises(ValueError, match="b_min"):
-        near_pairs(r, common_pairs(r, np.ones(2, bool)), Reach(0.6, 5, 0, 8))
+        near_pairs(r, common_pairs(r, np.ones(2, bool)), Reach(0.6, 5, 0, 8, 1, 1))

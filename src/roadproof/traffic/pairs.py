@@ -36,12 +36,14 @@ class Pairs:
 
 @dataclass(frozen=True)
 class Reach:
-    """What the longitudinal RSS distance depends on besides the speeds (SI units; paper eq. lon_RSS)."""
+    """What RSS distances depend on besides speeds (SI units; paper eqs. lon_RSS and lat_RSS)."""
 
     rho: float
     a_max: float
     b_min: float
     b_max: float
+    a_max_lat: float
+    b_min_lat: float
 
 
 def common_pairs(recording: Recording, eligible: Bools) -> Pairs:
@@ -73,45 +75,87 @@ def _meeting(recording: Recording, vehicles: Integers) -> tuple[Integers, Intege
 
 
 def near_pairs(recording: Recording, pairs: Pairs, reach: Reach) -> Pairs:
-    """The pairs that come near enough, in some common frame, for a longitudinal RSS violation.
+    """The pairs that come near enough, along and across in one common frame, for an RSS violation.
 
-    Proof that none is lost. A violation needs, for the one in front f and the one behind r,
-    0 <= s_f - s_r <= length_f + dRSS_lon(v_r, v_f). Let V be the greatest |v_lon| that r ever has
-    and m the least |v_lon| of f. With rho, a_max >= 0 and b_min, b_max > 0: v_r·rho <= V·rho,
-    (v_r + a_max·rho)² <= (V + a_max·rho)² and v_f² >= m², so dRSS_lon(v_r, v_f) is at most the same
-    expression in V and m, whatever the signs of the speeds. That bound, a constant of each ordered
-    pair, is compared with s_f - s_r at every common frame. The bound is widened by a millimetre,
-    far more than the rounding of doubles in these sums, which stays below a micrometre for roads up
-    to a thousand kilometres.
+    Proof that none is lost. A violation needs, in one frame, a longitudinal and a lateral one.
+    Longitudinal, for the one in front f and the one behind r: 0 <= s_f - s_r <= length_f +
+    dRSS_lon(v_r, v_f). Let V be the greatest |v_lon| that r ever has and m the least |v_lon| of f.
+    With rho, a_max >= 0 and b_min, b_max > 0: v_r·rho <= V·rho, (v_r + a_max·rho)² <=
+    (V + a_max·rho)² and v_f² >= m², so dRSS_lon(v_r, v_f) is at most the same expression in V and m,
+    whatever the signs of the speeds.
+    Lateral, for the left one a and the right one b: 0 <= d_a - d_b <= width_a + dRSS_lat(v_1, v_2),
+    where |v_1| and |v_2| are the lateral speeds. With U the greatest |v_lat| that either ever has,
+    (v_1 - v_2)·rho <= 2·U·rho and both squares are at most (U + rho·a_max_lat)², in either reading
+    of the signs and with or without the squares of ``lateral_rss = signed``.
+    These bounds, constants of each pair, are compared with the distances in every common frame. They
+    are widened by a millimetre, far more than the rounding of doubles in these sums, which stays
+    below a micrometre for roads up to a thousand kilometres.
     """
-    if not (min(reach.rho, reach.a_max) >= 0 and min(reach.b_min, reach.b_max) > 0):
-        raise ValueError("the bound holds for rho, a_max >= 0 and b_min, b_max > 0")
+    if not (
+        min(reach.rho, reach.a_max, reach.a_max_lat) >= 0
+        and min(reach.b_min, reach.b_max, reach.b_min_lat) > 0
+    ):
+        raise ValueError("the bound holds for rho, a_max >= 0 and b_min, b_max > 0, lateral ones alike")
+    close = pairs.choose(_ever_within(recording, pairs, [_along(recording, pairs, reach)]))
+    both = [_along(recording, close, reach), _across(recording, close, reach)]
+    return close.choose(_ever_within(recording, close, both))
+
+
+@dataclass(frozen=True)
+class _Within:
+    """-below <= position of second - position of first <= above; bounds have one entry a pair."""
+
+    position: Floats
+    below: Floats
+    above: Floats
+
+
+def _along(recording: Recording, pairs: Pairs, reach: Reach) -> _Within:
     speed = np.abs(recording.v_lon)
     greatest = np.maximum.reduceat(speed, recording.start[:-1])
     least = np.minimum.reduceat(speed, recording.start[:-1])
-    ahead = _bound(reach, greatest[pairs.first], least[pairs.second]) + recording.length[pairs.second]
-    behind = _bound(reach, greatest[pairs.second], least[pairs.first]) + recording.length[pairs.first]
-    near = np.zeros(len(pairs), bool)
-    for part in _parts(pairs, 2_000_000):
-        chosen = pairs.choose(part)
-        counts = chosen.samples
-        begin = offsets(counts)[:-1]
-        rows = np.arange(int(counts.sum()))
-        row_first = row_of(recording, chosen.first, chosen.low) - begin
-        row_second = row_of(recording, chosen.second, chosen.low) - begin
-        gap = recording.s[rows + np.repeat(row_second, counts)]
-        gap -= recording.s[rows + np.repeat(row_first, counts)]
-        inside = gap <= np.repeat(ahead[part], counts)
-        inside &= gap >= np.repeat(-behind[part], counts)
-        near[part] = np.logical_or.reduceat(inside, begin)
-    return pairs.choose(near)
+    first, second = pairs.first, pairs.second
+    below = _bound_along(reach, greatest[second], least[first]) + recording.length[first]
+    above = _bound_along(reach, greatest[first], least[second]) + recording.length[second]
+    return _Within(recording.s, below, above)
 
 
-def _bound(reach: Reach, greatest_rear: Floats, least_front: Floats) -> Floats:
+def _across(recording: Recording, pairs: Pairs, reach: Reach) -> _Within:
+    greatest = np.maximum.reduceat(np.abs(recording.v_lat), recording.start[:-1])
+    bound = _bound_across(reach, np.maximum(greatest[pairs.first], greatest[pairs.second]))
+    return _Within(recording.d, bound + recording.width[pairs.first], bound + recording.width[pairs.second])
+
+
+def _bound_along(reach: Reach, greatest_rear: Floats, least_front: Floats) -> Floats:
     braking = (greatest_rear + reach.a_max * reach.rho) ** 2 / (2 * reach.b_min)
     way = greatest_rear * reach.rho + reach.a_max * reach.rho**2 / 2
     bound: Floats = np.maximum(0, way + braking - least_front**2 / (2 * reach.b_max)) + 0.001
     return bound
+
+
+def _bound_across(reach: Reach, greatest: Floats) -> Floats:
+    braking = 2 * (greatest + reach.rho * reach.a_max_lat) ** 2 / (2 * reach.b_min_lat)
+    bound: Floats = 2 * greatest * reach.rho + reach.a_max_lat * reach.rho**2 + braking + 0.001
+    return bound
+
+
+def _ever_within(recording: Recording, pairs: Pairs, tests: list[_Within]) -> Bools:
+    """For each pair whether all ``tests`` hold in one and the same common frame."""
+    found = np.zeros(len(pairs), bool)
+    for part in _parts(pairs, 500_000):
+        chosen = pairs.choose(part)
+        counts = chosen.samples
+        begin = offsets(counts)[:-1]
+        rows = np.arange(int(counts.sum()))
+        first = rows + np.repeat(row_of(recording, chosen.first, chosen.low) - begin, counts)
+        second = rows + np.repeat(row_of(recording, chosen.second, chosen.low) - begin, counts)
+        inside = np.ones(len(rows), bool)
+        for test in tests:
+            apart = test.position[second] - test.position[first]
+            inside &= apart <= np.repeat(test.above[part], counts)
+            inside &= apart >= np.repeat(-test.below[part], counts)
+        found[part] = np.logical_or.reduceat(inside, begin)
+    return found
 
 
 def row_of(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:

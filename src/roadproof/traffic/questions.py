@@ -230,5 +230,5 @@ def _reach(settings: Settings, spec: Specification) -> Reach | None:
     text = "rssViolation(SV, POV)"
     if without_names(read_claim(bundled, text).formula) != without_names(read_claim(spec, text).formula):
         return None
-    rho, a_max, b_min, b_max = (float(settings.values[x]) for x in ("rho", "a_max", "b_min", "b_max"))
-    return Reach(rho, a_max, b_min, b_max)
+    names = ("rho", "a_max", "b_min", "b_max", "a_max_lat", "b_min_lat")
+    return Reach(**{name: float(settings.values[name]) for name in names})

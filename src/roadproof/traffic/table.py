@@ -129,12 +129,16 @@ def _check_shape(path: Path, content: bytes, fields: int) -> int:
         raise InputError(
             f"{path}: the last row does not end with a line break; the file was cut off, get it again"
         )
-    if data.max() > 127 or not data.min():
-        strange = int(np.argmax((data > 127) | (data == 0)))
-        row = content.count(b"\n", 0, strange) + 1
-        raise InputError(f"{path}, row {row}: byte {data[strange]:#04x} is no part of a table of numbers")
-    lines = int(np.count_nonzero(data == ord("\n")))
-    if np.count_nonzero(data == ord(",")) != lines * (fields - 1):
+    lines = commas = 0
+    for begin in range(0, len(data), 1 << 18):  # pieces that fit the cache
+        piece = data[begin : begin + (1 << 18)]
+        if piece.max() > 127 or not piece.min():
+            strange = begin + int(np.argmax((piece > 127) | (piece == 0)))
+            row = content.count(b"\n", 0, strange) + 1
+            raise InputError(f"{path}, row {row}: byte {data[strange]:#04x} is no part of a table of numbers")
+        lines += int(np.count_nonzero(piece == ord("\n")))
+        commas += int(np.count_nonzero(piece == ord(",")))
+    if commas != lines * (fields - 1):
         for number, line in enumerate(content.split(b"\n")[:-1], start=1):
             if line.count(b",") != fields - 1:
                 count = line.count(b",") + 1
