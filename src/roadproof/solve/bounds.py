@@ -94,38 +94,38 @@ def approximate(fact: ColumnFact, box: Box, side: Side, pieces: int = 1) -> Circ
     linear, squares = split_squares(fact)
     options = [_square(factor, form, box, side, pieces) for factor, form in squares]
     cases = []
-    for chosen in product(*(o[0] for o in options)):
-        total, conditions = linear, list[Bound]()
-        for piece, window in chosen:
-            total, conditions = total + piece, [*conditions, *window]
-        cases.append(all_of([*(Leaf(c) for c in conditions), _leaf(total, fact, box)]))
-    every = any(o[1] for o in options)
-    return all_of(cases) if every else any_of(cases)
+    for chosen in product(*options):
+        conditions = [condition for _, window in chosen for condition in window]
+        totals = [linear]
+        for bounds, _ in chosen:
+            totals = [total + bound for total in totals for bound in bounds]
+        cases.append(all_of([*(Leaf(c) for c in conditions), *(_leaf(t, fact, box) for t in totals)]))
+    return any_of(cases)
 
 
-Piece: TypeAlias = tuple[Affine, tuple[Bound, ...]]
+# Affine bounds that are all valid, and the window in which they are.
+Piece: TypeAlias = tuple[tuple[Affine, ...], tuple[Bound, ...]]
 
 
-def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> tuple[list[Piece], bool]:
-    """Affine bounds of ``factor·form²`` with the windows in which they are valid.
+def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> list[Piece]:
+    """Affine bounds of ``factor·form²`` on a side, to choose from.
 
-    The flag says whether all of the pieces are asked for together rather than one of them.
+    On the inner side each tangent alone will do; on the outer side all of them are asked for.
     """
     low, high = form.range(box)
     if high - low < 1e-12:
-        return [(Affine((), factor * low * low), ())], False
+        return [((Affine((), factor * low * low),), ())]
     if (factor > 0) == (side == "inner"):
         points = [low + (high - low) * (2 * k + 1) / (2 * pieces) for k in range(pieces)]
-        tangents = [form.scaled(2 * p) + Affine((), -p * p) for p in points]
-        made: list[Piece] = [(tangent.scaled(factor), ()) for tangent in tangents]
-        return made, side == "outer"
+        tangents = [(form.scaled(2 * p) + Affine((), -p * p)).scaled(factor) for p in points]
+        return [((t,), ()) for t in tangents] if side == "inner" else [(tuple(tangents), ())]
     cuts = [low + (high - low) * k / pieces for k in range(pieces + 1)]
     windows: list[Piece] = []
     for a, b in pairwise(cuts):
-        secant = form.scaled(a + b) + Affine((), -a * b)
+        secant = (form.scaled(a + b) + Affine((), -a * b)).scaled(factor)
         inside = (Bound(form + Affine((), -a)), Bound(form.scaled(-1) + Affine((), b)))
-        windows.append((secant.scaled(factor), inside if pieces > 1 else ()))
-    return windows, False
+        windows.append(((secant,), inside if pieces > 1 else ()))
+    return windows
 
 
 def _leaf(affine: Affine, fact: ColumnFact, box: Box) -> Circuit[Bound]:

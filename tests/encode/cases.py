@@ -1,0 +1,118 @@
+"""Random formulas and traces on a grid, and a reading of formulas there by definition."""
+
+from fractions import Fraction
+
+from hypothesis import strategies as st
+
+from roadproof.encode.unroll import Grid
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.world.drive import Drive, Motion, Piece
+
+DT = Fraction(1, 2)
+STEPS = 5
+GRID = Grid(DT, STEPS)
+SIGNALS = (("a_lon", "A"), ("a_lat", "A"), ("a_lon", "B"))
+
+
+def atom(signal, vehicle, op, threshold):
+    return f.Compare(t.Signal(signal, vehicle), op, t.Number(threshold, (1, -2)))
+
+
+atoms = st.builds(
+    lambda which, op, half: atom(*which, op, Fraction(2 * half + 1, 2)),
+    st.sampled_from(SIGNALS),
+    st.sampled_from(["<", "<=", ">", ">="]),
+    st.integers(-2, 1),
+)
+
+
+def interval(low, length):
+    seconds = t.Number(low * DT, (0, 1))
+    return f.Interval(seconds, None if length is None else t.Number((low + length) * DT, (0, 1)))
+
+
+bounded = st.builds(interval, st.integers(0, 2), st.integers(0, 3))
+intervals = st.one_of(bounded, st.builds(interval, st.integers(0, 2), st.none()))
+
+
+def formulas(windows=intervals, leaves=8):
+    return st.recursive(
+        atoms | st.builds(f.Truth, st.booleans()),
+        lambda inner: st.one_of(
+            st.builds(f.Not, inner),
+            st.builds(lambda a, b: f.And((a, b)), inner, inner),
+            st.builds(lambda a, b: f.Or((a, b)), inner, inner),
+            st.builds(f.Eventually, windows, inner),
+            st.builds(f.Always, windows, inner),
+            st.builds(f.Until, inner, windows, inner),
+            st.builds(lambda a: f.Named("part", (), a), inner),
+        ),
+        max_leaves=leaves,
+    )
+
+
+# Accelerations from each sample but the last on; after it there are none.
+traces = st.fixed_dictionaries(
+    {which: st.lists(st.integers(-2, 2), min_size=STEPS, max_size=STEPS) for which in SIGNALS}
+)
+
+
+def value_at(trace, signal, vehicle, sample):
+    values = trace.get((signal, vehicle), [0] * STEPS)
+    return values[sample] if sample < STEPS else 0
+
+
+def holds(formula, trace, k=0):
+    """Truth at sample k by definition (SPEC §1); the last sample stands for every later one."""
+
+    def samples(window):
+        low = window.low.value / DT
+        high = None if window.high is None else window.high.value / DT
+        last = max(k + low, STEPS) if high is None else k + high
+        return [min(j, STEPS) for j in range(int(k + low), int(last) + 1)]
+
+    match formula:
+        case f.Truth(value):
+            return value
+        case f.Compare(left, op, right):
+            value = value_at(trace, left.name, left.vehicle, k)
+            return {
+                "<": value < right.value,
+                "<=": value <= right.value,
+                ">": value > right.value,
+                ">=": value >= right.value,
+            }[op]
+        case f.Not(body):
+            return not holds(body, trace, k)
+        case f.And(parts):
+            return all(holds(p, trace, k) for p in parts)
+        case f.Or(parts):
+            return any(holds(p, trace, k) for p in parts)
+        case f.Named(_, _, body):
+            return holds(body, trace, k)
+        case f.Eventually(window, body):
+            return any(holds(body, trace, j) for j in samples(window))
+        case f.Always(window, body):
+            return all(holds(body, trace, j) for j in samples(window))
+        case f.Until(left, window, right):
+            inside = samples(window)
+            return any(
+                holds(right, trace, j) and all(holds(left, trace, i) for i in inside[:n])
+                for n, j in enumerate(inside)
+            )
+    raise AssertionError(formula)
+
+
+def as_drive(trace):
+    """The drive with the accelerations of ``trace``."""
+
+    def motion(vehicle):
+        pieces = [
+            Piece(DT, *(Fraction(value_at(trace, s, vehicle, k)) for s in ("a_lon", "a_lat")))
+            for k in range(STEPS)
+        ]
+        start = [Fraction(x) for x in (4, 2, 0, 2, 30, 0)]
+        return Motion(*start, (*pieces, Piece(None, Fraction(0), Fraction(0))))
+
+    return Drive({"A": motion("A"), "B": motion("B")})
