@@ -11,6 +11,8 @@ from roadproof.encode.build import Manners
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
 from roadproof.evidence.witness import DriveFile, as_json, judge_file
+from roadproof.logic.rewrite import parameters_of
+from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim, signature
 from roadproof.spec.library import Library, Specification, load_library
 from roadproof.verdict import Verdict
@@ -178,7 +180,7 @@ def _file(
         text,
         found.grid.horizon,
         found.lanes,
-        question.values,
+        _telling(library, question),
         specification.options,
         question.road,
         found.drive,
@@ -193,3 +195,10 @@ def _file(
     ]
     verdict = {"verdict": str(Verdict.WITNESSED), "view": "dense", "natural": found.manners.natural}
     return as_json(file, {**verdict, "times": times})
+
+
+def _telling(library: Library, question: Question) -> dict[str, Fraction]:
+    """Values of the parameters that the formula speaks of, and of those that the user has changed."""
+    declared = default_values(library)
+    spoken = parameters_of(question.query.formula)
+    return {n: v for n, v in question.values.items() if n in spoken or v != declared.get(n)}

@@ -1,0 +1,126 @@
+"""A table as text, Markdown, CSV and LaTeX: one content, four looks."""
+
+import csv
+import io
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+_LATEX = {
+    "\\": r"\textbackslash{}",
+    "&": r"\&",
+    "%": r"\%",
+    "_": r"\_",
+    "#": r"\#",
+    "$": r"\$",
+    "{": r"\{",
+    "}": r"\}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "|": r"\textbar{}",
+}
+
+
+@dataclass(frozen=True)
+class Table:
+    """Cells as they are to be read; ``notes`` stand below. Every row has as many cells as ``columns``."""
+
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        wrong = [row for row in self.rows if len(row) != len(self.columns)]
+        if wrong:
+            raise ValueError(f"a row of {len(wrong[0])} cells in a table of {len(self.columns)} columns")
+
+
+def as_text(table: Table) -> str:
+    """Columns aligned by spaces: texts to the left, numbers to the right."""
+    widths = [max(map(len, column)) for column in zip(table.columns, *table.rows, strict=True)]
+    numeric = _numeric(table)
+
+    def line(cells: tuple[str, ...]) -> str:
+        padded = (
+            cell.rjust(width) if right else cell.ljust(width)
+            for cell, width, right in zip(cells, widths, numeric, strict=True)
+        )
+        return "  ".join(padded).rstrip()
+
+    rule = "  ".join("-" * width for width in widths)
+    body = [line(table.columns), rule, *map(line, table.rows)]
+    return "\n".join([table.title, "", *body, *_below(table, "")]) + "\n"
+
+
+def as_markdown(table: Table) -> str:
+    """A table of GitHub's Markdown with the title as heading."""
+
+    def line(cells: tuple[str, ...]) -> str:
+        return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
+
+    rule = "|" + "|".join("---:" if right else "---" for right in _numeric(table)) + "|"
+    body = [line(table.columns), rule, *map(line, table.rows)]
+    return "\n".join([f"## {table.title}", "", *body, *_below(table, "")]) + "\n"
+
+
+def as_csv(table: Table) -> str:
+    """Header and rows; title and notes are left out, so that programs can read it."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(table.columns)
+    writer.writerows(table.rows)
+    return out.getvalue()
+
+
+def as_latex(table: Table) -> str:
+    """A ``table*`` with booktabs rules, notes in the caption."""
+
+    def line(cells: tuple[str, ...]) -> str:
+        return "    " + " & ".join(map(_escape, cells)) + r" \\"
+
+    places = "".join("r" if right else "l" for right in _numeric(table))
+    caption = _escape(" ".join([table.title.rstrip(".") + ".", *table.notes]))
+    return "\n".join(
+        [
+            r"\begin{table*}",
+            rf"  \caption{{{caption}}}",
+            rf"  \begin{{tabular}}{{{places}}}",
+            r"    \toprule",
+            line(table.columns),
+            r"    \midrule",
+            *map(line, table.rows),
+            r"    \bottomrule",
+            r"  \end{tabular}",
+            r"\end{table*}",
+            "",
+        ]
+    )
+
+
+LOOKS: Mapping[str, Callable[[Table], str]] = {
+    "txt": as_text,
+    "md": as_markdown,
+    "csv": as_csv,
+    "tex": as_latex,
+}
+"""How to write a table, by the ending of the file."""
+
+
+def _numeric(table: Table) -> list[bool]:
+    """Which columns hold nothing but numbers, percentages and gaps."""
+    columns = list(zip(*table.rows, strict=True)) or [()] * len(table.columns)
+    return [bool(cells) and all(_is_number(cell) for cell in cells) for cells in columns]
+
+
+def _is_number(cell: str) -> bool:
+    return cell in ("", "-") or cell.removesuffix("%").strip().replace(".", "", 1).isdecimal()
+
+
+def _below(table: Table, mark: str) -> list[str]:
+    return ["", *(mark + note for note in table.notes)] if table.notes else []
+
+
+def _escape(text: str) -> str:
+    return "".join(_LATEX.get(letter, letter) for letter in text)
