@@ -19,8 +19,10 @@ unit: $(READY)
 	$(BIN)/python -m pytest -n $(JOBS) -q -rs
 
 demo: $(READY)
-	$(BIN)/roadproof list
 	$(BIN)/roadproof show 4
+	rm -rf out/proofs
+	$(BIN)/roadproof prove --out out/proofs
+	$(BIN)/roadproof check out/proofs
 
 format: $(READY)
 	$(BIN)/ruff check --fix-only .
