@@ -3,10 +3,10 @@
 A definition whose body compares, occupies or quantifies over lanelets is one atom (``aheadOf``,
 ``atLane``); definitions that only combine others (``danger``, ``accel``) are looked through, and so
 are quantifiers over lanes. Two atoms are the same when their bodies are built alike, whatever they
-are called.
+and their bound variables are called.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass, field
 
 from roadproof.errors import InputError
@@ -20,7 +20,7 @@ from roadproof.logic.terms import Signal, leaves
 
 @dataclass
 class Atoms:
-    """The atoms met so far: from what they mean to what they are called."""
+    """The atoms met so far: what they are called, by what they mean up to bound variables; and back."""
 
     names: dict[Formula, str] = field(default_factory=dict)
     named: dict[str, Formula] = field(default_factory=dict)
@@ -54,15 +54,16 @@ class Atoms:
 
     def _atom(self, formula: Formula) -> Named:
         meaning = without_names(formula)
-        if meaning not in self.names:
+        key = up_to_variables(meaning)
+        if key not in self.names:
             shown = text(as_syntax(formula, expand=False))
             name, count = shown, 1
             while name in self.named:
                 count += 1
                 name = f"{shown} #{count}"
-            self.names[meaning] = name
+            self.names[key] = name
             self.named[name] = meaning
-        return Named(self.names[meaning], (), meaning)
+        return Named(self.names[key], (), self.named[self.names[key]])
 
 
 def is_atom(formula: Formula) -> bool:
@@ -103,20 +104,71 @@ def _combined(formula: Formula) -> Iterator[Formula]:
 
 
 def rename(formula: Formula, old: str, new: str) -> Formula:
-    """``formula`` with the lane or lanelet variable ``old`` called ``new`` (which is fresh)."""
+    """``formula`` with the free lane or lanelet variable ``old`` called ``new``.
+
+    What a quantifier inside calls ``old`` stays as it is; one that calls something ``new`` has its
+    variable renamed first, so that it captures nothing.
+    """
+    done: dict[Formula, Formula] = {}
 
     def visit(current: Formula) -> Formula:
-        match current:
-            case f.Occupies(vehicle, lanelet) if lanelet == old:
-                return f.Occupies(vehicle, new)
-            case f.Some(variable, domain, body) | f.Every(variable, domain, body) if domain.of == old:
-                return type(current)(variable, f.Domain(domain.kind, new), body)
-            case Named(name, arguments, body):
-                return Named(name, tuple(new if a == old else a for a in arguments), body)
-            case _:
-                return current
+        if current not in done:
+            done[current] = change(current)
+        return done[current]
 
-    return f.transform(formula, visit)
+    def change(current: Formula) -> Formula:
+        match current:
+            case f.Occupies(vehicle, lanelet):
+                return f.Occupies(vehicle, new if lanelet == old else lanelet)
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+                inside = f.Domain(domain.kind, new if domain.of == old else domain.of)
+                if variable == old:
+                    return type(current)(variable, inside, body)
+                if variable == new:
+                    variable = _free_name(variable, road_names(body) | {old})
+                    body = rename(body, new, variable)
+                return type(current)(variable, inside, visit(body))
+            case Named(name, arguments, body):
+                return Named(name, tuple(new if a == old else a for a in arguments), visit(body))
+            case _:
+                return f.with_children(current, tuple(visit(child) for child in f.children(current)))
+
+    return visit(formula)
+
+
+def _free_name(name: str, taken: Set[str]) -> str:
+    while name in taken:
+        name += "_"
+    return name
+
+
+def road_names(formula: Formula) -> frozenset[str]:
+    """Names of lanes and lanelets that ``formula`` speaks of or calls a variable by."""
+    found: set[str] = set()
+    for part in f.subformulas(formula):
+        match part:
+            case f.Occupies(_, lanelet):
+                found.add(lanelet)
+            case f.Some(variable, domain, _) | f.Every(variable, domain, _):
+                found |= {variable, domain.of} if domain.kind in ("lanelets", "adjacent") else {variable}
+            case _:
+                pass
+    return frozenset(found)
+
+
+def up_to_variables(formula: Formula) -> Formula:
+    """``formula`` without names of definitions, and with bound variables called by their depth."""
+
+    def visit(current: Formula, depth: int) -> Formula:
+        match current:
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+                inner = rename(body, variable, f"#{depth}")
+                return type(current)(f"#{depth}", domain, visit(inner, depth + 1))
+            case _:
+                return f.with_children(current, tuple(visit(c, depth) for c in f.children(current)))
+
+    bare = without_names(formula)
+    return bare if not road_names(bare) else visit(bare, 1)
 
 
 def membership(domain: f.Domain, element: str) -> str:

@@ -19,6 +19,7 @@ from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
 
 SCHEMA = "roadproof/certificate/1"
+VIEW = "dense"
 
 
 @dataclass(frozen=True)
@@ -47,11 +48,13 @@ def certify(
     scenario: int | None = None,
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof."""
-    formula = read_claim(specification, claim).formula
+    query = read_claim(specification, claim)
+    formula = query.formula
     atoms = Atoms()
     atomised = atoms.atomise(formula)
     bounds = {name: p.bound for name, p in specification.library.parameters.items()}
-    queries = [("claim", derive_query(atomised, atoms, instances, names, lemmas, bounds))]
+    ground = derive_query(atomised, atoms, instances, names, lemmas, bounds, query.lanes)
+    queries = [("claim", ground)]
     for number, lemma in enumerate(lemmas, 1):
         cases = derive_lemma_queries(atoms, lemma.literals, bounds)
         queries += [(f"lemma {number}, case {k} of {len(cases)}", q) for k, q in enumerate(cases, 1)]
@@ -121,7 +124,7 @@ def to_json(certificate: Certificate) -> str:
         "claim": certificate.claim,
         "set": certificate.set_name,
         "options": dict(certificate.options),
-        "view": "dense",
+        "view": VIEW,
         "assumptions": list(certificate.assumptions),
         "formulas": table,
         "times": [[name, *write(site)] for site, name in certificate.names.items()],
@@ -141,17 +144,19 @@ def read_certificate(path: Path) -> Certificate:
         data = json.loads(path.read_text("utf-8"))
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(f"{path} is not JSON text: {error}") from None
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         raise InputError(f"{path} is no certificate: its schema must be {SCHEMA}")
     try:
         return _from_data(data)
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
         raise InputError(f"{path} is a damaged certificate: {type(error).__name__} {error}") from None
 
 
 def _from_data(data: Mapping[str, Any]) -> Certificate:
+    if data["view"] != VIEW:
+        raise ValueError(f"view={data['view']!r}: a certificate is about {VIEW} time")
     table = [str(text) for text in data["formulas"]]
 
     def site(entry: list[Any]) -> Site:

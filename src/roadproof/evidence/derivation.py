@@ -7,19 +7,22 @@ the negated claim is, and the claim is valid on all traces (Herbrand). Lemmas ar
 at every instant; each has a query of its own, about one instant, that must be unsatisfiable too.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence import state
-from roadproof.evidence.atoms import Atoms, is_rigid, membership, rename
+from roadproof.evidence.atoms import Atoms, is_rigid, membership, rename, road_names
 from roadproof.evidence.cases import split
 from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
+
+_NEW_NAME = re.compile(r"[tM]_*[0-9]{1,9}", re.ASCII)
 
 # What an instance says at a moment: its guards, and the body that they guard.
 Instance: TypeAlias = Callable[[Moment], tuple[list[str], str]]
@@ -85,14 +88,15 @@ def derive_query(
     names: Mapping[Site, str],
     lemmas: Sequence[Lemma],
     bounds: Mapping[str, str],
+    lanes: Collection[str] = (),
 ) -> str:
     """SMT-LIB script that is unsatisfiable only if ``claim``, atomised by ``atoms``, is valid at time 0.
 
     ``instances`` lists for each universal the moments (or lanes) to try; ``names`` calls the
-    existentials that instances speak of. Raises ``InputError`` where an instance or a name belongs
-    to no quantifier that the claim meets.
+    existentials that instances speak of; ``lanes`` are the claim's own. Raises ``InputError`` where an
+    instance or a name belongs to no quantifier that the claim meets, and where a name is not new.
     """
-    derivation = _Derivation(atoms, instances, names)
+    derivation = _start(claim, atoms, instances, names, bounds, lanes)
     goal = derivation.truth(claim, False, ZERO)
     clauses = [
         _join("or", [derivation.literal(name, positive, moment) for name, positive in lemma.literals])
@@ -114,12 +118,43 @@ def derive_query(
 
 
 def met_names(
-    claim: Formula, atoms: Atoms, instances: Mapping[Site, Sequence[str]], names: Mapping[Site, str]
+    claim: Formula,
+    atoms: Atoms,
+    instances: Mapping[Site, Sequence[str]],
+    names: Mapping[Site, str],
+    bounds: Mapping[str, str],
+    lanes: Collection[str],
 ) -> dict[Site, str]:
     """The entries of ``names`` whose quantifier is met when only ``instances`` are made."""
-    derivation = _Derivation(atoms, instances, names)
+    derivation = _start(claim, atoms, instances, names, bounds, lanes)
     derivation.truth(claim, False, ZERO)
-    return {site: name for site, name in names.items() if site in derivation.met}
+    return {site: name for site, name in names.items() if site in derivation.named}
+
+
+def _start(
+    claim: Formula,
+    atoms: Atoms,
+    instances: Mapping[Site, Sequence[str]],
+    names: Mapping[Site, str],
+    bounds: Mapping[str, str],
+    lanes: Collection[str],
+) -> "_Derivation":
+    """Refuses names that are not new: an existential that shares one would say too much."""
+    taken = {*lanes, *road_names(claim), *bounds}
+    for name in names.values():
+        if name in taken or not _NEW_NAME.fullmatch(name):
+            raise InputError(f"'{name[:60]}' is no new name: times are called t1, t2, …, lanes M1, M2, …")
+    if len({*names.values()}) != len(names):
+        raise InputError("two existentials of the certificate have the same name")
+    elements = frozenset({*lanes, *road_names(claim), *names.values()})
+    return _Derivation(atoms, instances, names, elements, free_prefix("u", taken), free_prefix("q", taken))
+
+
+def free_prefix(prefix: str, taken: Collection[str]) -> str:
+    """``prefix``, longer by underscores until no name in ``taken`` begins with it."""
+    while any(name.startswith(prefix) for name in taken):
+        prefix += "_"
+    return prefix
 
 
 def derive_lemma_queries(
@@ -148,16 +183,22 @@ def derive_lemma_queries(
 
 @dataclass
 class _Derivation:
+    """``instanced`` and ``named`` are the universals and the existentials met so far."""
+
     known: Atoms
     instances: Mapping[Site, Sequence[str]]
     names: Mapping[Site, str]
+    elements: frozenset[str]
+    unnamed: str
+    defining: str
     definitions: list[str] = field(default_factory=list)
     defined: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
     atoms: set[str] = field(default_factory=set)
     facts: set[str] = field(default_factory=set)
     times: list[str] = field(default_factory=list)
     moments: set[str] = field(default_factory=set)
-    met: set[Site] = field(default_factory=set)
+    instanced: set[Site] = field(default_factory=set)
+    named: set[Site] = field(default_factory=set)
     fresh: int = 0
 
     def truth(self, formula: Formula, positive: bool, moment: Moment) -> str:
@@ -196,7 +237,7 @@ class _Derivation:
         key = (formula, positive, moment)
         if key not in self.defined:
             body = self._expand(formula, positive, moment)
-            self.defined[key] = f"q{len(self.definitions) + 1}"
+            self.defined[key] = f"{self.defining}{len(self.definitions) + 1}"
             self.definitions.append(f"(define-fun {self.defined[key]} () Bool {body})")
         return self.defined[key]
 
@@ -270,11 +311,12 @@ class _Derivation:
         if isinstance(formula, f.Some) == positive:
             element = self._name(site)
             return _join("and", [self._fact(domain, element), at_element(element)])
-        self.met.add(site)
-        return _join(
-            "and",
-            [f"(=> {self._fact(domain, e)} {at_element(e)})" for e in self.instances.get(site, ())],
-        )
+        self.instanced.add(site)
+        listed = self.instances.get(site, ())
+        for element in listed:
+            if element not in self.elements:
+                raise InputError(f"'{element[:60]}' is no lane of the claim and none that it speaks of")
+        return _join("and", [f"(=> {self._fact(domain, e)} {at_element(e)})" for e in listed])
 
     def _fact(self, domain: f.Domain, element: str) -> str:
         if domain.kind == "lanes":
@@ -283,11 +325,11 @@ class _Derivation:
         return f"|{membership(domain, element)}|"
 
     def _name(self, site: Site) -> str:
-        self.met.add(site)
+        self.named.add(site)
         if site in self.names:
             return self.names[site]
         self.fresh += 1
-        return f"u{self.fresh}_"
+        return f"{self.unnamed}{self.fresh}_"
 
     def _existential(self, site: Site) -> Moment:
         name = self._name(site)
@@ -295,7 +337,7 @@ class _Derivation:
         return at(name)
 
     def _universal(self, site: Site, instance: Instance) -> str:
-        self.met.add(site)
+        self.instanced.add(site)
         clauses: list[str] = []
         for moment in map(read_moment, self.instances.get(site, ())):
             guard, body = instance(moment)
@@ -318,15 +360,16 @@ class _Derivation:
 
     def refuse_strangers(self) -> None:
         """Every listed instance and name must belong to a quantifier that was met."""
-        for site in [*self.instances, *self.names]:
-            if site not in self.met:
-                raise InputError(
-                    f"an instance at moment {site.moment} belongs to no quantifier of the claim: "
-                    f"{site.formula[:120]}"
-                )
-        known = {*self.names.values()}
-        if len(known) != len(self.names):
-            raise InputError("two existentials of the certificate have the same name")
+        for what, sites, met in (
+            ("an instance", self.instances, self.instanced),
+            ("a name", self.names, self.named),
+        ):
+            for site in sites:
+                if site not in met:
+                    raise InputError(
+                        f"{what} at moment {site.moment[:60]} belongs to no quantifier of the claim: "
+                        f"{site.formula[:120]}"
+                    )
 
     def declarations(self, bounds: Mapping[str, str]) -> list[str]:
         parameters = sorted(self.moments & set(bounds))

@@ -119,7 +119,10 @@ def read_moment(text: str) -> Moment:
         found = _PART.match(stripped, position)
         if found is None or found.end() == position or (not found[2] and not found[3]):
             raise InputError(f"'{text[:60]}' is no moment: write sums such as t3 + minDanger")
-        factor = Fraction(found[2] or 1) * (-1 if found[1] == "-" else 1)
+        try:
+            factor = Fraction(found[2] or 1) * (-1 if found[1] == "-" else 1)
+        except (ValueError, ZeroDivisionError):
+            raise InputError(f"'{text[:60]}' is no moment: '{found[2][:20]}' is no number") from None
         piece = Moment(((found[3], factor),)) if found[3] else Moment((), factor)
         total += piece
         position = found.end()

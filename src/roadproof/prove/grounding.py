@@ -70,13 +70,14 @@ class Grounding:
     """All that has been told to the solver, by what it was told for.
 
     ``switches`` turns instance and lemma clauses on: assumption name → what it stands for.
+    ``prefixes`` begin the names of times and of lanes or lanelets; no name of the claim begins so.
     ``wishes`` are assumptions that a named time falls on a moment known before it: models in which
     they hold have few instants, so that instantiation comes to an end.
     """
 
     atoms: Atoms
     bounds: dict[str, str]
-    prefix: str = "t"
+    prefixes: tuple[str, str] = ("t", "M")
     wishful: bool = False
     names: dict[Site, str] = field(default_factory=dict)
     session: Session = field(default_factory=Session)
@@ -133,7 +134,7 @@ class Grounding:
     def _obligation(self, formula: Formula, positive: bool, moment: Moment) -> str:
         key = (formula, positive, moment)
         if key not in self._known:
-            switch = f"q{len(self._known) + 1}"
+            switch = f"q${len(self._known) + 1}"
             self._known[key] = switch
             self._declare(switch, f"(declare-const {switch} Bool)")
             self._unfold(formula, positive, moment, switch)
@@ -202,10 +203,10 @@ class Grounding:
         self.universals.append(Universal(site, switch, window, instance, flat))
 
     def _name_time(self, site: Site, earliest: Moment) -> Moment:
-        name = self.names.setdefault(site, f"{self.prefix}{len(self.names) + 1}")
+        name = self.names.setdefault(site, f"{self.prefixes[0]}{len(self.names) + 1}")
         self._declare(name, f"(declare-const {name} Real)")
         if self.wishful:
-            wish = f"w_{name}"
+            wish = f"w${name}"
             known = " ".join(f"(= {name} {m.smt()})" for m in dict.fromkeys([earliest, *self.moments]))
             self.session.tell(f"(declare-const {wish} Bool)(assert (=> {wish} (or {known})))")
             self.wishes.append(wish)
@@ -213,7 +214,7 @@ class Grounding:
         return at(name)
 
     def _name_element(self, site: Site) -> str:
-        name = self.names.setdefault(site, f"M{len(self.names) + 1}")
+        name = self.names.setdefault(site, f"{self.prefixes[1]}{len(self.names) + 1}")
         self.elements[name] = None
         return name
 
@@ -249,7 +250,7 @@ class Grounding:
         self._add_clause(Lemma(tuple(literals), (str(when),)), f"(or {clause})")
 
     def _add_clause(self, stands_for: tuple[Site, str] | Lemma, clause: str) -> None:
-        switch = f"i{len(self.switches) + 1}"
+        switch = f"i${len(self.switches) + 1}"
         self.switches[switch] = stands_for
         self.session.tell(f"(declare-const {switch} Bool)(assert (=> {switch} {clause}))")
 

@@ -13,14 +13,22 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.prove.countermodel import Countermodel, realise
 from roadproof.prove.search import GaveUp, Proof, Search
+from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.elaborate import Query, read_claim
 from roadproof.spec.library import Specification
 from roadproof.verdict import Verdict
 
 # Ways to look, in turns: (ask for few instants, seconds). The last is given what time is left.
-TURNS: tuple[tuple[bool, float], ...] = ((True, 0.35), (False, 3.0), (True, 6.0), (False, 20.0), (True, 1e9))
+TURNS: tuple[tuple[bool, float], ...] = (
+    (False, 0.3),
+    (True, 0.5),
+    (False, 3.0),
+    (True, 6.0),
+    (False, 20.0),
+    (True, 1e9),
+)
 VACUITY_SECONDS = 0.5
 
 
@@ -55,7 +63,10 @@ def prove(
     query = read_claim(specification, claim)
     atoms = Atoms()
     atomised = atoms.atomise(query.formula)
-    attempt = _Attempt(specification, atoms, query.lanes, deadline)
+    defaults = default_values(specification.library)
+    bounds = {name: p.bound for name, p in specification.library.parameters.items()}
+    states = StateChecker(atoms, bounds, defaults)
+    attempt = _Attempt(atoms, bounds, defaults, states, query.lanes, deadline)
 
     def result(
         verdict: Verdict,
@@ -76,7 +87,7 @@ def prove(
         if isinstance(found, GaveUp):
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
-    certificate = _certificate(specification, claim, atomised, atoms, proofs, names, label, scenario)
+    certificate = _certificate(specification, query, atomised, atoms, proofs, names, label, scenario)
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
     for title, script in certificate.queries:
         if script in settled:
@@ -111,8 +122,10 @@ def _premise(formula: Formula) -> Formula | None:
 
 @dataclass(frozen=True)
 class _Attempt:
-    specification: Specification
     atoms: Atoms
+    bounds: Mapping[str, str]
+    defaults: Mapping[str, Fraction]
+    states: StateChecker
     lanes: tuple[str, ...]
     deadline: float
 
@@ -124,7 +137,7 @@ class _Attempt:
             search = self._search(goal, names, wishful)
             found = search.run(until)
             while not isinstance(found, Proof | GaveUp):
-                countermodel = realise(goal, self.atoms, found, self._defaults())
+                countermodel = realise(goal, self.atoms, found, self.defaults)
                 if countermodel is not None:
                     return countermodel
                 if not search.widen():
@@ -143,17 +156,13 @@ class _Attempt:
         until = min(self.deadline, time.monotonic() + VACUITY_SECONDS)
         return isinstance(self._search(f.negation(premise), {}, True).run(until), Proof)
 
-    def _defaults(self) -> Mapping[str, Fraction]:
-        return default_values(self.specification.library)
-
     def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:
-        bounds = {name: p.bound for name, p in self.specification.library.parameters.items()}
-        return Search(goal, self.atoms, bounds, self._defaults(), self.lanes, names, wishful)
+        return Search(goal, self.atoms, self.bounds, self.states, self.lanes, names, wishful)
 
 
 def _certificate(
     specification: Specification,
-    claim: str,
+    query: Query,
     atomised: Formula,
     atoms: Atoms,
     proofs: list[Proof],
@@ -171,8 +180,9 @@ def _certificate(
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
     try:
-        met = met_names(atomised, atoms, instances, names)
+        bounds = {name: p.bound for name, p in specification.library.parameters.items()}
+        met = met_names(atomised, atoms, instances, names, bounds, query.lanes)
         made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-        return certify(specification, claim, instances, met, made, label, scenario)
+        return certify(specification, query.text, instances, met, made, label, scenario)
     except InputError as error:
         raise AssertionError(f"the finder's instances do not fit the claim: {error}") from error

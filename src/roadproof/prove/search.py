@@ -12,8 +12,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.derivation import Lemma, Site
+from roadproof.evidence.atoms import Atoms, road_names
+from roadproof.evidence.derivation import Lemma, Site, free_prefix
 from roadproof.evidence.times import ZERO, Moment, at, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -69,15 +69,15 @@ class Search:
         claim: Formula,
         atoms: Atoms,
         bounds: Mapping[str, str],
-        defaults: Mapping[str, Fraction],
+        states: StateChecker,
         lanes: Sequence[str],
         names: dict[Site, str],
         wishful: bool,
     ) -> None:
-        prefix = _free_prefix(bounds)
-        self.grounding = Grounding(atoms, dict(bounds), prefix, wishful, names)
+        prefixes = free_prefix("t", bounds), free_prefix("M", {*lanes, *road_names(claim)})
+        self.grounding = Grounding(atoms, dict(bounds), prefixes, wishful, names)
         self.grounding.elements |= dict.fromkeys(lanes)
-        self.states = StateChecker(atoms, dict(bounds), defaults)
+        self.states = states
         self.bound_moments = _bounds_of(claim)
         self.spread = 0
         self.grounding.demand(claim, False)
@@ -244,7 +244,7 @@ class Search:
                 needed = without
         instances: dict[Site, list[str]] = {}
         lemmas: dict[tuple[tuple[str, bool], ...], list[str]] = {}
-        for switch in sorted(needed, key=lambda s: int(s[1:])):
+        for switch in sorted(needed, key=lambda s: int(s[2:])):
             used = self.grounding.switches[switch]
             if isinstance(used, Lemma):
                 lemmas.setdefault(used.literals, []).extend(used.moments)
@@ -266,11 +266,3 @@ def _bounds_of(formula: Formula) -> list[Moment]:
                 if bound is not None:
                     found[moment_of(bound)] = None
     return [moment for moment in found if moment != ZERO]
-
-
-def _free_prefix(names: Mapping[str, str]) -> str:
-    """A prefix for the names of moments that starts no parameter."""
-    prefix = "t"
-    while any(name.startswith(prefix) for name in names):
-        prefix += "_"
-    return prefix

@@ -39,11 +39,14 @@ TYPICAL_SIZE: Mapping[t.SizeName, Fraction] = {"length": Fraction(9, 2), "width"
 
 
 class StateChecker:
+    """States and clauses found so far; one for all searches about a claim."""
+
     def __init__(self, atoms: Atoms, bounds: Mapping[str, str], defaults: Mapping[str, Fraction]) -> None:
         self.atoms = atoms
         self.bounds = bounds
         self.defaults = defaults
         self.settled: set[str] = set()
+        self.clauses: list[Clause] = []
         self.known: dict[frozenset[tuple[str, bool]], Mapping[str, Fraction | bool]] = {}
 
     def refute(self, wanted: Mapping[str, bool], deadline: float) -> Clause | str | None:
@@ -51,6 +54,9 @@ class StateChecker:
         key = frozenset(wanted.items())
         if key in self.known:
             return None
+        for clause in self.clauses:
+            if all(wanted.get(name) is (not positive) for name, positive in clause):
+                return clause
         literals = list(wanted.items())
         for assumed in ASSUMED:
             question = _Question(self, wanted, assumed)
@@ -62,7 +68,8 @@ class StateChecker:
                 literals = question.core()
             clause = tuple((name, not positive) for name, positive in literals)
             if self._always_holds(clause, deadline):
-                return self._shrink(clause, deadline)
+                self.clauses.append(self._shrink(clause, deadline))
+                return self.clauses[-1]
         return "z3 gave no answer about a state: " + ", ".join(
             name if positive else f"not {name}" for name, positive in literals
         )
@@ -119,7 +126,7 @@ class _Question:
                 self.session.tell(_plausible(leaf, checker.defaults))
         self.switches: dict[str, tuple[str, bool]] = {}
         for name, positive in wanted.items():
-            switch = f"a{len(self.switches) + 1}"
+            switch = f"a${len(self.switches) + 1}"
             self.switches[switch] = (name, positive)
             meaning = self.meanings[name]
             asserted = state.state(meaning if positive else f.negation(meaning))

@@ -158,6 +158,12 @@ class _Elaborator:
             if binding.name in scope:
                 raise TextError(f"'{binding.name}' is given twice", binding.at)
             self._check_sort(binding)
+            if binding.sort in UNITS and binding.name in self.specification.library.parameters:
+                raise TextError(
+                    f"'{binding.name}' is a parameter of the specification",
+                    binding.at,
+                    "Give the variable another name.",
+                )
             scope[binding.name] = _parameter_value(binding)
             if binding.sort in self.free:
                 self.free[binding.sort].add(binding.name)
