@@ -136,7 +136,7 @@ def ask(settings: Settings, rate: int) -> Questions:
         if three
         else (),
         asked=asked,
-        lane_atoms=dict(_lane_atoms(first)),
+        lane_atoms=dict(lane_atoms(first)),
         reach=_reach(settings, first),
     )
 
@@ -207,7 +207,8 @@ def _check_same_danger(settings: Settings, one: Specification, other: Specificat
             )
 
 
-def _lane_atoms(spec: Specification) -> Iterable[tuple[Formula, LaneAtom]]:
+def lane_atoms(spec: Specification) -> Iterable[tuple[Formula, LaneAtom]]:
+    """The lane predicates of a specification, for the vehicles of pairs and triples and the lanes L, L1."""
     predicates = dict(zip(ZONES, ("onMainRoad", "inMergeZone", "inDepartZone"), strict=True))
     for vehicle in ("SV", "POV", "POV1", "POV2"):
         for lane in ("L", "L1"):

@@ -1,6 +1,6 @@
 """How long the highD experiment takes on simulated recordings of highD's size, and beside plain reading.
 
-    python benchmarks/traffic.py --recordings 60 --folder /tmp/highd-shaped --jobs 2
+    python benchmarks/traffic_speed.py --recordings 60 --folder /tmp/highd-shaped --jobs 2
 
 Makes the recordings that the folder does not have yet, then measures in one run: simulating and
 writing one recording; reading the needed columns of all tracks with nothing else; the whole
