@@ -29,6 +29,7 @@ COMMANDS = {
     "simulate": "roadproof.cli.simulate",
 }
 TRACEBACK = "ROADPROOF_TRACEBACK"
+_READER_GONE = 141  # what shells report for SIGPIPE; not 0, since the answer was not delivered
 
 _EXAMPLES = """\
 examples:
@@ -63,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         # The reader has gone away; keep the interpreter from complaining when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return ExitCode.AS_EXPECTED
+        return _READER_GONE
     except Exception as error:
         if os.environ.get(TRACEBACK):
             raise
