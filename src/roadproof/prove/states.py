@@ -19,12 +19,12 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import map_terms, terms_of
-from roadproof.solve.smt import Session, ask
+from roadproof.solve.smt import Session, ask, solve
 
 Assumed: TypeAlias = Literal["typical", "near", "nothing"]
 ASSUMED: tuple[Assumed, ...] = ("typical", "near", "nothing")
 Clause: TypeAlias = tuple[tuple[str, bool], ...]
-QUICK_SECONDS = 0.5
+QUICK_SECONDS = 0.3
 CASE_SECONDS = 5.0
 SHRINK_SECONDS = 0.1
 PLAUSIBLE: Mapping[t.SignalName, tuple[Fraction, Fraction]] = {
@@ -70,6 +70,12 @@ class StateChecker:
             if self._always_holds(clause, deadline):
                 self.clauses.append(self._shrink(clause, deadline))
                 return self.clauses[-1]
+        symbols = _Question(self, wanted, "nothing").symbols
+        for query in derive_lemma_queries(self.atoms, [(n, not p) for n, p in wanted.items()], self.bounds):
+            found = solve(query, symbols, _left(deadline, CASE_SECONDS))
+            if found is not None:
+                self.known[key] = found
+                return None
         return "z3 gave no answer about a state: " + ", ".join(
             name if positive else f"not {name}" for name, positive in literals
         )
@@ -146,11 +152,15 @@ class _Question:
 
         return put_in
 
+    @property
+    def symbols(self) -> list[str]:
+        """The constants whose values make a state."""
+        road = {s for meaning in self.meanings.values() for s in state.opaque_symbols(meaning)}
+        return [state.symbol(leaf) for leaf in self.leaves] + sorted(road)
+
     def values(self) -> Mapping[str, Fraction | bool]:
-        symbols = [state.symbol(leaf) for leaf in self.leaves]
-        symbols += sorted({s for meaning in self.meanings.values() for s in state.opaque_symbols(meaning)})
-        read = self.session.values(symbols)
-        return {**self.numbers, **{s: v for s, v in zip(symbols, read, strict=True) if v is not None}}
+        read = zip(self.symbols, self.session.values(self.symbols), strict=True)
+        return {**self.numbers, **{symbol: value for symbol, value in read if value is not None}}
 
     def core(self) -> list[tuple[str, bool]]:
         """The literals that the last refutation used."""

@@ -4,7 +4,7 @@ Everything that is asked of an SMT solver passes through here as text, so that a
 written to a file and asked again of another program.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -82,6 +82,19 @@ def ask(script: str, solver: str = "z3", timeout: float | None = None) -> Answer
         milliseconds = 4294967295 if timeout is None else max(1, int(timeout * 1000))
         return _answer(Session().tell(f"(set-option :timeout {milliseconds})\n{script}"))
     return _ask_cvc5(script, timeout)
+
+
+def solve(script: str, symbols: Sequence[str], timeout: float) -> Mapping[str, Fraction | bool] | None:
+    """Values of ``symbols`` in a model that z3 finds for a whole script, or None where it finds none.
+
+    Numbers that are not rational are left out.
+    """
+    session = Session()
+    answer = session.tell(f"(set-option :timeout {max(1, int(timeout * 1000))})\n{script}")
+    if _answer(answer) != "sat":
+        return None
+    read = session.values(symbols)
+    return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
 
 
 def _ask_cvc5(script: str, timeout: float | None) -> Answer:
