@@ -1,0 +1,105 @@
+"""A drive that was found once, put on other roads: same motions, other zones, judged again."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from roadproof.errors import InputError
+from roadproof.evidence.witness import DriveFile, Ruling, as_json, from_json, judge_file
+from roadproof.judge.exact import judge
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, is_state, subformulas
+from roadproof.spec.bind import bind, default_values
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Library
+from roadproof.verdict import Verdict
+from roadproof.witness.impossible import parts
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_road, names_of
+from roadproof.world.road import Lanelet, Road
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A drive file that has been judged, as plain data, with its formula's text."""
+
+    formula: str
+    data: dict[str, Any]
+
+
+def show_elsewhere(shown: Shown, formula: str, library: Library) -> Shown | None:
+    """The motions of ``shown`` on a road on which they satisfy ``formula``, judged; None where none is.
+
+    Tried are the drive's own road and the reference roads with the zones that ``formula`` speaks of,
+    as they are and moved along so that a zone begins or ends under one of the vehicles at time 0.
+    """
+    file = replace(from_json(shown.data, "drive"), formula=formula, scenario=None)
+    query = read_claim(library.select(file.set_name, file.options), formula)
+    values = {**default_values(library), **file.values}
+    now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
+    for road in _roads(file, zones_of(query.formula)):
+        if not set(file.lanes.values()) <= set(road.lanes):
+            continue
+        if not judge(bind(now, road, file.lanes, values), file.drive).holds:
+            continue
+        placed = replace(file, road=road)
+        ruling = judge_file(placed, library)
+        if ruling.accepted:
+            return Shown(formula, as_data(placed, ruling))
+    return None
+
+
+def judge_drive(shown: Shown, formula: str, library: Library) -> bool:
+    """Whether ``formula`` holds on a drive where it is, whatever boxes do. Raises ``InputError``."""
+    file = replace(from_json(shown.data, "drive"), formula=formula)
+    ruling = judge_file(file, library)
+    if ruling.judgement is None:
+        raise InputError(ruling.reason)
+    return ruling.judgement.holds
+
+
+def as_data(file: DriveFile, ruling: Ruling) -> dict[str, Any]:
+    """A judged file as plain data, with what is true when."""
+    assert ruling.accepted
+    assert ruling.judgement is not None
+    times = [
+        {"formula": f"{part.name}({', '.join(part.arguments)})", "true": str(truth)}
+        for part, truth in ruling.judgement.named()
+    ]
+    return as_json(file, {"verdict": str(Verdict.WITNESSED), "view": "dense", "times": times})
+
+
+def zones_of(formula: Formula) -> frozenset[str]:
+    """The zones that a formula speaks of."""
+    quantified = (x for x in subformulas(formula) if isinstance(x, f.Some | f.Every))
+    return frozenset(x.domain.of for x in quantified if x.domain.kind == "zone")
+
+
+def _roads(file: DriveFile, zones: frozenset[str]) -> Iterator[Road]:
+    if zones <= {lanelet.zone for lanelet in file.road.lanelets}:
+        yield file.road
+    for name in names_of("roads"):
+        road = load_road(name)
+        has = {lanelet.zone for lanelet in road.lanelets}
+        if zones <= has:
+            yield road
+            if len(has) > 1:
+                yield from _moved_under(road, file.drive)
+
+
+def _moved_under(road: Road, drive: Drive) -> Iterator[Road]:
+    ends = sorted({end for lanelet in road.lanelets for end in lanelet.s if end is not None})
+    for motion in drive.vehicles.values():
+        for end in ends:
+            yield moved(road, motion.s - motion.length / 2 - end)
+
+
+def moved(road: Road, by: Fraction) -> Road:
+    """``road`` with everything ``by`` metres further along; its name says so."""
+
+    def move(lanelet: Lanelet) -> Lanelet:
+        low, high = (None if end is None else end + by for end in lanelet.s)
+        return replace(lanelet, s=(low, high))
+
+    return Road(f"{road.name} moved by {by} m", tuple(map(move, road.lanelets)), road.adjacent)
