@@ -80,7 +80,9 @@ def test_any_position_that_is_not_driven_is_refused(column, shift):
 
 def test_natural_motions_start_and_end_straight_and_do_not_jerk():
     calm = columns_of([(Fraction(1), Fraction(0))] * 4) * 2
-    hard = columns_of([(Fraction(3), Fraction(0)), (Fraction(-1), Fraction(0))] + [(Fraction(0),) * 2] * 2) * 2
+    hard = (
+        columns_of([(Fraction(3), Fraction(0)), (Fraction(-1), Fraction(0))] + [(Fraction(0),) * 2] * 2) * 2
+    )
     drifting = columns_of([(Fraction(0), Fraction(1, 4))] * 4) * 2
     assert satisfied(motions(True), calm)
     assert satisfied(motions(), hard)

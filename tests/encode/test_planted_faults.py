@@ -1,4 +1,4 @@
-"""Deliberate faults in unrolling, facts, motion, bounds and big-M: the checks of the neighbours catch each."""
+"""Deliberate faults in unrolling, facts, motion, bounds and big-M: neighbouring checks catch each."""
 
 from fractions import Fraction
 
@@ -123,7 +123,9 @@ def test_limits_of_acceleration_left_out_are_caught(monkeypatch):
 
 
 def square_of(column, factor):
-    return Fact((variable(column) * variable(column)).scaled(Fraction(factor)) + affine([], Fraction(10)), False)
+    return Fact(
+        (variable(column) * variable(column)).scaled(Fraction(factor)) + affine([], Fraction(10)), False
+    )
 
 
 def swapped_sides(factor, form, box, side, pieces):

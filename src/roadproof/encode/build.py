@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
+from typing import TypeAlias
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
 from roadproof.encode.facts import Quantity, facts_of
@@ -18,6 +19,12 @@ from roadproof.world.vehicle import Range, Vehicle
 
 # Stands for the time since the last sample while facts are made to hold for ever; columns count from 0.
 _LATER = -1
+
+
+# What is kept from a fact that is not strict, and from one that is.
+Margin: TypeAlias = tuple[Fraction, Fraction]
+NONE: Margin = (Fraction(0), Fraction(0))
+NARROW: Margin = (Fraction(0), Fraction(1, 100))
 
 
 @dataclass(frozen=True)
@@ -38,7 +45,7 @@ class Manners:
     reach: Fraction = Fraction(80)
     collisions: bool = False
     straight: frozenset[str] = frozenset()
-    margin: Fraction = Fraction(1, 10)
+    margin: Margin = (Fraction(1, 10), Fraction(1, 10))
     inside: Fraction = Fraction(1, 100)
     off_centre: Fraction = Fraction(3, 10)
     between: bool = True
@@ -47,9 +54,7 @@ class Manners:
     def plain(self) -> "Manners":
         """Whatever the limits of the vehicles allow."""
         close = Fraction(1, 20)
-        return replace(
-            self, natural=False, straight=frozenset(), margin=Fraction(1, 100), apart=(close, close)
-        )
+        return replace(self, natural=False, straight=frozenset(), margin=NARROW, apart=(close, close))
 
 
 def build_problem(
@@ -79,7 +84,7 @@ def frame(
 
 
 def encode_formula(
-    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, margin: Fraction
+    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, margin: Margin
 ) -> Circuit[ColumnFact]:
     """The formula as a circuit over the columns of ``layout``."""
     return ground(unroll(formula, layout.grid), vehicles, layout, margin)
@@ -116,7 +121,7 @@ def surroundings(
 
 
 def ground(
-    circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout, margin: Fraction
+    circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout, margin: Margin
 ) -> Circuit[ColumnFact]:
     """A circuit of comparisons at samples as one of facts about columns."""
     sizes = {(name, "length"): v.length for name, v in vehicles.items()}
@@ -126,7 +131,7 @@ def ground(
     def at(leaf: At) -> Circuit[ColumnFact]:
         if leaf.atom not in known:
             known[leaf.atom] = replace_leaves(
-                facts_of(leaf.atom, sizes), lambda fact: Leaf(replace(fact, margin=margin))
+                facts_of(leaf.atom, sizes), lambda fact: Leaf(replace(fact, margin=margin[fact.strict]))
             )
         if leaf.step < layout.grid.steps:
             return replace_leaves(known[leaf.atom], lambda fact: Leaf(fact_at(fact, layout, leaf.step)))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import combinations, product
 
-from roadproof.encode.build import Manners, encode_formula, frame
+from roadproof.encode.build import NONE, Manners, Margin, encode_formula, frame
 from roadproof.encode.circuit import Circuit
 from roadproof.encode.motion import Layout
 from roadproof.encode.problem import ColumnFact, Problem
@@ -77,7 +77,7 @@ class _Search:
         self.deadline = time.monotonic() + means.time_limit
         self.doubt = ""
         self.doubts: list[str] = []
-        self.encoded: dict[tuple[Formula, Grid, Fraction], Circuit[ColumnFact]] = {}
+        self.encoded: dict[tuple[Formula, Grid, Margin], Circuit[ColumnFact]] = {}
 
     def run(self) -> Answer:
         for lanes, grid, manners in self._attempts():
@@ -194,37 +194,46 @@ class _Search:
         start = time.perf_counter()
         manners = replace(
             self.question.manners.plain(),
-            margin=Fraction(0),
+            margin=NONE,
             inside=Fraction(0),
             apart=(Fraction(0), Fraction(0)),
             between=False,
         )
         how = set()
         for lanes in self.question.lanes:
-            problem, _ = self._problem(self.question.bound(lanes), self.question.grid, manners)
-            by = self._refute(problem)
+            formula = self.question.bound(lanes)
+            problem, layout = self._problem(formula, self.question.grid, manners)
+            by, exact = self._refute(problem)
             start = self._spent("refute", start)
+            if exact is not None:
+                drive = round_drive(layout, self.question.vehicles, exact, None)
+                complaint = self._complaint(formula, drive, self.question.grid, manners)
+                if complaint is None:
+                    found = Found(drive, lanes, formula, self.question.grid, manners)
+                    return self._answer(Verdict.WITNESSED, found, "")
+                return self._answer(Verdict.UNKNOWN, None, complaint)
             if not by:
-                shown = ", ".join(f"{k}={v}" for k, v in lanes.items()) or "no lane"
-                reason = f"neither a drive nor a refutation was found for {shown}"
+                shown = ", ".join(f"{k}={v}" for k, v in lanes.items()) or self.question.road.name
+                reason = f"neither a drive nor a refutation was found in time for {shown}"
                 return self._answer(Verdict.UNKNOWN, None, reason)
             how.add(by)
         return self._answer(Verdict.NONE_WITHIN, None, f"{self.question.limits()} ({', '.join(sorted(how))})")
 
-    def _refute(self, problem: Problem) -> str:
-        """How it was shown that ``problem`` has no solution; empty where it was not."""
+    def _refute(self, problem: Problem) -> tuple[str, tuple[Fraction, ...] | None]:
+        """How it was shown that ``problem`` has no solution (empty where it was not), or a solution."""
         left = max(0.1, self.deadline - time.monotonic())
         if self.means.engine == "milp":
             try:
-                relaxed = solve_mixed(
-                    problem, box_of(problem), "outer", 2, None, self.means.solver, min(20.0, left)
-                )
+                box = box_of(problem)
+                relaxed = solve_mixed(problem, box, "outer", 2, None, self.means.solver, min(20.0, left))
                 if relaxed.status == "infeasible":
-                    return f"a relaxation is infeasible for {self.means.solver}"
+                    return f"a relaxation is infeasible for {self.means.solver}", None
             except TooNonlinearError:
                 pass
         exact = solve_exactly(problem, min(20.0, max(0.1, self.deadline - time.monotonic())))
-        return "the exact encoding is unsat for z3" if exact.status == "infeasible" else ""
+        if exact.status == "found":
+            return "", exact.values
+        return ("the exact encoding is unsat for z3" if exact.status == "infeasible" else ""), None
 
     def _spent(self, stage: str, start: float) -> float:
         now = time.perf_counter()

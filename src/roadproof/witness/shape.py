@@ -1,16 +1,15 @@
 """What a drive should look like once its choices are made: objectives for ``solve.smooth``."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 
-from roadproof.encode.build import ground
+from roadproof.encode.build import NONE, ground
 from roadproof.encode.circuit import evaluate, implicant
 from roadproof.encode.motion import Layout
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import ColumnFact, Problem
 from roadproof.encode.unroll import unroll_at
 from roadproof.logic.formula import Formula, Named, subformulas
-from roadproof.solve.bounds import Affine, Bound, value_of
+from roadproof.solve.bounds import Affine, Bound, TooNonlinearError, value_of
 from roadproof.solve.milp import box_of
 from roadproof.solve.smooth import Square, minimise, narrow, near
 from roadproof.witness.question import Objective
@@ -41,7 +40,10 @@ def reshape(
     best = tuple(found)
     for _ in range(rounds):
         box = narrow(box_of(problem), best, widths)
-        bounds = [near(fact, best, box) for fact in choices]
+        try:
+            bounds = [near(fact, best, box) for fact in choices]
+        except TooNonlinearError:
+            break
         cost = None
         if objective == "margin":
             box, bounds, cost = _with_margin(box, bounds)
@@ -115,7 +117,7 @@ def violation_depths(
     for part in subformulas(formula):
         if isinstance(part, Named) and part.name == "rssViolation":
             for step in range(layout.grid.steps + 1):
-                circuit = ground(unroll_at(part, layout.grid, step), vehicles, layout, Fraction(0))
+                circuit = ground(unroll_at(part, layout.grid, step), vehicles, layout, NONE)
                 if evaluate(circuit, lambda fact: value_of(fact, found) > 0):
                     chosen = implicant(circuit, lambda fact: value_of(fact, found))
                     depths += [fact for fact in chosen if fact.polynomial.degree > 1]

@@ -1,0 +1,132 @@
+"""Road and vehicle models: what comes along, what users write, what contradicts itself."""
+
+from fractions import Fraction
+
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.shipped import shipped
+from roadproof.world.models import load_road, load_vehicle, names_of, shared_boundaries
+
+ROAD = """
+[[lanelet]]
+id = "a"
+lane = "one"
+zone = "main"
+attribute = "main"
+s = [-inf, 100]
+d = [0, "7/2"]
+
+[[lanelet]]
+id = "b"
+lane = "one"
+zone = "merge"
+attribute = "main"
+s = [100, inf]
+d = [0, 3.5]
+
+[[lanelet]]
+id = "c"
+lane = "two"
+zone = "merge"
+attribute = "merge"
+s = [100, 300.25]
+d = [-3.5, 0]
+"""
+
+
+def written(tmp_path, text):
+    path = tmp_path / "model.toml"
+    path.write_text(text, "utf-8")
+    return path
+
+
+def test_reference_roads():
+    assert {"depart", "main-2", "main-3", "merge"} <= set(names_of("roads"))
+    lanes = {name: load_road(name).lanes for name in names_of("roads")}
+    assert lanes["main-3"] == ("main-1", "main-2", "main-3")
+    assert lanes["merge"] == ("main-1", "main-2", "merge-1")
+    assert lanes["depart"] == ("main-1", "main-2", "departure-1")
+    merge = load_road("merge")
+    assert merge.beside("merge-1") == ("main-1",)
+    assert {x.lane for x in merge.lanelets_in("merge")} == {"main-1", "main-2", "merge-1"}
+    assert {x.attribute for x in merge.lanelets_in("merge")} == {"main", "merge"}
+    for name in names_of("roads"):
+        assert all(x.d[1] - x.d[0] == Fraction(7, 2) for x in load_road(name).lanelets)
+
+
+def test_a_users_road_is_read_exactly(tmp_path):
+    road = load_road(written(tmp_path, ROAD))
+    assert road.name == "model"
+    assert road.lanelets[0].s == (None, 100)
+    assert road.lanelets[0].d == (0, Fraction(7, 2))
+    assert road.lanelets[2].s == (100, Fraction(1201, 4))
+    assert road.adjacent == frozenset({frozenset({"one", "two"})})
+    assert shared_boundaries(road.lanelets[:2]) == frozenset()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('id = "b"', 'id = "a"', "'a' is given twice"),
+        ("s = [100, inf]", "s = [120, inf]", "does not begin where 'a' ends"),
+        ("s = [100, inf]", "s = [100, 100]", "empty"),
+        ("s = [100, inf]", "s = [100]", "no range"),
+        ("s = [100, inf]", 's = [100, "x"]', "no finite number"),
+        ("s = [100, inf]", "s = [nan, inf]", "no finite number"),
+        ("d = [0, 3.5]", "d = [3.5, 0]", "the smaller one"),
+        ("d = [0, 3.5]", "d = [4, 7]", "do not meet across"),
+        ("d = [0, 3.5]", "d = [0, 1e99]", "out of range"),
+        ('zone = "main"', 'zone = "village"', "one of main, merge, depart"),
+        ('lane = "two"', 'lane = "one"', "one attribute"),
+        ('lane = "two"', 'lame = "two"', "'lame' is unknown"),
+        ('lane = "two"', "", "'lane' is missing"),
+        ('[[lanelet]]\nid = "a"', 'adjacent = []\n[[lanelet]]\nid = "a"', "not declared adjacent"),
+        ('[[lanelet]]\nid = "a"', 'adjacent = [["one", "three"]]\n[[lanelet]]\nid = "a"', "adjacent"),
+        ('id = "b"', "id = ", "is no TOML"),
+    ],
+)
+def test_contradictory_roads_are_refused(tmp_path, old, new, message):
+    assert old in ROAD
+    path = written(tmp_path, ROAD.replace(old, new, 1))
+    with pytest.raises(InputError, match=message):
+        load_road(path)
+
+
+CAR = (shipped("models") / "vehicles" / "car.toml").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("length = 4.5", "length = -1", "greater than 0"),
+        ("length = 4.5", "", "'length' is missing"),
+        ("v_lon = [15, 40]", "v_lon = [-5, 40]", "never reverses"),
+        ("v_lon = [15, 40]", "v_lon = [40, 15]", "the smaller one"),
+        ("v_lon = [15, 40]", "v_lon = 40", r"must be \[low, high\]"),
+        ("a_lon = [-6, 3]", "a_lon = [1, 3]", "leaves out 0"),
+        ("cruise = [22, 34]", "cruise = [5, 34]", "not inside v_lon"),
+        ("length = 4.5", "length = [1, 2]", "one number"),
+        ("length = 4.5", "length = true", "no finite number"),
+        ("length = 4.5", "length = 4.5\nwings = 2", "'wings' is unknown"),
+    ],
+)
+def test_contradictory_vehicles_are_refused(tmp_path, old, new, message):
+    assert old in CAR
+    with pytest.raises(InputError, match=message):
+        load_vehicle(written(tmp_path, CAR.replace(old, new, 1)))
+
+
+def test_what_cannot_be_read(tmp_path):
+    with pytest.raises(InputError, match="there are depart, main-2, main-3, merge"):
+        load_road("motorway")
+    with pytest.raises(InputError, match="cannot read"):
+        load_road(tmp_path / "none.toml")
+    with pytest.raises(InputError, match="cannot read"):
+        load_road(str(tmp_path / "x.toml"))
+    binary = tmp_path / "b.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="not UTF-8"):
+        load_vehicle(binary)
+    with pytest.raises(InputError, match="at least one"):
+        load_road(written(tmp_path, ""))
