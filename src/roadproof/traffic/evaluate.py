@@ -8,6 +8,7 @@ import numpy as np
 from roadproof.logic.terms import SignalName
 from roadproof.monitor.answers import Convention
 from roadproof.monitor.compiled import Monitor, Observation
+from roadproof.traffic.detectors import Detection, find_detections
 from roadproof.traffic.disturbances import (
     NEVER,
     CutTriples,
@@ -76,6 +77,7 @@ class Findings:
     differing: int
     traces: tuple[Trace, ...]
     matches: tuple[Match, ...]
+    detections: tuple[Detection, ...]
     notes: tuple[str, ...]
 
 
@@ -101,6 +103,7 @@ def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
         differing=tally.differing,
         traces=tuple(_traces(recording, found)),
         matches=tuple(sorted(matches, key=_order)),
+        detections=find_detections(recording, questions, found.meeting),
         notes=recording.notes,
     )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadproof.traffic.recording import Bools, Floats, Integers, Recording, offsets
+from roadproof.traffic.recording import Bools, Floats, Integers, Masks, Recording, offsets
 
 
 @dataclass(frozen=True)
@@ -44,6 +44,15 @@ class Reach:
     b_max: float
     a_max_lat: float
     b_min_lat: float
+
+
+@dataclass(frozen=True)
+class Sight:
+    """How far the detectors of earlier works look: time to collision and headway (s), distance (m)."""
+
+    ttc: float
+    thw: float
+    farthest: float
 
 
 def common_pairs(recording: Recording, eligible: Bools) -> Pairs:
@@ -96,13 +105,36 @@ def near_pairs(recording: Recording, pairs: Pairs, reach: Reach) -> Pairs:
         and min(reach.b_min, reach.b_max, reach.b_min_lat) > 0
     ):
         raise ValueError("the bound holds for rho, a_max >= 0 and b_min, b_max > 0, lateral ones alike")
-    close = pairs.choose(_ever_within(recording, pairs, [_along(recording, pairs, reach)]))
+    close = pairs.choose(ever_within(recording, pairs, [_along(recording, pairs, reach)]))
     both = [_along(recording, close, reach), _across(recording, close, reach)]
-    return close.choose(_ever_within(recording, close, both))
+    return close.choose(ever_within(recording, close, both))
+
+
+def pairs_in_sight(recording: Recording, pairs: Pairs, sight: Sight) -> tuple[Pairs, Masks]:
+    """The pairs that a bundled detector may match, and for each the lanes in which it may (bits).
+
+    Every one of them needs a frame in which both are in L and the gap from the front of one to the
+    rear of the other is at most ``farthest``, ``thw``·v_lon of the rear one, or ``ttc`` times the
+    difference of the speeds; with the greatest speed of the rear and the least of the front, all are
+    bounds that depend on the pair only. They are widened by a millimetre, as in near_pairs.
+    """
+    greatest = np.maximum.reduceat(recording.v_lon, recording.start[:-1])
+    least = np.minimum.reduceat(recording.v_lon, recording.start[:-1])
+
+    def bound(rear: Integers, front: Integers) -> Floats:
+        closing = sight.ttc * (greatest[rear] - least[front])
+        gap = np.maximum.reduce([closing, sight.thw * greatest[rear], np.full(len(rear), sight.farthest)])
+        total: Floats = gap + recording.length[front] + 0.001
+        return total
+
+    tests = [Within(recording.s, bound(pairs.second, pairs.first), bound(pairs.first, pairs.second))]
+    shared = np.zeros(len(pairs), np.uint32)
+    found = ever_within(recording, pairs, tests, shared)
+    return pairs.choose(found), shared[found]
 
 
 @dataclass(frozen=True)
-class _Within:
+class Within:
     """-below <= position of second - position of first <= above; bounds have one entry a pair."""
 
     position: Floats
@@ -110,20 +142,20 @@ class _Within:
     above: Floats
 
 
-def _along(recording: Recording, pairs: Pairs, reach: Reach) -> _Within:
+def _along(recording: Recording, pairs: Pairs, reach: Reach) -> Within:
     speed = np.abs(recording.v_lon)
     greatest = np.maximum.reduceat(speed, recording.start[:-1])
     least = np.minimum.reduceat(speed, recording.start[:-1])
     first, second = pairs.first, pairs.second
     below = _bound_along(reach, greatest[second], least[first]) + recording.length[first]
     above = _bound_along(reach, greatest[first], least[second]) + recording.length[second]
-    return _Within(recording.s, below, above)
+    return Within(recording.s, below, above)
 
 
-def _across(recording: Recording, pairs: Pairs, reach: Reach) -> _Within:
+def _across(recording: Recording, pairs: Pairs, reach: Reach) -> Within:
     greatest = np.maximum.reduceat(np.abs(recording.v_lat), recording.start[:-1])
     bound = _bound_across(reach, np.maximum(greatest[pairs.first], greatest[pairs.second]))
-    return _Within(recording.d, bound + recording.width[pairs.first], bound + recording.width[pairs.second])
+    return Within(recording.d, bound + recording.width[pairs.first], bound + recording.width[pairs.second])
 
 
 def _bound_along(reach: Reach, greatest_rear: Floats, least_front: Floats) -> Floats:
@@ -139,8 +171,14 @@ def _bound_across(reach: Reach, greatest: Floats) -> Floats:
     return bound
 
 
-def _ever_within(recording: Recording, pairs: Pairs, tests: list[_Within]) -> Bools:
-    """For each pair whether all ``tests`` hold in one and the same common frame."""
+def ever_within(
+    recording: Recording, pairs: Pairs, tests: list[Within], shared: Masks | None = None
+) -> Bools:
+    """For each pair whether all ``tests`` hold in one and the same common frame.
+
+    With ``shared`` (one entry a pair), both boxes must be in a common lane in that frame, and the
+    lanes where that ever is so are written to it.
+    """
     found = np.zeros(len(pairs), bool)
     for part in _parts(pairs, 500_000):
         chosen = pairs.choose(part)
@@ -154,6 +192,10 @@ def _ever_within(recording: Recording, pairs: Pairs, tests: list[_Within]) -> Bo
             apart = test.position[second] - test.position[first]
             inside &= apart <= np.repeat(test.above[part], counts)
             inside &= apart >= np.repeat(-test.below[part], counts)
+        if shared is not None:
+            lanes = np.where(inside, recording.occupancy[first] & recording.occupancy[second], 0)
+            shared[part] = np.bitwise_or.reduceat(lanes, begin)
+            inside &= lanes != 0
         found[part] = np.logical_or.reduceat(inside, begin)
     return found
 

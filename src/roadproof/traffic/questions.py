@@ -20,7 +20,7 @@ from roadproof.monitor.compiled import Monitor, compile
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification, bundled_library
-from roadproof.traffic.pairs import Reach
+from roadproof.traffic.pairs import Reach, Sight
 from roadproof.traffic.recording import ZONES
 
 Role: TypeAlias = Literal["first", "second"]
@@ -28,13 +28,19 @@ Role: TypeAlias = Literal["first", "second"]
 
 PAIR = ("SV", "POV")
 TRIPLE = ("SV", "POV1", "POV2")
+COMPARISON = ("cutIn_ttc", "cutIn_thw", "cutIn_free", "decel_ttc", "decel_thw", "decel_free")
+"""Detectors of earlier works, which the paper's comparison table counts."""
 THREE_CARS = (2, 10, 18)
 POV_LANE = (7, 15, 23)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How traffic is evaluated. ``values`` gives every parameter but minDanger, in SI units."""
+    """How traffic is evaluated. ``values`` gives every parameter but minDanger, in SI units.
+
+    ``detectors`` are definitions of (SV, POV, L) that are asked for beside the scenarios, such as
+    COMPARISON; they look at all common frames of a pair, and at every lane.
+    """
 
     library: Library
     options: Mapping[str, str]
@@ -44,6 +50,7 @@ class Settings:
     scenarios: tuple[int, ...] = (1, 2, 3, 4, 5, 6, 7, 8)
     classes: tuple[str, ...] = ("Car",)
     convention: Convention = "truncated"
+    detectors: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("sets", "min_danger", "scenarios", "classes"):
@@ -80,7 +87,8 @@ class Questions:
     ``safe_steps`` and ``danger_steps`` are how far these look ahead. ``pairs`` and ``triples`` hold
     one monitor a minDanger, whose formulas ``asked`` explains; ``triple_start`` answers ``start``,
     a condition at the start that every scenario of three cars needs. ``reach`` is None where the
-    specification's rssViolation is not the library's, so that no pair may be left out.
+    specification's rssViolation is not the library's, so that no pair may be left out; ``sight`` is
+    its like for ``detectors``, whose formulas are named after the detector and the role of SV.
     """
 
     settings: Settings
@@ -94,6 +102,8 @@ class Questions:
     asked: Mapping[str, Asked]
     lane_atoms: Mapping[Formula, "LaneAtom"]
     reach: Reach | None
+    detectors: Monitor | None
+    sight: Sight | None
 
 
 @dataclass(frozen=True)
@@ -138,6 +148,8 @@ def ask(settings: Settings, rate: int) -> Questions:
         asked=asked,
         lane_atoms=dict(lane_atoms(first)),
         reach=_reach(settings, first),
+        detectors=compile(_of_detectors(settings, first)) if settings.detectors else None,
+        sight=_sight(settings, first),
     )
 
 
@@ -223,13 +235,34 @@ def lane_atoms(spec: Specification) -> Iterable[tuple[Formula, LaneAtom]]:
             )
 
 
+def _of_detectors(settings: Settings, spec: Specification) -> dict[str, Formula]:
+    roles = {"first": "SV, POV", "second": "POV, SV"}
+    return {
+        f"{name}/{role}": _state(settings, spec, f"{name}({vehicles}, L)")
+        for name in settings.detectors
+        for role, vehicles in roles.items()
+    }
+
+
+def _sight(settings: Settings, spec: Specification) -> Sight | None:
+    """The constants of the detectors' pre-filter, where all are the bundled ones."""
+    if not set(settings.detectors) <= set(COMPARISON):
+        return None
+    if not all(_is_bundled(settings, spec, f"{name}(SV, POV, L)") for name in settings.detectors):
+        return None
+    return Sight(*(float(settings.values[x]) for x in ("ttcLimit", "thwLimit", "farthest")))
+
+
+def _is_bundled(settings: Settings, spec: Specification, text: str) -> bool:
+    """Whether ``text`` means what it does in the bundled library under the same options."""
+    options = {k: v for k, v in settings.options.items() if k in bundled_library().options}
+    bundled = bundled_library().select("base", options)
+    return without_names(read_claim(bundled, text).formula) == without_names(read_claim(spec, text).formula)
+
+
 def _reach(settings: Settings, spec: Specification) -> Reach | None:
     """The pre-filter's constants, where rssViolation is the bundled one, whose bound is proved."""
-    bundled = bundled_library().select(
-        "base", {k: v for k, v in settings.options.items() if k in bundled_library().options}
-    )
-    text = "rssViolation(SV, POV)"
-    if without_names(read_claim(bundled, text).formula) != without_names(read_claim(spec, text).formula):
+    if not _is_bundled(settings, spec, "rssViolation(SV, POV)"):
         return None
     names = ("rho", "a_max", "b_min", "b_max", "a_max_lat", "b_min_lat")
     return Reach(**{name: float(settings.values[name]) for name in names})

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from roadproof.errors import InputError
+from roadproof.traffic.detectors import Detection
 from roadproof.traffic.evaluate import Findings, Match, Trace
 from roadproof.traffic.questions import Settings
 
@@ -50,6 +51,7 @@ def describe(settings: Settings) -> dict[str, Any]:
         "scenarios": list(settings.scenarios),
         "classes": list(settings.classes),
         "convention": settings.convention,
+        "detectors": list(settings.detectors),
         "options": dict(sorted(settings.options.items())),
         "parameters": {k: str(v) for k, v in sorted(settings.values.items()) if k != "minDanger"},
     }
@@ -78,7 +80,7 @@ def load_findings(path: Path, mark: str) -> Findings | None:
         return None
 
 
-_ROWS: Mapping[str, Callable[..., Any]] = {"traces": Trace, "matches": Match}
+_ROWS: Mapping[str, Callable[..., Any]] = {"traces": Trace, "matches": Match, "detections": Detection}
 
 
 @contextmanager
@@ -104,8 +106,8 @@ class Row:
     """One row of the results table (paper, Table of results): a spec set under one minDanger.
 
     Counts are of unordered pairs. ``matching`` is by scenarios of two cars, as in the paper;
-    ``matching_with_three`` counts those of three cars too. ``together`` counts how many traces
-    match two scenarios at once.
+    ``matching_with_three`` counts those of three cars too, ``several`` those of these that match more
+    than one scenario. ``together`` counts how many traces match two scenarios at once.
     """
 
     min_danger: Fraction
@@ -114,6 +116,7 @@ class Row:
     matching: int = 0
     matching_with_three: int = 0
     scenarios: Counter[int] = field(default_factory=Counter)
+    several: int = 0
     together: Counter[tuple[int, int]] = field(default_factory=Counter)
 
     @property
@@ -135,6 +138,7 @@ class Totals:
     asked: int = 0
     undecided: int = 0
     differing: int = 0
+    detected: Counter[str] = field(default_factory=Counter)
     unequal_3_4: list[tuple[str, int, int, str]] = field(default_factory=list)
     broken: list[str] = field(default_factory=list)
 
@@ -149,6 +153,7 @@ def add_findings(totals: Totals, findings: Findings) -> None:
     totals.recordings += 1
     for name in ("vehicles", "samples", "violating", "asked", "undecided", "differing"):
         setattr(totals, name, getattr(totals, name) + getattr(findings, name))
+    totals.detected.update(name for name, _ in {(x.detector, x.pair) for x in findings.detections})
     sets = totals.settings.sets
     for index, row in enumerate(totals.rows):
         k = index // len(sets)
@@ -175,6 +180,7 @@ def _count(
     for numbers in matched.values():
         row.matching += any(number % 8 != 2 for number in numbers)
         row.scenarios.update(numbers)
+        row.several += len(numbers) > 1
         row.together.update((i, j) for i in numbers for j in numbers if i < j)
 
 
@@ -248,10 +254,12 @@ def as_json(totals: Totals) -> dict[str, Any]:
                 "recall": row.recall,
                 "recallWithoutInitSafe": row.matching / totals.violating if totals.violating else None,
                 "scenarios": {str(i): row.scenarios[i] for i in totals.settings.scenarios},
+                "matchingSeveral": row.several,
                 "together": {f"{i}-{j}": n for (i, j), n in sorted(row.together.items())},
             }
             for row in totals.rows
         ],
+        "detectors": {name: totals.detected[name] for name in totals.settings.detectors},
         "checks": {
             "broken": totals.broken,
             "scenario3And4Differ": [list(x) for x in totals.unequal_3_4],
