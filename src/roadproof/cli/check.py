@@ -24,7 +24,8 @@ examples:
 
 A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
 give the very query that is stored, and the solver answers unsat to it. A drive file is accepted when its
-formula holds on its drive, judged exactly in dense time. Exit code 10 where something is rejected.
+formula holds on its drive, judged exactly in dense time. Exit code 10 where something is rejected, else
+3 where a file is neither.
 """
 
 
@@ -86,7 +87,10 @@ def run(args: argparse.Namespace) -> int:
             for x in findings
         ]
         write_json({"schema": SCHEMA, "solver": args.solver, "findings": entries}, args.json)
-    return ExitCode.AS_EXPECTED if accepted == len(findings) else ExitCode.UNEXPECTED
+    if accepted == len(findings):
+        return ExitCode.AS_EXPECTED
+    rejected = any(not x.accepted and x.what in ("certificate", "drive") for x in findings)
+    return ExitCode.UNEXPECTED if rejected else ExitCode.BAD_INPUT
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:

@@ -104,16 +104,21 @@ def run(args: argparse.Namespace) -> int:
         _make_folder(args.out)
     own = not jobs[0].task.title
     settled: list[Settled] = []
+    files: dict[str, str] = {}
     with _answers(jobs, args.jobs) as answers:
         for number, answer in enumerate(answers, 1):
             settled.append(answer)
+            if args.out is not None:
+                files |= _write_evidence(answer, args.out)
             _progress(f"{number} of {len(jobs)} claims", number == len(jobs))
             if args.json != "-" and (own or args.verbose):
                 print(_details(answer) if own else _line(answer), flush=True)
+    if args.out is not None:
+        index = [_index_entry(s, files.get(s.task.name)) for s in settled]
+        write_json({"schema": "roadproof/index/1", "claims": index}, str(args.out / "index.json"))
     if args.json != "-" and not own:
         print(_table(settled))
         print(f"{len(settled)} claims in {time.monotonic() - begun:.1f} s")
-    files = _write_all(settled, args.out) if args.out is not None else {}
     if args.json:
         verdicts = [_as_json(s, files.get(s.task.name)) for s in settled]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
@@ -259,7 +264,9 @@ def _details(settled: Settled) -> str:
 
 def _show_drive(drive: Mapping[str, Any]) -> list[str]:
     """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
-    lanes = ", ".join(f"{k}={v}" for k, v in (drive.get("lanes") or {}).items()) or str(drive.get("lane") or "")
+    lanes = ", ".join(f"{k}={v}" for k, v in (drive.get("lanes") or {}).items()) or str(
+        drive.get("lane") or ""
+    )
     lines = [f"  false on this drive, judged exactly in dense time{f' (lane {lanes})' if lanes else ''}:"]
     for name, motion in drive["vehicles"].items():
         start = f"starts at s={_short(motion['s'])} m, d={_short(motion['d'])} m"
@@ -341,21 +348,20 @@ def _make_folder(folder: Path) -> None:
         raise UsageError(f"--out {folder}: {error.strerror}; name a folder that can be made") from None
 
 
-def _write_all(settled: Sequence[Settled], folder: Path) -> dict[str, str]:
-    """Certificates and refuting drives, one file each, and ``index.json``; file paths by task name."""
+def _write_evidence(settled: Settled, folder: Path) -> dict[str, str]:
+    """The certificate, or else the refuting drive, as a file; its path by task name."""
     from roadproof.evidence.certificate import to_json
 
-    files: dict[str, str] = {}
-    for s in settled:
-        if s.result.certificate is not None:
-            files[s.task.name] = str(folder / f"{s.task.name}.json")
-            write_text(Path(files[s.task.name]), to_json(s.result.certificate))
-        elif s.drive is not None:
-            files[s.task.name] = str(folder / f"{s.task.name}-drive.json")
-            write_json(s.drive, files[s.task.name])
-    index = [_index_entry(s, files.get(s.task.name)) for s in settled]
-    write_json({"schema": "roadproof/index/1", "claims": index}, str(folder / "index.json"))
-    return files
+    name = settled.task.name
+    if settled.result.certificate is not None:
+        path = folder / f"{name}.json"
+        write_text(path, to_json(settled.result.certificate))
+    elif settled.drive is not None:
+        path = folder / f"{name}-drive.json"
+        write_json(settled.drive, str(path))
+    else:
+        return {}
+    return {name: str(path)}
 
 
 def _index_entry(settled: Settled, file: str | None) -> dict[str, Any]:

@@ -16,6 +16,7 @@ def node(cls: type[T]) -> type[T]:
     """Make ``cls`` a frozen dataclass whose hash is computed once per object."""
     made = dataclass(frozen=True)(cls)
     structural: Callable[[Any], int] = made.__hash__
+    same: Callable[[Any, object], bool] = made.__eq__
 
     def remembered(self: Any) -> int:
         known: int | None = self.__dict__.get("_hash")
@@ -28,6 +29,15 @@ def node(cls: type[T]) -> type[T]:
         """What is pickled: all but the hash, which another process would compute differently."""
         return {name: value for name, value in self.__dict__.items() if name != "_hash"}
 
+    def equals(self: Any, other: object) -> bool:
+        """Structural, but settled at once for the same object and for different hashes."""
+        if self is other:
+            return True
+        if type(self) is not type(other) or hash(self) != hash(other):
+            return False
+        return bool(same(self, other))
+
+    made.__eq__ = equals  # type: ignore[method-assign]
     made.__getstate__ = state  # type: ignore[method-assign]
     made.__hash__ = remembered  # type: ignore[method-assign]
     return made
