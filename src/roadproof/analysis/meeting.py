@@ -73,7 +73,9 @@ def conjunctions(specification: Specification, one: Node, other: Node, meeting: 
     for roles in _assignments(most, len(fewer), meeting.roles):
         mine_now, theirs_now = (roles, most) if swapped else (most, roles)
         first = _call(names[one], one, specification, mine_now, "L")
-        second = _call(names[other], other, specification, theirs_now, "L2" if meeting.lanes == "any" else "L")
+        second = _call(
+            names[other], other, specification, theirs_now, "L2" if meeting.lanes == "any" else "L"
+        )
         if meeting.start == "same":
             found.append(f"{first} and {second}")
         else:
@@ -89,9 +91,7 @@ def _vehicles(specification: Specification, name: str) -> tuple[str, ...]:
     return tuple(vehicles)
 
 
-def _assignments(
-    vehicles: Sequence[str], count: int, roles: Literal["same", "any"]
-) -> list[tuple[str, ...]]:
+def _assignments(vehicles: Sequence[str], count: int, roles: Literal["same", "any"]) -> list[tuple[str, ...]]:
     """Who may play the ``count`` parts of the smaller scenario."""
     if roles == "any":
         return list(permutations(vehicles, count))

@@ -9,7 +9,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +18,7 @@ from roadproof.analysis.placing import Shown, show_elsewhere
 from roadproof.evidence.certificate import to_json
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, transform
-from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import without_names
-from roadproof.logic.show import text
 from roadproof.prove.prover import Result, prove
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import apply_definition, read_claim
@@ -39,7 +37,7 @@ class Asked:
     """
 
     sets: tuple[str, ...] = ("base",)
-    meeting: Meeting = Meeting()
+    meeting: Meeting = field(default_factory=Meeting)
     options: Mapping[str, str] = field(default_factory=dict)
     specs: tuple[Path, ...] = ()
     values: Mapping[str, Fraction] = field(default_factory=dict)
@@ -95,7 +93,7 @@ def pairs_of(asked: Asked, numbers: Sequence[int] | None = None) -> list[Pair]:
     ]
     if len(nodes) == 1:
         return list(combinations(nodes[0], 2))
-    return list(product(*nodes))
+    return [(a, b) for a in nodes[0] for b in nodes[1]]
 
 
 def groups_of(asked: Asked, pairs: Sequence[Pair]) -> list[tuple[Pair, list[Pair]]]:
@@ -219,12 +217,10 @@ class _Deciding:
         return Core(formula, shown.core if shown is not None else (formula,))
 
     def _core_like(self, formula: str, core: Core) -> Core:
-        """The parts of ``formula`` that mean what the parts of ``core`` mean; its own core otherwise."""
-        wanted = [without_names(self._read(part)) for part in core.parts]
-        mine = {without_names(part): part for part in parts(self._read(formula))}
-        if not set(wanted) <= set(mine):
-            return self._core(formula)
-        return Core(formula, tuple(text(as_syntax(mine[part])) for part in wanted))
+        """``core`` for ``formula``, where all its parts are parts of that too; its own core otherwise."""
+        wanted = {without_names(self._read(part)) for part in core.parts}
+        mine = {without_names(part) for part in parts(self._read(formula))}
+        return Core(formula, core.parts) if wanted <= mine else self._core(formula)
 
     def _read(self, formula: str) -> Formula:
         return read_claim(self.specification, formula).formula

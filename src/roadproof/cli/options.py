@@ -19,10 +19,20 @@ if TYPE_CHECKING:
 _VALUE = re.compile(r"([+-]?\d{1,30}(?:\.\d{1,30})?(?:/\d{1,30})?)\s*([A-Za-z][A-Za-z/^0-9]*)?")
 
 
-def add_specification_options(parser: argparse.ArgumentParser, set_name: str | None = "base") -> None:
-    """``--set``, ``--option`` and ``--spec``; ``set_name`` is the default, None lets the caller choose."""
+def add_specification_options(
+    parser: argparse.ArgumentParser, set_name: str | None = "base", several: bool = False
+) -> None:
+    """``--set``, ``--option`` and ``--spec``; ``set_name`` is the default, None lets the caller choose.
+
+    With ``several``, ``--set`` may be repeated: ``args.set_names`` is a list, or None where none is given.
+    """
     default = f" (default: {set_name})" if set_name else ""
-    parser.add_argument("--set", dest="set_name", metavar="S", default=set_name, help=f"spec set{default}")
+    if several:
+        text = f"spec set{default}; may be repeated"
+        parser.add_argument("--set", dest="set_names", metavar="S", action="append", help=text)
+    else:
+        text = f"spec set{default}"
+        parser.add_argument("--set", dest="set_name", metavar="S", default=set_name, help=text)
     parser.add_argument(
         "--option",
         dest="options",

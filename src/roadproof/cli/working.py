@@ -1,0 +1,43 @@
+"""Work for several processes, its results as they come, and a word about how far it is."""
+
+import os
+import sys
+from collections.abc import Callable, Generator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from typing import TypeVar
+
+from roadproof.errors import UsageError
+
+Job = TypeVar("Job")
+Answer = TypeVar("Answer")
+
+
+def work(
+    function: Callable[[Job], Answer], jobs: Sequence[Job], processes: int | None
+) -> Generator[Answer, None, None]:
+    """``function`` of every job, in the order in which they are done; ``processes`` None is one a core.
+
+    The iterator is to be used up or closed. An error in a job, or an interruption, ends the others.
+    """
+    if processes is not None and processes < 1:
+        raise UsageError(f"--jobs {processes} must be greater than 0")
+    workers = min(processes or os.cpu_count() or 1, len(jobs))
+    if workers <= 1:
+        yield from map(function, jobs)
+        return
+    pool = ProcessPoolExecutor(workers)
+    try:
+        for future in as_completed([pool.submit(function, job) for job in jobs]):
+            yield future.result()
+    except BaseException:
+        for process in list((pool._processes or {}).values()):
+            process.kill()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def tell(text: str, last: bool = False) -> None:
+    """Progress on stderr: one line that changes, and nothing where nobody looks."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="\n" if last else "", file=sys.stderr, flush=True)
