@@ -68,6 +68,14 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
     return Outcome(write_results(experiment.out, experiment.settings, findings(), in_order), in_order)
 
 
+def saved_findings(experiment: Experiment, outcome: Outcome) -> Iterator[tuple[RecordingSource, Findings]]:
+    """What an experiment that is done has saved of each recording, in order."""
+    for source in find_sources(experiment.recordings):
+        found = None if source.name in outcome.failed else _known(experiment, source)
+        if found is not None:
+            yield source, found
+
+
 def _path(out: Path, source: RecordingSource) -> Path:
     return out / "recordings" / f"{source.name}.json"
 

@@ -1,0 +1,192 @@
+"""``roadproof evaluate``: the highD experiment on a folder of recordings."""
+
+import argparse
+import os
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.cli.options import (
+    add_json_option,
+    add_parameter_option,
+    load_library_of,
+    parameter_values,
+    select_specification,
+    write_json,
+)
+from roadproof.cli.progress import tell
+from roadproof.errors import UsageError
+from roadproof.verdict import ExitCode, Verdict
+
+if TYPE_CHECKING:
+    from roadproof.traffic.experiment import Experiment, Outcome
+    from roadproof.traffic.questions import Settings
+
+SUMMARY = "find disturbances in recorded traffic and match them with the scenarios"
+
+_EXAMPLES = """\
+PATH is a folder of highD files (XX_recordingMeta.csv, XX_tracksMeta.csv, XX_tracks.csv), or of
+CommonRoad 2020a files, or one CommonRoad file. A run that was killed goes on where it was.
+
+examples:
+  roadproof evaluate highd/data --out out --jobs 2
+  roadproof evaluate highd/data --out out --sets base,ext --min-danger 0 --param rho=1
+  roadproof evaluate highd/data --out out --class Car --class Truck --end clip --keep-going
+  roadproof evaluate highd/data --out out --option lateral_rss=signed --check
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
+    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where results go")
+    parser.add_argument("--sets", metavar="S,S", default="base,extA,ext", help="default: base,extA,ext")
+    parser.add_argument("--scenarios", metavar="N,N", default="1-8", help="default: 1-8")
+    parser.add_argument("--min-danger", metavar="S,S", default="0,0.6", help="seconds (default: 0,0.6)")
+    parser.add_argument("--min-safe", metavar="S", help="seconds (default: the library's 0.6)")
+    parser.add_argument(
+        "--class",
+        dest="classes",
+        metavar="C",
+        action="append",
+        help="vehicle class that is looked at; may be repeated (default: Car)",
+    )
+    parser.add_argument(
+        "--end",
+        choices=("truncated", "clip"),
+        default="truncated",
+        help="what the end of a trace means (default: truncated)",
+    )
+    parser.add_argument(
+        "--option",
+        dest="options",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        help="choose a reading, such as lateral_sign=literal; may be repeated",
+    )
+    parser.add_argument(
+        "--spec",
+        dest="specs",
+        metavar="FILE",
+        action="append",
+        type=Path,
+        default=[],
+        help="a specification file of yours, on top of the library; may be repeated",
+    )
+    add_parameter_option(parser)
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    parser.add_argument("--keep-going", action="store_true", help="leave out recordings that cannot be used")
+    parser.add_argument("--check", action="store_true", help="ask the plain recursive evaluator again (slow)")
+    parser.add_argument("--no-detectors", action="store_true", help="leave out those of earlier works")
+    parser.add_argument(
+        "--no-pictures", action="store_true", help="no figures, for which matplotlib is needed"
+    )
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.report.answers import answer_questions
+    from roadproof.report.tables import as_text
+    from roadproof.report.traffic import comparison_table, results_table
+    from roadproof.report.write_traffic import write_report
+    from roadproof.traffic.experiment import Experiment, run_experiment
+    from roadproof.traffic.results import as_json
+
+    jobs = os.cpu_count() or 1 if args.jobs is None else args.jobs
+    if jobs < 1:
+        raise UsageError(f"--jobs {jobs}: at least one process is needed")
+    experiment = Experiment(args.path, args.out, _settings(args), jobs, args.keep_going)
+    outcome = run_experiment(experiment, tell)
+    totals, failed = outcome.totals, outcome.failed
+    denied = list(_recheck(experiment, outcome)) if args.check else []
+    write_report(args.out, totals, failed, not args.no_pictures)
+    if args.json:
+        write_json(as_json(totals), args.json)
+    if args.json != "-":
+        print(as_text(results_table(totals, failed)))
+        compared = comparison_table(totals, failed)
+        if compared is not None:
+            print(as_text(compared))
+        print(answer_questions(totals, failed).partition("## Facts")[2].partition("\n\n")[2], end="")
+    for name, reason in failed.items():
+        tell(f"left out: recording {name}: {reason}")
+    tell(f"written to {args.out}: " + ", ".join(sorted(x.name for x in args.out.iterdir())))
+    return _verdict(totals.broken, denied)
+
+
+def _verdict(broken: list[str], denied: list[str]) -> int:
+    if not broken and not denied:
+        return ExitCode.AS_EXPECTED
+    print(f"{Verdict.CROSSCHECK_FAILED}: {len(broken)} facts violated, {len(denied)} answers denied")
+    for line in (*broken, *denied)[:20]:
+        print(f"  {line}")
+    return ExitCode.CROSSCHECK_FAILED
+
+
+def _settings(args: argparse.Namespace) -> "Settings":
+    from roadproof.traffic.questions import COMPARISON, Settings
+
+    library = load_library_of(args)
+    values = parameter_values(args, library)
+    if any(text.partition("=")[0].strip() == "minDanger" for text in args.params):
+        raise UsageError("--param minDanger: evaluate takes several values of it; use --min-danger 0,0.6")
+    if args.min_safe is not None:
+        values["minSafe"] = _seconds("--min-safe", args.min_safe)
+    sets = _items("--sets", args.sets)
+    chosen = [
+        select_specification(argparse.Namespace(set_name=name, options=args.options), library)
+        for name in sets
+    ]
+    return Settings(
+        library,
+        chosen[0].options,
+        values,
+        sets=tuple(sets),
+        min_danger=tuple(_seconds("--min-danger", x) for x in _items("--min-danger", args.min_danger)),
+        scenarios=tuple(_numbers(args.scenarios)),
+        classes=tuple(args.classes or ["Car"]),
+        convention=args.end,
+        detectors=() if args.no_detectors else COMPARISON,
+    )
+
+
+def _items(option: str, text: str) -> list[str]:
+    items = [item.strip() for item in text.split(",")]
+    if not all(items):
+        raise UsageError(f"{option} {text}: write values separated by commas")
+    return items
+
+
+def _seconds(option: str, text: str) -> Fraction:
+    try:
+        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
+    except (ValueError, ZeroDivisionError):
+        value = None
+    if value is None or value < 0:
+        raise UsageError(f"{option} {text[:40]}: write seconds, 0 or more, such as 0, 0.6 or 3/5")
+    return value
+
+
+def _numbers(text: str) -> Iterator[int]:
+    """``1-3,7`` as 1, 2, 3, 7."""
+    for item in _items("--scenarios", text):
+        low, dash, high = item.partition("-")
+        ends = (low, high) if dash else (low, low)
+        if not all(x.isdecimal() and len(x) <= 2 for x in ends):
+            raise UsageError(f"--scenarios {text}: write numbers and ranges, such as 1-8 or 1,4")
+        yield from range(int(ends[0]), int(ends[1]) + 1)
+
+
+def _recheck(experiment: "Experiment", outcome: "Outcome") -> Iterator[str]:
+    """Every answer again, recording by recording, from what was saved."""
+    from roadproof.traffic.experiment import saved_findings
+    from roadproof.traffic.questions import ask
+    from roadproof.traffic.recheck import recheck
+
+    for source, findings in saved_findings(experiment, outcome):
+        recording = source.read()
+        denied = list(recheck(recording, ask(experiment.settings, recording.rate), findings))
+        tell(f"checked {source.name}: {len(denied)} answers denied")
+        yield from denied

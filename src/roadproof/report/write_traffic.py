@@ -1,0 +1,31 @@
+"""Everything that a traffic evaluation writes beside its rows: tables, pictures, a short text."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from roadproof.report.answers import answer_questions
+from roadproof.report.files import write_whole
+from roadproof.report.tables import LOOKS
+from roadproof.report.traffic import comparison_table, results_table
+from roadproof.report.traffic_figures import draw_figures
+from roadproof.traffic.results import Totals
+
+
+def write_report(folder: Path, totals: Totals, failed: Mapping[str, str], pictures: bool = True) -> None:
+    """``results`` and ``comparison`` in four looks, ``answers.md`` and ``figures/``; each file whole.
+
+    ``failed`` are the recordings that are left out, and why; tables and text say so. Without
+    ``pictures`` matplotlib is not needed. Raises ``InputError`` where a file cannot be written.
+    """
+    tables = {"results": results_table(totals, failed), "comparison": comparison_table(totals, failed)}
+    for name, table in tables.items():
+        for ending, look in LOOKS.items():
+            if table is None:  # an earlier run may have had one
+                (folder / f"{name}.{ending}").unlink(missing_ok=True)
+            else:
+                write_whole(folder / f"{name}.{ending}", look(table).encode())
+    write_whole(folder / "answers.md", answer_questions(totals, failed).encode())
+    if pictures:
+        for name, formats in draw_figures(totals):
+            for ending, content in formats.items():
+                write_whole(folder / "figures" / f"{name}.{ending}", content)
