@@ -74,7 +74,7 @@ VALID = [
     "given u, v: m/s: max(u,v) = u or max(u,v) = v",
     "given u, v: m/s: max(u,v) + min(u,v) = u + v",
     "given u, v: m/s: 0 <= u and u <= v -> dRSS_lon(u,u) <= dRSS_lon(v,u)",
-    "dangerAhead_rs(SV,POV) <-> dangerAhead(SV,POV)",
+    "dangerLeft_rs(SV,POV) <-> dangerLeft(SV,POV)",
     "given a1: m: a1 > 0 m or a1 <= 0 m",
     # roads
     "(every M in lanes: atLane(SV,M)) -> atLane(SV,L)",

@@ -1,0 +1,64 @@
+"""A claim's ground query with every quantifier instantiated, again and again, at all moments met.
+
+Where a claim is false, no choice of instances may make its query unsatisfiable; this tries a large
+one, without a finder.
+"""
+
+import re
+
+from roadproof.evidence import derivation
+from roadproof.evidence.atoms import Atoms, road_names
+from roadproof.evidence.times import ZERO, at, moment_of
+from roadproof.logic import formula as f
+from roadproof.solve.smt import Answer, ask
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+
+
+def saturated(specification: Specification, claim: str, rounds: int = 4, most: int = 60) -> str:
+    """The ground query of ``claim`` after ``rounds`` of naming what was met and instantiating there."""
+    query = read_claim(specification, claim)
+    atoms = Atoms()
+    goal = atoms.atomise(query.formula)
+    bounds = {name: p.bound for name, p in specification.library.parameters.items()}
+    shifts = [
+        moment_of(bound)
+        for part in f.subformulas(goal)
+        if isinstance(part, f.Until | f.Eventually | f.Always)
+        for bound in (part.interval.low, part.interval.high)
+        if bound is not None
+    ]
+    lane_prefix = derivation.free_prefix("M", {*query.lanes, *road_names(goal)})
+    names: dict[derivation.Site, str] = {}
+    instances: dict[derivation.Site, tuple[str, ...]] = {}
+    for _ in range(rounds):
+        walk = derivation._start(goal, atoms, instances, names, bounds, query.lanes)
+        walk.truth(goal, False, ZERO)
+        for site in sorted(filter(_is_settled, walk.named - set(names)), key=str):
+            names[site] = f"{lane_prefix if _on_road(site) else 't'}{len(names) + 1}"
+        times = [ZERO, *(at(name) for site, name in names.items() if not _on_road(site))]
+        pool = [*times, *(time + shift for time in times for shift in shifts)]
+        lanes = [*query.lanes, *(name for site, name in names.items() if _on_road(site))]
+        for site in filter(_is_settled, walk.instanced):
+            new = lanes if _on_road(site) else map(str, pool)
+            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *new]))[:most]
+    lemmas: tuple[derivation.Lemma, ...] = ()
+    walk = derivation._start(goal, atoms, instances, names, bounds, query.lanes)
+    walk.truth(goal, False, ZERO)
+    named = {site: name for site, name in names.items() if site in walk.named}
+    made = {site: texts for site, texts in instances.items() if site in walk.instanced}
+    return derivation.derive_query(goal, atoms, made, named, lemmas, bounds, query.lanes)
+
+
+def _is_settled(site: derivation.Site) -> bool:
+    """Whether the moment of ``site`` has its final name, and not that of an unnamed existential."""
+    return re.search(r"\bu_*\d+_", f"{site.moment} {site.instance} {site.formula}") is None
+
+
+def _on_road(site: derivation.Site) -> bool:
+    return site.formula.startswith(("(some", "(every"))
+
+
+def probe(specification: Specification, claim: str, timeout: float = 2.0) -> Answer:
+    """z3's answer to the saturated query: ``unsat`` would prove ``claim``."""
+    return ask(saturated(specification, claim), timeout=timeout)
