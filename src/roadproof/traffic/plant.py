@@ -155,3 +155,23 @@ def _in_the_way(recording: Recording, guests: Recording, place: Place) -> Bools:
             near &= mine[rows] - size[who] < theirs[at] + margin
         found[who[near]] = True
     return found
+
+
+def plantable_claim(number: int) -> str:
+    """A formula whose drives show scenario ``number`` on the trace that the evaluation cuts (SPEC §7).
+
+    The trace ends with the last danger, so a drive whose vehicle changes lanes only after it, although
+    it satisfies the scenario, would be cut before it does; here danger comes after the change too.
+    """
+    row = (number - 1) % 8 + 1
+    vehicles = "SV, POV1, POV2" if row == 2 else "SV, POV"
+    danger = "danger(SV, POV2)" if row == 2 else "danger(SV, POV)"
+    scenario = f"scenario_{number}({vehicles}, L)"
+    changed = {
+        2: "not atLane(POV1, L)",
+        5: "not atLane(SV, L)",
+        6: "not atLane(SV, L)",
+        7: "atLane(SV, L)",
+        8: "not atLane(SV, L)",
+    }
+    return scenario if row not in changed else f"{scenario} and F ({changed[row]} and F {danger})"
