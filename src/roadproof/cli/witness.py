@@ -8,20 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.cli.options import (
-    add_json_option,
-    add_parameter_option,
-    add_specification_options,
-    load_library_of,
-    parameter_values,
-    select_specification,
-    write_json,
-    write_text,
-)
+from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
+from roadproof.cli.search_options import add_search_options, read_request
 from roadproof.errors import InputError, UsageError
 from roadproof.verdict import Verdict, exit_code
 
@@ -36,7 +27,7 @@ _EXAMPLES = """\
 examples:
   roadproof witness 4                                 a drive for scenario 4 on its reference road
   roadproof witness 12 --set ext --out drives         drive file, CSV and picture
-  roadproof witness --all --set base,extA,ext --out drives
+  roadproof witness --all --set base --set extA --set ext --out drives
   roadproof witness 'scenario_8(SV,POV,L) and not scenario_6(SV,POV,L)' --lane L=main-2 --road main-3
   roadproof witness 1 --objective severe --count 3
 """
@@ -45,38 +36,8 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("what", metavar="N|FORMULA", nargs="*", help="a scenario's number, or a formula")
-    parser.add_argument(
-        "--all", action="store_true", help="all 24 scenarios; --set takes several, as base,ext"
-    )
-    add_specification_options(parser)
-    add_parameter_option(parser)
-    parser.add_argument(
-        "--road", metavar="R", help="a reference road or a .toml file (default: by the formula)"
-    )
-    parser.add_argument(
-        "--lane",
-        dest="lanes",
-        metavar="[L=]LANE",
-        action="append",
-        default=[],
-        help="the lane that L stands for (default: any that works, from the right)",
-    )
-    parser.add_argument(
-        "--vehicle",
-        dest="vehicles",
-        metavar="[NAME=]MODEL",
-        action="append",
-        default=[],
-        help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
-    )
-    parser.add_argument("--horizon", metavar="S", default="6", help="seconds that are searched (default: 6)")
-    parser.add_argument("--dt", metavar="S", default="3/5", help="seconds between samples (default: 3/5)")
-    parser.add_argument(
-        "--reach", metavar="M", default="80", help="how far apart vehicles may start (default: 80)"
-    )
-    parser.add_argument("--allow-collisions", action="store_true", help="boxes may overlap")
-    parser.add_argument("--engine", choices=("milp", "smt"), default="milp", help="default: milp")
-    parser.add_argument("--solver", default="highs", help="a mixed-integer solver for milp (default: highs)")
+    parser.add_argument("--all", action="store_true", help="all 24 scenarios, in each --set")
+    add_search_options(parser)
     parser.add_argument(
         "--objective",
         choices=("any", "smooth", "margin", "mild", "severe", "short"),
@@ -84,9 +45,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="what the drive should be like (default: smooth)",
     )
     parser.add_argument("--count", type=int, default=1, metavar="K", help="K clearly different drives")
-    parser.add_argument(
-        "--timeout", type=float, default=60.0, metavar="S", help="seconds a question (default: 60)"
-    )
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drive files, CSV and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
@@ -99,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     library = load_library_of(args)
     requests = list(_requests(args, library))
     if args.out is not None:
-        _make_folder(args.out)
+        make_folder(args.out)
     outcomes: list[Outcome] = []
     with _answers(requests, args.jobs) as answers:
         for outcome in answers:
@@ -118,59 +76,22 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _requests(args: argparse.Namespace, library: "Library") -> "Iterator[Request]":
-    from roadproof.witness.ask import Request
-    from roadproof.witness.question import Means
-
     if args.all == bool(args.what):
         raise UsageError("name scenarios or formulas, or ask for --all: one of the two")
-    if args.count < 1 or not args.timeout > 0 or (args.jobs is not None and args.jobs < 1):
-        raise UsageError("--count, --timeout and --jobs must be greater than 0")
-    sets = str(args.set_name).split(",")
+    if args.count < 1 or (args.jobs is not None and args.jobs < 1):
+        raise UsageError("--count and --jobs must be greater than 0")
+    sets = [name for text in args.set_names or ["base"] for name in text.split(",")]
     for name in sets:
         library.select(name)
     whats = list(args.what)
     if args.all:
         numbers = (d.removeprefix("scenario_") for d in library.select(sets[0]).definitions)
         whats = [n for n in numbers if n.isdecimal()]
-    request = Request(
-        what="",
-        options=dict(_chosen_options(args, library, sets[0])),
-        specs=tuple(args.specs),
-        values=parameter_values(args, library),
-        road=args.road,
-        lanes=dict(_named(args.lanes, "L")),
-        vehicles=dict(_named(args.vehicles, "")),
-        horizon=_seconds("--horizon", args.horizon),
-        dt=_seconds("--dt", args.dt),
-        reach=_seconds("--reach", args.reach),
-        collisions=args.allow_collisions,
-        count=args.count,
-        means=Means(args.objective, args.engine, args.solver, args.timeout),
-    )
+    request = read_request(args, library)
+    means = replace(request.means, objective=args.objective)
     for set_name in sets:
         for what in whats:
-            yield replace(request, what=what, set_name=set_name)
-
-
-def _chosen_options(args: argparse.Namespace, library: "Library", set_name: str) -> Mapping[str, str]:
-    one_set = argparse.Namespace(**{**vars(args), "set_name": set_name})
-    return select_specification(one_set, library).options
-
-
-def _named(texts: Sequence[str], usual: str) -> Iterator[tuple[str, str]]:
-    for text in texts:
-        name, equals, value = text.rpartition("=")
-        yield (name if equals else usual), value
-
-
-def _seconds(option: str, text: str) -> Fraction:
-    try:
-        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
-    except (ValueError, ZeroDivisionError):
-        value = None
-    if value is None or value <= 0:
-        raise UsageError(f"{option} {text[:40]}: write a number greater than 0, such as 6, 0.6 or 3/5")
-    return value
+            yield replace(request, what=what, set_name=set_name, count=args.count, means=means)
 
 
 @contextmanager
@@ -186,6 +107,10 @@ def _answers(requests: "Sequence[Request]", jobs: int | None) -> "Iterator[Itera
     pool = ProcessPoolExecutor(workers)
     try:
         yield pool.map(ask, requests)
+    except BaseException:
+        for process in list((pool._processes or {}).values()):
+            process.kill()
+        raise
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
@@ -221,7 +146,8 @@ def _line(outcome: "Outcome", verbose: bool) -> str:
     return shown
 
 
-def _make_folder(folder: Path) -> None:
+def make_folder(folder: Path) -> None:
+    """Make ``folder`` unless it is there. Raises ``InputError`` where that or writing into it fails."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -10,6 +10,7 @@ ends on it (the motion goes on without acceleration, see ``encode.build``). Unti
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from math import gcd
 from typing import assert_never
 
 from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
@@ -44,9 +45,16 @@ class Grid:
         if steps.denominator != 1:
             raise UsageError(
                 f"the interval bound {float(bound):g} s is no multiple of dt={float(self.dt):g} s: "
-                f"choose a dt that divides it, such as --dt {bound / (bound // self.dt + 1)}"
+                f"choose a dt that divides both, such as --dt {_common_divisor(bound, self.dt)}"
             )
         return int(steps)
+
+
+def _common_divisor(a: Fraction, b: Fraction) -> Fraction:
+    """The greatest time of which both are multiples."""
+    return Fraction(
+        gcd(a.numerator * b.denominator, b.numerator * a.denominator), a.denominator * b.denominator
+    )
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ part that is not chosen, so no condition is needed in the other direction. Each 
 its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth`` only.
 """
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -207,9 +208,11 @@ def _run(
         constraints.append(matrix[below] @ x <= high[below])
     program = cvxpy.Problem(cvxpy.Minimize(weights @ x), constraints)
     try:
-        program.solve(  # type: ignore[no-untyped-call]
-            solver=known.cvxpy_name, **known.options(time_limit, gap)
-        )
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # an answer that may be inaccurate is judged anyway
+            program.solve(  # type: ignore[no-untyped-call]
+                solver=known.cvxpy_name, **known.options(time_limit, gap)
+            )
     except cvxpy.error.SolverError:
         return Solution("unknown")
     if program.status in ("infeasible", "infeasible_or_unbounded"):

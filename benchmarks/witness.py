@@ -1,0 +1,80 @@
+"""A judged drive for every scenario: seconds by stage, and plain z3 on the exact encoding beside it.
+
+Run: ``.venv/bin/python benchmarks/witness.py [--sets base,extA,ext] [--z3 LIMIT]``. Everything runs in
+one process, so that the seconds are those of one core; ``--z3 0`` leaves the comparison out.
+"""
+
+import argparse
+import resource
+import statistics
+import time
+from dataclasses import replace
+from fractions import Fraction
+
+from roadproof.encode.build import NONE, build_problem
+from roadproof.encode.unroll import Grid
+from roadproof.solve.exact import solve_exactly
+from roadproof.solve.milp import prepare
+from roadproof.spec.bind import default_values
+from roadproof.spec.library import bundled_library
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Outcome, Request, as_formula, ask, pose
+from roadproof.witness.question import Means
+
+STAGES = ("encode", "solve", "shape", "judge", "all")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--sets", default="base")
+    parser.add_argument("--z3", type=float, default=60.0, metavar="LIMIT", help="seconds for z3, 0 for none")
+    args = parser.parse_args()
+    prepare()
+    library = bundled_library()
+    request = Request("", values=default_values(library), means=Means())
+    rows, answers = [], {}
+    print(f"{'set':5} {'row':>3}  verdict      " + "".join(f"{s:>8}" for s in STAGES) + "   z3 exact")
+    for set_name in args.sets.split(","):
+        for number in range(1, 25):
+            asked = replace(request, what=str(number), set_name=set_name)
+            outcome = ask(asked)
+            rows.append(outcome)
+            shown = "".join(f"{outcome.seconds.get(s, 0.0):8.3f}" for s in STAGES)
+            beside = ""
+            if args.z3 > 0 and lanes_of(outcome):
+                seconds, status = plainly(asked, lanes_of(outcome), args.z3)
+                answers.setdefault(status, []).append(seconds)
+                beside = f"   {seconds:7.2f} {status}"
+            print(f"{set_name:5} {number:3}  {outcome.verdict:11}  {shown}{beside}", flush=True)
+    totals = [row.seconds["all"] for row in rows]
+    found = sum(row.verdict is Verdict.WITNESSED for row in rows)
+    print(f"{found} of {len(rows)} witnessed, {sum(row.natural for row in rows)} natural")
+    print(
+        f"seconds: median {statistics.median(totals):.2f}, greatest {max(totals):.2f}, sum {sum(totals):.1f}"
+    )
+    for status, seconds in answers.items():
+        print(f"plain z3, exact encoding: {len(seconds)} {status}, sum {sum(seconds):.1f} s")
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"peak memory {peak:.0f} MiB")
+
+
+def lanes_of(outcome: Outcome) -> dict[str, str]:
+    """The lane that the drive was judged with."""
+    return {"L": outcome.drives[0]["lane"]} if outcome.drives else {}
+
+
+def plainly(request: Request, lanes: dict[str, str], limit: float) -> tuple[float, str]:
+    """Seconds and answer of z3 on the exact encoding of the same question, on the same grid."""
+    library = bundled_library()
+    specification = library.select(request.set_name)
+    question = pose(specification, as_formula(specification, request.what)[1], request)
+    manners = replace(question.manners.plain(), margin=NONE, inside=Fraction(0))
+    grid = Grid(request.dt, int(request.horizon / request.dt))
+    begun = time.perf_counter()
+    problem, _ = build_problem(question.bound(lanes), question.road, question.vehicles, grid, manners)
+    status = solve_exactly(problem, limit).status
+    return time.perf_counter() - begun, {"found": "sat", "infeasible": "unsat"}.get(status, "gave up")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,94 @@
+"""Options of the sub-commands that search for drives, and the request that they make."""
+
+import argparse
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from roadproof.cli.options import (
+    add_parameter_option,
+    add_specification_options,
+    parameter_values,
+    select_specification,
+)
+from roadproof.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadproof.spec.library import Library
+    from roadproof.witness.ask import Request
+
+
+def add_search_options(parser: argparse.ArgumentParser) -> None:
+    """Where, with whom, how long and by whom is searched; ``read_request`` understands them."""
+    add_specification_options(parser, several=True)
+    add_parameter_option(parser)
+    parser.add_argument(
+        "--road", metavar="R", help="a reference road or a .toml file (default: by the formula)"
+    )
+    parser.add_argument(
+        "--lane",
+        dest="lanes",
+        metavar="[L=]LANE",
+        action="append",
+        default=[],
+        help="the lane that L stands for (default: any that works, from the right)",
+    )
+    parser.add_argument(
+        "--vehicle",
+        dest="vehicles",
+        metavar="[NAME=]MODEL",
+        action="append",
+        default=[],
+        help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
+    )
+    parser.add_argument("--horizon", metavar="S", default="6", help="seconds that are searched (default: 6)")
+    parser.add_argument("--dt", metavar="S", default="3/5", help="seconds between samples (default: 3/5)")
+    parser.add_argument(
+        "--reach", metavar="M", default="80", help="how far apart vehicles may start (default: 80)"
+    )
+    parser.add_argument("--allow-collisions", action="store_true", help="boxes may overlap")
+    parser.add_argument("--engine", choices=("milp", "smt"), default="milp", help="default: milp")
+    parser.add_argument("--solver", default="highs", help="a mixed-integer solver for milp (default: highs)")
+    parser.add_argument(
+        "--timeout", type=float, default=60.0, metavar="S", help="seconds a question (default: 60)"
+    )
+
+
+def read_request(args: argparse.Namespace, library: "Library") -> "Request":
+    """The request that the options make, for no formula yet. Raises ``UsageError``, ``InputError``."""
+    from roadproof.witness.ask import Request
+    from roadproof.witness.question import Means
+
+    if not args.timeout > 0:
+        raise UsageError(f"--timeout {args.timeout}: must be greater than 0")
+    base = argparse.Namespace(**{**vars(args), "set_name": "base"})
+    return Request(
+        what="",
+        options=dict(select_specification(base, library).options),
+        specs=tuple(args.specs),
+        values=parameter_values(args, library),
+        road=args.road,
+        lanes=dict(_named(args.lanes, "L")),
+        vehicles=dict(_named(args.vehicles, "")),
+        horizon=_seconds("--horizon", args.horizon),
+        dt=_seconds("--dt", args.dt),
+        reach=_seconds("--reach", args.reach),
+        collisions=args.allow_collisions,
+        means=Means(engine=args.engine, solver=args.solver, time_limit=args.timeout),
+    )
+
+
+def _named(texts: Sequence[str], usual: str) -> Iterator[tuple[str, str]]:
+    for text in texts:
+        name, equals, value = text.rpartition("=")
+        yield (name if equals else usual), value
+
+
+def _seconds(option: str, text: str) -> Fraction:
+    try:
+        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
+    except (ValueError, ZeroDivisionError):
+        value = None
+    if value is None or value <= 0:
+        raise UsageError(f"{option} {text[:40]}: write a number greater than 0, such as 6, 0.6 or 3/5")
+    return value
