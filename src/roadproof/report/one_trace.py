@@ -1,0 +1,207 @@
+"""What a formula is on one trace: verdict, margin, and when each named part of it is true."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from roadproof.judge.algebraic import approximate
+from roadproof.judge.exact import judge
+from roadproof.judge.robust import robustness
+from roadproof.judge.truth import TruthSet
+from roadproof.logic.formula import Formula, Named
+from roadproof.monitor.answers import Answer, Convention
+from roadproof.monitor.batch import Batch
+from roadproof.monitor.compiled import compile
+from roadproof.report.figures import as_bytes, make_figure
+from roadproof.world.drive import Drive
+
+Said: TypeAlias = Literal["true", "false", "undecided"]
+SCHEMA = "roadproof/monitor/1"
+Spans: TypeAlias = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Strip:
+    """When a part is true, and when that depends on what comes after the trace; seconds, ends included.
+
+    ``exact`` tells the same with open and closed ends where the view is dense.
+    """
+
+    name: str
+    true: Spans
+    undecided: Spans = ()
+    exact: str = ""
+
+
+@dataclass(frozen=True)
+class Observed:
+    """An answer at the first sample (time 0). ``margin`` bounds the robustness; infinite where only
+    lanes decide. ``other`` is the answer under the other convention for the end of a trace."""
+
+    formula: str
+    view: Literal["recorded", "dense"]
+    verdict: Said
+    margin: tuple[float, float]
+    seconds: float
+    dt: Fraction
+    strips: tuple[Strip, ...]
+    convention: Convention | None = None
+    other: Said | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """As plain data; infinities and unknown ends are null."""
+        return {
+            "schema": SCHEMA,
+            "formula": self.formula,
+            "view": self.view,
+            "end": self.convention,
+            "verdict": self.verdict,
+            "underTheOtherEnd": self.other,
+            "robustness": [_finite(x) for x in self.margin],
+            "seconds": self.seconds,
+            "dt": str(self.dt),
+            "parts": [
+                {
+                    "formula": strip.name,
+                    "true": [[begin, _finite(end)] for begin, end in strip.true],
+                    "undecided": [[begin, _finite(end)] for begin, end in strip.undecided],
+                }
+                | ({"exact": strip.exact} if strip.exact else {})
+                for strip in self.strips
+            ],
+        }
+
+
+def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> Observed:
+    """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
+    monitor = compile({"asked": formula})
+    other: Convention = "clip" if convention == "truncated" else "truncated"
+    seen = monitor.observe(batch)
+    verdicts = monitor.evaluate(seen, convention, named=True)
+    margin = monitor.measure(batch, convention).margins["asked"]
+    dt = float(batch.dt)
+    whole = Strip(text, *_spans(monitor.evaluate(seen, convention, at="all").answers["asked"], dt))
+    return Observed(
+        text,
+        "recorded",
+        _said(verdicts.answers["asked"]),
+        (float(margin.low[0]), float(margin.high[0])),
+        float((batch.samples - 1) * batch.dt),
+        batch.dt,
+        (whole, *_strips(formula, verdicts.named, dt)),
+        convention,
+        _said(monitor.evaluate(seen, other).answers["asked"]),
+    )
+
+
+def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction) -> Observed:
+    """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt.
+
+    Raises ``InputError`` and ``UsageError``.
+    """
+    judgement = judge(formula, drive)
+    margin = robustness(formula, drive, dt, int(horizon / dt) * dt).value
+    strips = [_exact_strip(text, judgement.truth(formula))]
+    strips += [_exact_strip(name_of(part), truth) for part, truth in judgement.named() if part != formula]
+    verdict: Said = "true" if judgement.holds else "false"
+    return Observed(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
+
+
+def name_of(part: Named) -> str:
+    """An application of a definition as a user writes it."""
+    return f"{part.name}({', '.join(part.arguments)})"
+
+
+def _strips(formula: Formula, named: Mapping[Named, Answer], dt: float) -> Iterator[Strip]:
+    for part, answer in named.items():
+        if part != formula:
+            yield Strip(name_of(part), *_spans(answer, dt))
+
+
+def _spans(answer: Answer, dt: float) -> tuple[Spans, Spans]:
+    true, false = answer.true[:, 0], answer.false[:, 0]
+    return _runs(true, dt), _runs(~true & ~false, dt)
+
+
+def _runs(truth: Any, dt: float) -> Spans:
+    """First and last time of each run of true samples."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], truth.astype(np.int8), [0]))))
+    return tuple(
+        (round(int(begin) * dt, 9), round((int(end) - 1) * dt, 9))
+        for begin, end in zip(edges[::2], edges[1::2], strict=True)
+    )
+
+
+def _exact_strip(name: str, truth: TruthSet) -> Strip:
+    spans = tuple(
+        (approximate(span.begin.point), float("inf") if span.end is None else approximate(span.end.point))
+        for span in truth.spans()
+    )
+    return Strip(name, spans, (), str(truth))
+
+
+def _said(answer: Answer) -> Said:
+    return "true" if answer.true[0] else "false" if answer.false[0] else "undecided"
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def as_text(observed: Observed) -> str:
+    """Verdict, how it is meant, and a line for each part."""
+    lines = [f"{observed.formula}: {observed.verdict}", f"  {_promise(observed)}", f"  {_margin(observed)}"]
+    lines.append("when true, in seconds from the start:")
+    width = min(48, max(len(strip.name) for strip in observed.strips))
+    for strip in observed.strips:
+        told = strip.exact or " ∪ ".join(map(_interval, strip.true)) or "never"
+        if strip.undecided:
+            told += "; undecided " + " ∪ ".join(map(_interval, strip.undecided))
+        lines.append(f"  {strip.name:<{width}}  {told}")
+    return "\n".join(lines)
+
+
+def _promise(observed: Observed) -> str:
+    if observed.view == "dense":
+        return "view: dense, every instant of an unbounded drive, judged exactly"
+    other = "clip" if observed.convention == "truncated" else "truncated"
+    return (
+        f"view: recorded, samples every {float(observed.dt):g} s for {observed.seconds:g} s; "
+        f"end of the trace: {observed.convention} ({other}: {observed.other})"
+    )
+
+
+def _margin(observed: Observed) -> str:
+    low, high = observed.margin
+    grid = f", on a grid of {float(observed.dt):g} s" if observed.view == "dense" else ""
+    if low == high:
+        return f"robustness {low:.6g}{grid}"
+    return f"robustness between {low:.6g} and {high:.6g}, whatever comes after the trace{grid}"
+
+
+def _interval(span: tuple[float, float]) -> str:
+    begin, end = span
+    return f"{{{begin:g}}}" if begin == end else f"[{begin:g}, {end:g}]"
+
+
+def draw_strips(observed: Observed, most: int = 40) -> Mapping[str, bytes]:
+    """A strip a part: green where it is true, grey where undecided. Raises ``InputError``."""
+    strips = observed.strips[:most]
+    figure, (axes,) = make_figure([0.6 + 0.2 * len(strips)])
+    end = max(observed.seconds, float(observed.dt))
+    sample = 0.0 if observed.view == "dense" else float(observed.dt)
+    for row, strip in enumerate(strips):
+        for spans, colour in ((strip.true, "#4b8b3b"), (strip.undecided, "#bbbbbb")):
+            for begin, last in spans:
+                if begin <= end:
+                    width = max(min(last, end) - begin + sample, end / 300)
+                    axes.barh(row, width, left=begin, height=0.7, color=colour)
+    axes.set_yticks(range(len(strips)), [strip.name for strip in strips], fontsize=6)
+    axes.set_ylim(len(strips) - 0.4, -0.6)
+    axes.set_xlim(0, end + sample)
+    axes.set_xlabel("s; green where true, grey where it depends on what comes after", fontsize=7)
+    axes.set_title(f"{observed.formula}: {observed.verdict}", fontsize=8)
+    return as_bytes(figure)
