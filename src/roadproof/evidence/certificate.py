@@ -95,6 +95,8 @@ def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str
         return (
             f"the assumptions are {', '.join(derived.assumptions)}, not {', '.join(certificate.assumptions)}"
         )
+    if derived.options != certificate.options:
+        return f"it does not name the options {_listed(derived.options)}, but {_listed(certificate.options)}"
     if derived.queries != certificate.queries:
         return "the stored query is not the one that claim and instances give"
     for title, query in derived.queries:
@@ -102,6 +104,10 @@ def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str
         if answer != "unsat":
             return f"the query '{title}' was answered {answer}, not unsat"
     return None
+
+
+def _listed(options: Mapping[str, str]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in sorted(options.items())) or "none"
 
 
 # --- files --------------------------------------------------------------------------------------
