@@ -79,7 +79,7 @@ def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -
     if low > high or not low <= wanted[0] <= wanted[1] <= high:
         have = f"they share the frames {low} to {high}" if low <= high else "they share no frame"
         raise InputError(f"{text}, frames {wanted[0]} to {wanted[1]}: {have}")
-    return _cut(recording, text, dict(zip(_NAMES[len(ids)], index, strict=True)), wanted)
+    return cut_trace(recording, text, dict(zip(_NAMES[len(ids)], index, strict=True)), wanted)
 
 
 def _find(recording: Recording, number: int, text: str) -> int:
@@ -90,7 +90,14 @@ def _find(recording: Recording, number: int, text: str) -> int:
     return int(place[0])
 
 
-def _cut(recording: Recording, text: str, vehicles: Mapping[str, int], frames: tuple[int, int]) -> OneTrace:
+def cut_trace(
+    recording: Recording, source: str, vehicles: Mapping[str, int], frames: tuple[int, int]
+) -> OneTrace:
+    """Vehicles of a recording (indices by name), of one direction, from the first frame to the last.
+
+    Lane predicates are decided by the recording, as in an evaluation.
+    """
+
     def one(value: int) -> Integers:
         return np.array([value])
 
@@ -110,7 +117,7 @@ def _cut(recording: Recording, text: str, vehicles: Mapping[str, int], frames: t
         at = int(recording.lane[begin])
         lanes[name] = recording.lanes[at].name if at >= 0 else ""
     batch = Batch(made.dt, made.lengths, made.signals, made.sizes, given)
-    return OneTrace(text, batch, road, lanes, f"frame {frames[0]}")
+    return OneTrace(source, batch, road, lanes, f"frame {frames[0]}")
 
 
 def _road_of(recording: Recording, way: int) -> Road:
