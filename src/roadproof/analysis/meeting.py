@@ -64,18 +64,14 @@ def conjunctions(specification: Specification, one: Node, other: Node, meeting: 
     Names are to be read with ``specification``. The vehicles are those of the scenario that has more of them;
     a two-vehicle scenario meets scenario 2 with SV and either of its POVs.
     """
-    names = {node: f"scenario_{node.number}" for node in (one, other)}
-    mine = _vehicles(specification.in_set(one.set_name), names[one])
-    theirs = _vehicles(specification.in_set(other.set_name), names[other])
+    mine, theirs = vehicles_of(specification, one), vehicles_of(specification, other)
     swapped = len(theirs) > len(mine)
     most, fewer = (theirs, mine) if swapped else (mine, theirs)
     found: list[str] = []
     for roles in _assignments(most, len(fewer), meeting.roles):
         mine_now, theirs_now = (roles, most) if swapped else (most, roles)
-        first = _call(names[one], one, specification, mine_now, "L")
-        second = _call(
-            names[other], other, specification, theirs_now, "L2" if meeting.lanes == "any" else "L"
-        )
+        first = applied(one, specification, mine_now)
+        second = applied(other, specification, theirs_now, "L2" if meeting.lanes == "any" else "L")
         if meeting.start == "same":
             found.append(f"{first} and {second}")
         else:
@@ -83,9 +79,10 @@ def conjunctions(specification: Specification, one: Node, other: Node, meeting: 
     return tuple(found)
 
 
-def _vehicles(specification: Specification, name: str) -> tuple[str, ...]:
-    """The vehicles among the arguments of a scenario, which are SV, POVs and L."""
-    *vehicles, lane = signature(specification, name)
+def vehicles_of(specification: Specification, node: Node) -> tuple[str, ...]:
+    """The vehicles among the arguments of a scenario, which are SV, POVs and L. Raises ``InputError``."""
+    name = f"scenario_{node.number}"
+    *vehicles, lane = signature(specification.in_set(node.set_name), name)
     if lane != "L" or not vehicles or vehicles[0] != "SV":
         raise InputError(f"{name} takes {', '.join((*vehicles, lane))}: a scenario takes SV, POVs and L")
     return tuple(vehicles)
@@ -98,6 +95,7 @@ def _assignments(vehicles: Sequence[str], count: int, roles: Literal["same", "an
     return [(vehicles[0], *others) for others in combinations(vehicles[1:], count - 1)]
 
 
-def _call(name: str, node: Node, home: Specification, vehicles: Sequence[str], lane: str) -> str:
+def applied(node: Node, home: Specification, vehicles: Sequence[str], lane: str = "L") -> str:
+    """The scenario applied to vehicles and a lane, as text to be read with ``home``."""
     at = "" if node.set_name == home.set_name else f"@{node.set_name}"
-    return f"{name}{at}({','.join((*vehicles, lane))})"
+    return f"scenario_{node.number}{at}({','.join((*vehicles, lane))})"

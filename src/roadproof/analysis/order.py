@@ -1,0 +1,296 @@
+"""Which scenarios imply which: every implication proved, every other one refuted by a drive.
+
+``a -> b`` is about all traces, roads, lanes L and parameter values, with the same roles. Where one of
+the two has more vehicles, the other may have any of its POVs: there is an edge if one such reading is
+proved, and none if a drive refutes each. Nodes with one formula share all evidence, and a drive found for
+one road sector is put on roads of the others.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import permutations
+from typing import Any
+
+from roadproof.analysis.meeting import Node, applied, scenario_numbers, vehicles_of
+from roadproof.analysis.overlap import Asked, without_sectors
+from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.evidence.certificate import to_json
+from roadproof.evidence.witness import DriveFile, from_json, judge_file
+from roadproof.judge.exact import judge
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
+from roadproof.prove.prover import prove
+from roadproof.spec.bind import bind, default_values
+from roadproof.spec.elaborate import Query, read_claim
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Request, ask
+from roadproof.witness.question import Means
+from roadproof.world.drive import Drive
+
+FAR = Fraction(2000)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Scenarios with one formula, the first of which stands for all; ``like``: equal but for the sector."""
+
+    nodes: tuple[Node, ...]
+    like: int
+
+    @property
+    def node(self) -> Node:
+        return self.nodes[0]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A proved implication that does not follow from others; ``certificate`` is a file's text."""
+
+    above: Node
+    below: Node
+    claim: str
+    certificate: str
+
+
+@dataclass(frozen=True)
+class Refuting:
+    """A judged drive on which ``node`` holds and some reading of each of ``others`` does not."""
+
+    node: Node
+    others: tuple[Node, ...]
+    data: Mapping[str, Any]
+
+
+@dataclass
+class Order:
+    """``edges`` generate all implications between kinds; ``doubts`` are pairs that are not decided."""
+
+    kinds: tuple[Kind, ...]
+    edges: list[Edge] = field(default_factory=list)
+    drives: list[Refuting] = field(default_factory=list)
+    doubts: list[tuple[Node, Node, str]] = field(default_factory=list)
+
+    def implies(self, one: Node, other: Node) -> bool:
+        """Whether a chain of edges leads from one kind to the other."""
+        seen, waiting = {one}, [one]
+        while waiting:
+            current = waiting.pop()
+            for edge in self.edges:
+                if edge.above == current and edge.below not in seen:
+                    seen.add(edge.below)
+                    waiting.append(edge.below)
+        return other in seen
+
+
+def kinds_of(asked: Asked) -> tuple[Kind, ...]:
+    """The scenarios of all sets of ``asked``, sorted into those with one formula."""
+    _, specification = asked.load()
+    found: dict[Formula, list[Node]] = {}
+    likes: dict[Formula, int] = {}
+    for set_name in asked.sets:
+        there = specification.in_set(set_name)
+        for number in scenario_numbers(there):
+            node = Node(number, set_name)
+            formula = read_claim(specification, _text(asked, node)).formula
+            found.setdefault(without_names(formula), []).append(node)
+            likes.setdefault(without_sectors(formula), len(likes))
+    return tuple(
+        Kind(
+            tuple(nodes),
+            likes[without_sectors(read_claim(specification, _text(asked, nodes[0])).formula)],
+        )
+        for nodes in found.values()
+    )
+
+
+def _text(asked: Asked, node: Node) -> str:
+    _, specification = asked.load()
+    return applied(node, specification, vehicles_of(specification, node))
+
+
+def find_order(asked: Asked, tell: Callable[[str], None] = lambda _: None) -> Order:
+    """Decide all implications between the scenarios of ``asked``; ``tell`` hears about the progress."""
+    return _Ordering(asked, kinds_of(asked), tell).run()
+
+
+@dataclass(frozen=True)
+class _Cast:
+    """One way to give the vehicles of a drive to a kind, and what else may hold of it then."""
+
+    text: str
+    others: tuple[tuple[Node, str], ...]
+
+
+class _Ordering:
+    def __init__(self, asked: Asked, kinds: tuple[Kind, ...], tell: Callable[[str], None]) -> None:
+        self.asked = asked
+        self.library, self.specification = asked.load()
+        self.values = {**default_values(self.library), **asked.values}
+        self.order = Order(kinds)
+        self.tell = tell
+        self.pool: dict[int, list[Shown]] = {}
+        self.queries: dict[str, Query] = {}
+        # By kind and kind: the readings of the second that no drive has refuted yet.
+        self.open: dict[tuple[Node, Node], set[tuple[str, str]]] = {}
+
+    def run(self) -> Order:
+        kinds = self.order.kinds
+        for kind in kinds:
+            for cast in self._casts(kind):
+                for other, text in cast.others:
+                    self.open.setdefault((kind.node, other), set()).add((cast.text, text))
+        for number, kind in enumerate(kinds, 1):
+            self.tell(f"{number} of {len(kinds)} formulas: drives")
+            self._refute_with_pool(kind)
+        left = sorted((pair for pair, readings in self.open.items() if readings), key=self._distance)
+        for number, (one, other) in enumerate(left, 1):
+            self.tell(f"{number} of {len(left)} implications that no drive has refuted")
+            if self.open[one, other] and not self.order.implies(one, other):
+                self._decide(one, other)
+        self._reduce()
+        return self.order
+
+    def _distance(self, pair: tuple[Node, Node]) -> tuple[bool, int, int, int]:
+        """Neighbouring sets first, so that what follows by a chain is not proved again."""
+        one, other = pair
+        steps = self.asked.sets.index(other.set_name) - self.asked.sets.index(one.set_name)
+        return steps < 0, abs(steps), one.number, other.number
+
+    # --- drives ----------------------------------------------------------------------------------
+
+    def _casts(self, kind: Kind) -> Iterator[_Cast]:
+        mine = vehicles_of(self.specification, kind.node)
+        by_size: dict[tuple[str, ...], list[tuple[Node, str]]] = {}
+        for other in self.order.kinds:
+            if other is kind:
+                continue
+            theirs = vehicles_of(self.specification, other.node)
+            if len(theirs) <= len(mine):
+                readings = [(mine[0], *rest) for rest in permutations(mine[1:], len(theirs) - 1)]
+                if len(theirs) == len(mine):
+                    readings = [mine]
+                for reading in readings:
+                    text = applied(other.node, self.specification, reading)
+                    by_size.setdefault(mine, []).append((other.node, text))
+            else:
+                for reading in ((theirs[0], *rest) for rest in permutations(theirs[1:], len(mine) - 1)):
+                    text = applied(other.node, self.specification, theirs)
+                    by_size.setdefault(reading, []).append((other.node, text))
+        for vehicles, others in by_size.items():
+            yield _Cast(applied(kind.node, self.specification, vehicles), tuple(others))
+
+    def _refute_with_pool(self, kind: Kind) -> None:
+        text = _text(self.asked, kind.node)
+        alone = " and ".join([text, *(f"not {x}" for x in self._same_elsewhere(kind))])
+        if not self.pool.get(kind.like):
+            found = self._ask(alone, self.asked.timeout)
+            if found is None:
+                return
+            self.pool.setdefault(kind.like, []).append(found)
+        for shown in tuple(self.pool[kind.like]):
+            placed = show_elsewhere(shown, alone, self.library)
+            if placed is not None:
+                self._use(kind, placed)
+
+    def _same_elsewhere(self, kind: Kind) -> list[str]:
+        """The kinds that differ from this one in the sector only."""
+        return [_text(self.asked, x.node) for x in self.order.kinds if x.like == kind.like and x is not kind]
+
+    def _use(self, kind: Kind, shown: Shown) -> None:
+        """Refute with a drive all that it refutes of what is still open."""
+        for cast in self._casts(kind):
+            file = self._recast(from_json(dict(shown.data), "drive"), kind, cast)
+            still = [(n, x) for n, x in cast.others if (cast.text, x) in self.open[kind.node, n]]
+            false = [(node, text) for node, text in still if not self._holds(file, text)]
+            if not false:
+                continue
+            formula = " and ".join([cast.text, *(f"not {text}" for _, text in false)])
+            file = replace(file, formula=formula, scenario=None)
+            ruling = judge_file(file, self.library)
+            if not ruling.accepted:
+                continue
+            self.order.drives.append(
+                Refuting(kind.node, tuple(node for node, _ in false), as_data(file, ruling))
+            )
+            for node, text in false:
+                self.open[kind.node, node].discard((cast.text, text))
+
+    def _recast(self, file: DriveFile, kind: Kind, cast: _Cast) -> DriveFile:
+        """The drive with the vehicles of a cast; those that it does not have are far behind all others."""
+        mine = vehicles_of(self.specification, kind.node)
+        query = self._query(cast.text)
+        playing = cast.text[cast.text.index("(") + 1 : -1].split(",")[:-1]
+        motions = {new: file.drive.vehicles[old] for new, old in zip(playing, mine, strict=True)}
+        wanted = {v for _, text in cast.others for v in self._query(text).vehicles} | set(query.vehicles)
+        for name in sorted(wanted - set(motions)):
+            slowest = min(motions.values(), key=lambda motion: motion.s)
+            motions[name] = replace(slowest, s=slowest.s - FAR)
+        return replace(file, drive=Drive(motions))
+
+    def _holds(self, file: DriveFile, text: str) -> bool:
+        formula = bind(self._query(text).formula, file.road, file.lanes, {**self.values, **file.values})
+        return judge(formula, file.drive).holds
+
+    def _query(self, text: str) -> Query:
+        if text not in self.queries:
+            self.queries[text] = read_claim(self.specification, text)
+        return self.queries[text]
+
+    def _ask(self, text: str, seconds: float) -> Shown | None:
+        request = Request(
+            text,
+            self.asked.sets[0],
+            self.asked.options,
+            self.asked.specs,
+            self.values,
+            horizon=self.asked.horizon,
+            means=Means("smooth", time_limit=seconds, explain=False),
+        )
+        drives = ask(request).drives
+        return Shown(text, drives[0]) if drives else None
+
+    # --- proofs ----------------------------------------------------------------------------------
+
+    def _decide(self, one: Node, other: Node) -> None:
+        """A proof of one of the readings, or drives against all that are left."""
+        kind = next(k for k in self.order.kinds if k.node == one)
+        for text, below in sorted(self.open[one, other]):
+            claim = f"{text} -> {below}"
+            result = prove(self.specification, claim, self.asked.proof_seconds)
+            if result.verdict is Verdict.PROVED and result.certificate is not None:
+                self.order.edges.append(Edge(one, other, claim, to_json(result.certificate)))
+                return
+        for text, below in sorted(self.open[one, other]):
+            if (text, below) not in self.open[one, other]:
+                continue
+            found = self._ask(f"{text} and not {below}", self.asked.timeout)
+            if found is None:
+                self.order.doubts.append(
+                    (one, other, f"neither a proof nor a drive against {text} -> {below}")
+                )
+                return
+            if len(vehicles_of(self.specification, one)) == len(self._query(f"{text} and {below}").vehicles):
+                self.pool.setdefault(kind.like, []).append(found)
+                self._use(kind, found)
+                self._share(kind, found)
+            else:
+                self.order.drives.append(Refuting(one, (other,), found.data))
+                self.open[one, other].discard((text, below))
+
+    def _share(self, kind: Kind, found: Shown) -> None:
+        """Use a new drive for the kinds that differ from its own in the sector only."""
+        for twin in self.order.kinds:
+            if twin.like == kind.like and twin is not kind:
+                others = [f"not {x}" for x in self._same_elsewhere(twin)]
+                alone = " and ".join([_text(self.asked, twin.node), *others])
+                placed = show_elsewhere(found, alone, self.library)
+                if placed is not None:
+                    self._use(twin, placed)
+
+    def _reduce(self) -> None:
+        """Leave out edges that follow from others."""
+        for edge in tuple(self.order.edges):
+            rest = replace(self.order, edges=[e for e in self.order.edges if e is not edge])
+            if rest.implies(edge.above, edge.below):
+                self.order.edges = rest.edges
