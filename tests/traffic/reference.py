@@ -5,6 +5,7 @@ Shares with the program only the recording, the formulas and nothing of how trac
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import cached_property
 from itertools import combinations
 
 from roadproof.logic.formula import Formula
@@ -107,8 +108,12 @@ class Reference:
             ends.append(frames[holding[-1]] + steps if start is not None and holding else None)
         return (None if start is None else frames[start]), ends
 
-    def pairs(self) -> Iterator[tuple[int, int, range, Reading]]:
+    @cached_property
+    def violating(self) -> list[tuple[int, int, range, Reading]]:
         """Pairs of one direction that violate the RSS distance at some time."""
+        return list(self._pairs())
+
+    def _pairs(self) -> Iterator[tuple[int, int, range, Reading]]:
         violation = self.formula(self.settings.sets[0], "rssViolation(SV, POV)", 0)
         for a, b in combinations(self.eligible, 2):
             frames = self.common(a, b)
@@ -133,15 +138,14 @@ class Reference:
         )
 
     def matches(self) -> Iterator[Row]:
-        violating = list(self.pairs())
-        for a, b, frames, reading in violating:
+        for a, b, frames, reading in self.violating:
             start, ends = self.cuts(frames, reading, reading)
             for k, end in enumerate(ends):
                 if start is not None and end is not None:
                     yield from self.match_pair(a, b, start, end, k)
                     yield from self.match_pair(b, a, start, end, k)
         if 2 in self.settings.scenarios:
-            for a, b, _, _ in violating:
+            for a, b, _, _ in self.violating:
                 yield from self.match_triples(a, b)
                 yield from self.match_triples(b, a)
 
@@ -182,7 +186,7 @@ class Reference:
     def traces(self) -> Iterator[tuple[int, int, int, int, int]]:
         """first, second, min_danger, start_frame, end_frame of every disturbance trace."""
         ids = self.recording.vehicle_id
-        for a, b, frames, reading in self.pairs():
+        for a, b, frames, reading in self.violating:
             start, ends = self.cuts(frames, reading, reading)
             for k, end in enumerate(ends):
                 if start is not None and end is not None:

@@ -1,6 +1,7 @@
 """The highD reader against recordings computed by hand, and against every kind of damage."""
 
 import random
+import sys
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, MissingSolverError
 from roadproof.traffic.highd import find_recordings, read_highd
 from roadproof.traffic.recording import Recording, keep_vehicles
 from traffic.tiny_highd import Files, tiny_files, write_files
@@ -195,6 +196,18 @@ def test_wrong_driving_direction(tmp_path: Path) -> None:
         change(TRACKS, row, "x", str(50 + 10 * row))(files)
     with pytest.raises(InputError, match=r"vehicle id=2, column drivingDirection=1: .* moves the other way"):
         read(files, tmp_path)
+
+
+def test_sizes_may_differ_by_rounding(tmp_path: Path) -> None:
+    files = tiny_files()
+    change(TRACKS, 5, "width", "4.01")(files)
+    assert read(files, tmp_path).length[1] == 4.0
+
+
+def test_without_polars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "polars", None)
+    with pytest.raises(MissingSolverError, match=r"roadproof\[traffic\]"):
+        read(tiny_files(), tmp_path)
 
 
 def test_jump_and_strange_lane_are_noted(tmp_path: Path) -> None:

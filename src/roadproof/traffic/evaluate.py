@@ -153,7 +153,7 @@ def _match_pairs(
         for p in hits:
             pair = int(ids[pairs.first[p]]), int(ids[pairs.second[p]])
             sv, pov = pair if asked.sv == "first" else pair[::-1]
-            lane = recording.lanes[lanes[asked.lane][p]].name
+            lane = _lane_name(recording, lanes[asked.lane][p])
             yield Match(sv, pov, None, lane, int(start[p]), int(ends[k][p]), k, asked.set_name, asked.number)
 
 
@@ -190,7 +190,7 @@ def _match_triples(
         asked = questions.asked[name]
         for p in places:
             sv, pov, pov2 = (int(ids[x[p]]) for x in (triples.sv, triples.pov1, triples.pov2))
-            lane = recording.lanes[lanes["L"][p]].name
+            lane = _lane_name(recording, lanes["L"][p])
             yield Match(
                 sv, pov, pov2, lane, int(start[p]), int(cut.end[k][p]), k, asked.set_name, asked.number
             )
@@ -223,8 +223,12 @@ def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Intege
     return lane
 
 
+def _lane_name(recording: Recording, index: int) -> str:
+    """Empty for the centre of a box that is on no lane."""
+    return recording.lanes[index].name if index >= 0 else ""
+
+
 def _traces(recording: Recording, found: Disturbances) -> Iterator[Trace]:
-    names = [*(lane.name for lane in recording.lanes), ""]
     pairs, ids = found.pairs, recording.vehicle_id
     known = np.flatnonzero(found.start != NEVER)
     first_lane, second_lane = np.full(len(pairs), -1), np.full(len(pairs), -1)
@@ -239,6 +243,6 @@ def _traces(recording: Recording, found: Disturbances) -> Iterator[Trace]:
                     k,
                     int(found.start[p]),
                     int(end[p]),
-                    names[first_lane[p]],
-                    names[second_lane[p]],
+                    _lane_name(recording, int(first_lane[p])),
+                    _lane_name(recording, int(second_lane[p])),
                 )

@@ -11,12 +11,13 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, MissingSolverError
 
 Kind: TypeAlias = Literal["integer", "number", "text"]
 Column: TypeAlias = npt.NDArray[Any]
@@ -71,14 +72,14 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
 
 def read_columns(path: Path, names: Sequence[str]) -> None:
     """Read some columns and check nothing: what benchmarks compare ``read_table`` with."""
-    import polars as pl
+    pl = _polars()
 
     pl.read_csv(path, columns=list(names))
 
 
 def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None = None) -> None:
     """Write ``columns`` as CSV, floats with ``decimals`` places; the file appears whole or not at all."""
-    import polars as pl
+    pl = _polars()
 
     frame = pl.DataFrame({name: pl.Series(name, values) for name, values in columns.items()})
     try:
@@ -95,6 +96,17 @@ def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None 
         raise InputError(
             f"{path}: the file cannot be written ({error.strerror}); choose another folder"
         ) from None
+
+
+def _polars() -> ModuleType:
+    try:
+        import polars
+    except ImportError:
+        message = (
+            "tables of traffic need polars, which is not installed; use pip install 'roadproof[traffic]'"
+        )
+        raise MissingSolverError(message) from None
+    return polars
 
 
 def _read_bytes(path: Path) -> bytes:
@@ -150,7 +162,7 @@ def _check_shape(path: Path, content: bytes, fields: int) -> int:
 
 def _read_fast(content: bytes, wanted: Mapping[str, Kind], rows: int) -> dict[str, Column] | None:
     """All wanted columns, or None if some cell is wrong."""
-    import polars as pl
+    pl = _polars()
 
     types = {"integer": pl.Int64, "number": pl.Float64, "text": pl.String}
     try:
