@@ -35,7 +35,12 @@ SOLVERS: Mapping[str, SolverFacts] = {
     "highs": SolverFacts(
         "HIGHS",
         "highspy",
-        lambda limit, gap: {"time_limit": limit, "mip_rel_gap": gap, "mip_heuristic_effort": 0.3},
+        lambda limit, gap: {
+            "time_limit": limit,
+            "mip_rel_gap": gap,
+            "mip_heuristic_effort": 0.3,  # we ask for any solution, so heuristics are most of the work
+            "random_seed": 1,
+        },
     ),
     "scipy": SolverFacts(
         "SCIPY", "scipy", lambda limit, gap: {"scipy_options": {"time_limit": limit, "mip_rel_gap": gap}}
