@@ -160,11 +160,14 @@ def _read(path: Path) -> "Iterator[DriveFile]":
 def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
     """A drive for each scenario of ``text`` (such as 1-3,7), whose danger lasts up to its horizon.
 
-    A recorded trace ends with its last danger, so whatever else the scenario needs has happened then.
+    A recorded trace ends with its last danger, so whatever else the scenario needs has happened then;
+    L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (SPEC §7).
     """
     from roadproof.evidence.witness import from_json
+    from roadproof.spec.bind import default_values
     from roadproof.spec.elaborate import signature
     from roadproof.spec.library import bundled_library
+    from roadproof.traffic.questions import POV_LANE
     from roadproof.witness.ask import Request, ask
 
     specification = bundled_library().select(set_name)
@@ -175,10 +178,13 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
                 raise UsageError(f"--plant {text}: recordings show a main road, so scenarios 1 to 8")
             arguments = signature(specification, f"scenario_{number}")
             claim = f"scenario_{number}({', '.join(arguments)})"
-            request = Request(what="", set_name=set_name, road="main-2")
-            latest = request.horizon - bundled_library().parameters["minDanger"].value
-            lasting = f"{claim} and F[{latest}, {latest}] danger(SV, {arguments[-2]})"
-            outcome = ask(replace(request, what=lasting))
+            values = default_values(bundled_library())
+            request = Request(what="", set_name=set_name, road="main-2", values=values)
+            latest = request.horizon - values["minDanger"]
+            owner = arguments[-2] if number in POV_LANE else "SV"
+            alone = f"(every M in adjacentLanes(L): not atLane({owner}, M))"
+            lasting = f"F[{latest}, {latest}] danger(SV, {arguments[-2]})"
+            outcome = ask(replace(request, what=f"{claim} and {alone} and {lasting}"))
             if outcome.drives:
                 file = from_json(outcome.drives[0], f"the drive of scenario {number}")
                 yield replace(file, scenario=number, formula=claim)
