@@ -8,8 +8,8 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
 
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import with_values
+from roadproof.logic.formula import Formula, transform
+from roadproof.logic.rewrite import with_values, without_names
 from roadproof.monitor.recursive import Reading, Trace
 from roadproof.spec.elaborate import read_claim
 from roadproof.traffic.questions import Settings
@@ -22,6 +22,7 @@ Row = tuple[int, int, int | None, str, int, int, int, str, int]
 class Reference:
     def __init__(self, recording: Recording, settings: Settings) -> None:
         self.recording, self.settings = recording, settings
+        self.pool: dict[Formula, Formula] = {}
         self.formulas: dict[tuple[str, str, int], Formula] = {}
         self.frames = [
             range(int(a), int(b) + 1)
@@ -34,7 +35,9 @@ class Reference:
         if key not in self.formulas:
             spec = self.settings.library.select(set_name, self.settings.options)
             values = {**self.settings.values, "minDanger": self.settings.min_danger[k]}
-            self.formulas[key] = with_values(read_claim(spec, text).formula, values)
+            formula = without_names(with_values(read_claim(spec, text).formula, values))
+            # One object for equal sub-formulas: telling them apart is most of the evaluator's work.
+            self.formulas[key] = transform(formula, lambda x: self.pool.setdefault(x, x))
         return self.formulas[key]
 
     def common(self, *vehicles: int) -> range:

@@ -37,7 +37,7 @@ def rows_of(findings: Findings) -> list[Row]:
 
 def planted_traffic(direction: int) -> tuple[Recording, dict[str, dict[str, int]]]:
     """A short recording of few cars with three drives in it, and who is who in each."""
-    recording = simulate(Traffic(seconds=40, flow=150, lane_width=3.5), seed=4)
+    recording = simulate(Traffic(seconds=40, flow=500, lane_width=3.5), seed=4)
     drives = {
         "cut-in": cut_in(),
         "braking": braking(),
