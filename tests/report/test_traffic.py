@@ -1,0 +1,148 @@
+"""Tables, text and figures of an evaluation: the numbers are those of the totals, the paper's are marked."""
+
+from collections import Counter
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.report import write_traffic
+from roadproof.report.answers import answer_questions
+from roadproof.report.paper import MARK
+from roadproof.report.traffic import comparison_table, decimal, percent, results_table
+from roadproof.report.traffic_figures import draw_figures
+from roadproof.report.write_traffic import write_report
+from roadproof.traffic.questions import COMPARISON, Settings, default_settings
+from roadproof.traffic.results import Totals, begin_totals
+
+
+def settings(**changes: object) -> Settings:
+    return replace(default_settings(), detectors=COMPARISON, **changes)  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def totals() -> Totals:
+    made = begin_totals(settings())
+    made.recordings, made.vehicles, made.samples, made.violating = 2, 300, 9000, 80
+    made.asked, made.undecided, made.differing = 600, 12, 3
+    for k, row in enumerate(made.rows):
+        row.traces, row.matching, row.matching_with_three, row.several = 40, 10 + k, 12 + k, 4
+        row.scenarios = Counter({1: 5 + k, 3: 6, 4: 6, 2: 2})
+        row.together = Counter({(3, 4): 6, (1, 3): 1})
+    made.detected = Counter({"cutIn_ttc": 11, "cutIn_thw": 22, "cutIn_free": 33, "decel_thw": 44})
+    return made
+
+
+def test_results_table_has_ours_and_the_papers(totals: Totals) -> None:
+    table = results_table(totals)
+    assert len(table.rows) == 12
+    ours, paper = table.rows[4], table.rows[5]
+    assert ours[:6] == ("0", "ext", "here", "40", "12", "30.0%")
+    assert dict(zip(table.columns, ours, strict=True))["s1"] == "7"
+    assert paper[:6] == ("0", "ext", "paper*", "32398", "31139", "96.1%")
+    assert dict(zip(table.columns, paper, strict=True))["s2"] == "-"
+    assert any(MARK in note for note in table.notes)
+    assert any("12 of 600 answers undecided, 3 would be" in note for note in table.notes)
+
+
+def test_other_parameters_have_no_row_of_the_paper() -> None:
+    table = results_table(begin_totals(settings(min_danger=(Fraction(1),), sets=("base",))))
+    assert [row[:6] for row in table.rows] == [("1", "base", "here", "0", "0", "-")]
+
+
+def test_comparison_table(totals: Totals) -> None:
+    table = comparison_table(totals)
+    assert table is not None
+    assert table.rows == (
+        ("cut-in", "here", "11", "22", "33", "7"),
+        ("cut-in", "paper*", "144", "7219", "1017", "9364"),
+        ("deceleration", "here", "0", "44", "0", "6"),
+        ("deceleration", "paper*", "22", "112", "26846", "26008"),
+    )
+    assert any("hardBraking = 3" in note for note in table.notes)
+
+
+@pytest.mark.parametrize("changes", [{"detectors": ()}, {"sets": ("base",)}, {"scenarios": (1, 3)}])
+def test_no_comparison_without_its_parts(changes: dict[str, object]) -> None:
+    assert comparison_table(begin_totals(replace(settings(), **changes))) is None  # type: ignore[arg-type]
+
+
+def test_left_out_recordings_are_a_warning(totals: Totals) -> None:
+    failed = {"07": "broken"}
+    table = comparison_table(totals, failed)
+    assert table is not None
+    for notes in (results_table(totals, failed).notes, table.notes):
+        assert "WARNING: 1 recordings could not be used and are left out: 07." in notes
+    assert "WARNING: 1 recordings" in answer_questions(totals, failed)
+    assert "WARNING" not in answer_questions(totals)
+
+
+def test_answers_come_from_the_numbers(totals: Totals) -> None:
+    text = answer_questions(totals)
+    assert "ext 30.0% [96.1%] (12 of 40)" in text
+    assert "28 traces match no scenario of ext" in text
+    assert "4 of 14 matching traces match several scenarios; 3-4 6, 1-3 1." in text
+    assert "minDanger 0, base: 12.5% [24.1%; around 25%] of 80 violating pairs." in text
+    assert "base: 0: 25.0%, 0.6: 32.5%; 7.5 points between them." in text
+    assert "cut-in: TTC 11 [144], THW 22 [7219], none 33 [1017]; scenario 1 of ext 7 [9364]." in text
+    assert "no violation" in text
+
+
+def test_violations_and_unequal_pairs_are_listed(totals: Totals) -> None:
+    totals.broken.append("recording 01, minDanger 0, base: (1, 5) matches but is no disturbance")
+    totals.unequal_3_4.append(("01", 3, 9, "3/5"))
+    text = answer_questions(totals)
+    assert "1 violations: CROSSCHECK-FAILED" in text
+    assert "(1, 5) matches but is no disturbance" in text
+    assert "1 matches lie outside the disturbance traces, which must not be" in text
+    assert "recording 01, vehicles 3 and 9, minDanger 0.6" in text
+
+
+def test_nothing_found_is_said() -> None:
+    text = answer_questions(begin_totals(settings()))
+    assert "these recordings cannot tell" in text
+    assert "Too few traces to tell." in text
+
+
+def test_figures(totals: Totals) -> None:
+    made = dict(draw_figures(totals))
+    assert list(made) == ["recall", "scenarios", "overlaps"]
+    for formats in made.values():
+        assert formats["png"].startswith(b"\x89PNG")
+        assert b"<svg" in formats["svg"]
+    again = dict(draw_figures(totals))
+    assert again == made
+
+
+def test_report_files(totals: Totals, tmp_path: Path) -> None:
+    write_report(tmp_path, totals, {})
+    names = {str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if p.is_file()}
+    tables = {f"{x}.{e}" for x in ("results", "comparison") for e in ("txt", "md", "csv", "tex")}
+    figures = {f"figures/{x}.{e}" for x in ("recall", "scenarios", "overlaps") for e in ("png", "svg")}
+    assert names == tables | figures | {"answers.md"}
+    totals.settings = replace(totals.settings, detectors=())
+    write_report(tmp_path, totals, {}, pictures=False)
+    assert not (tmp_path / "comparison.txt").exists()
+
+
+def test_unwritable(totals: Totals, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot be written"):
+        write_report(tmp_path / "file", totals, {})
+
+
+def test_half_a_file_is_never_seen(totals: Totals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(source: str, target: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(write_traffic.write_whole.__globals__["os"], "replace", fails)
+    with pytest.raises(KeyboardInterrupt):
+        write_report(tmp_path, totals, {})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_numbers_as_text() -> None:
+    assert [decimal(Fraction(x)) for x in ("0", "3/5", "1/3")] == ["0", "0.6", "1/3"]
+    assert percent(0, 0) == "-"
