@@ -21,7 +21,7 @@ PAGES = [
     ROOT / "README.md",
     ROOT / "docs/language.md",
 ]
-SLOWEST = 10.0  # seconds for one command on a busy machine; test_main measures the real bound
+SLOWEST = 60.0  # seconds: no command hangs, however busy the machine; test_main measures the real bound
 
 
 @dataclass(frozen=True)
