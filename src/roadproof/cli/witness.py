@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,13 +59,12 @@ def run(args: argparse.Namespace) -> int:
     if args.out is not None:
         make_folder(args.out)
     outcomes: list[Outcome] = []
-    with _answers(requests, args.jobs) as answers:
+    tasks = [Task(r, k + 1, args.out, not args.no_pictures) for k, r in enumerate(requests)]
+    with _answers(tasks, args.jobs) as answers:
         for outcome in answers:
             outcomes.append(outcome)
             if args.json != "-":
                 print(_line(outcome, args.verbose), flush=True)
-            if args.out is not None:
-                _write(outcome, args.out, not args.no_pictures, library)
     if args.json:
         verdicts = [outcome.as_json() for outcome in outcomes]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
@@ -94,19 +93,27 @@ def _requests(args: argparse.Namespace, library: "Library") -> "Iterator[Request
             yield replace(request, what=what, set_name=set_name, count=args.count, means=means)
 
 
-@contextmanager
-def _answers(requests: "Sequence[Request]", jobs: int | None) -> "Iterator[Iterator[Outcome]]":
-    """The outcomes in the order of the requests; several processes where there are several requests."""
-    from roadproof.witness.ask import ask
+@dataclass(frozen=True)
+class Task:
+    """One request of a run, and where its drives go."""
 
-    workers = min(jobs or os.cpu_count() or 1, len(requests))
+    request: "Request"
+    number: int
+    folder: Path | None
+    pictures: bool
+
+
+@contextmanager
+def _answers(tasks: Sequence[Task], jobs: int | None) -> "Iterator[Iterator[Outcome]]":
+    """The outcomes in the order of the tasks; several processes where there are several tasks."""
+    workers = min(jobs or os.cpu_count() or 1, len(tasks))
     if workers <= 1:
-        yield map(ask, requests)
+        yield map(fulfil, tasks)
         return
     _warm_up()
     pool = ProcessPoolExecutor(workers)
     try:
-        yield pool.map(ask, requests)
+        yield pool.map(fulfil, tasks)
     except BaseException:
         for process in list((pool._processes or {}).values()):
             process.kill()
@@ -156,22 +163,25 @@ def make_folder(folder: Path) -> None:
         raise InputError(f"cannot write into {folder}: choose another --out")
 
 
-def _write(outcome: "Outcome", folder: Path, pictures: bool, library: "Library") -> None:
+def fulfil(task: Task) -> "Outcome":
+    """Answer one request and write its drives: drive file, CSV, picture."""
     from roadproof.export.drive_csv import csv_of
     from roadproof.report.drive import draw_drive
+    from roadproof.spec.library import load_library
+    from roadproof.witness.ask import ask
 
+    outcome = ask(task.request)
+    if task.folder is None:
+        return outcome
+    name = f"formula-{task.number:02d}" if outcome.scenario is None else f"scenario-{outcome.scenario:02d}"
     for k, data in enumerate(outcome.drives):
-        stem = (
-            f"scenario-{outcome.scenario:02d}-{outcome.set_name}"
-            if outcome.scenario is not None
-            else (f"formula-{outcome.set_name}")
-        )
-        stem += f"-{k + 1}" if len(outcome.drives) > 1 else ""
-        write_json(data, str(folder / f"{stem}.json"))
-        write_text(folder / f"{stem}.csv", csv_of(data))
-        if pictures:
-            for kind, content in draw_drive(data, library).items():
-                _write_bytes(folder / f"{stem}.{kind}", content)
+        stem = f"{name}-{outcome.set_name}" + (f"-{k + 1}" if len(outcome.drives) > 1 else "")
+        write_json(data, str(task.folder / f"{stem}.json"))
+        write_text(task.folder / f"{stem}.csv", csv_of(data))
+        if task.pictures:
+            for kind, content in draw_drive(data, load_library(task.request.specs)).items():
+                _write_bytes(task.folder / f"{stem}.{kind}", content)
+    return outcome
 
 
 def _write_bytes(path: Path, content: bytes) -> None:

@@ -49,7 +49,7 @@ class Manners:
     inside: Fraction = Fraction(1, 100)
     off_centre: Fraction = Fraction(3, 10)
     between: bool = True
-    apart: tuple[Fraction, Fraction] = (Fraction(2), Fraction(7, 10))
+    apart: tuple[Fraction, Fraction] = (Fraction(8), Fraction(7, 10))
 
     def plain(self) -> "Manners":
         """Whatever the limits of the vehicles allow."""

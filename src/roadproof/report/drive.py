@@ -19,7 +19,7 @@ from roadproof.world.motion import State, state_at
 COLOURS = ("#1f5fbf", "#c8641e", "#4b8b3b", "#8a4fa3")
 SNAPSHOTS = 5
 MOST_STRIPS = 24
-GRAIN = Fraction(1, 25)
+GRAIN = Fraction(1, 10)
 
 
 def draw_drive(data: Mapping[str, Any], library: Library) -> dict[str, bytes]:

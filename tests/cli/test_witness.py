@@ -1,0 +1,111 @@
+"""roadproof witness and compare from the command line."""
+
+import json
+
+import pytest
+
+from roadproof.cli.main import main
+from roadproof.evidence.witness import SCHEMA, load_drive
+
+
+def run(capsys, *arguments):
+    code = main(list(arguments))
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_a_drive_is_written_and_accepted(tmp_path, capsys):
+    code, out, _ = run(capsys, "witness", "4", "--out", str(tmp_path))
+    assert code == 0
+    assert "WITNESSED" in out
+    assert {p.suffix for p in tmp_path.iterdir()} == {".json", ".csv", ".png", ".svg"}
+    file = load_drive(tmp_path / "scenario-04-base.json")
+    assert file.scenario == 4
+    rows = (tmp_path / "scenario-04-base.csv").read_text("utf-8").splitlines()
+    assert rows[0] == "time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"
+    assert len(rows) == 1 + 2 * 151
+    assert (tmp_path / "scenario-04-base.png").read_bytes().startswith(b"\x89PNG")
+    assert b"<svg" in (tmp_path / "scenario-04-base.svg").read_bytes()
+    assert run(capsys, "check", str(tmp_path))[0] == 0
+
+
+def test_json_has_verdicts_and_drives(tmp_path, capsys):
+    target = tmp_path / "answer.json"
+    sets = ("--set", "base", "--set", "ext")
+    code, _, _ = run(capsys, "witness", "3", *sets, "--jobs", "1", "--json", str(target))
+    assert code == 0
+    data = json.loads(target.read_text("utf-8"))
+    assert data["schema"] == "roadproof/witness/1"
+    assert [(v["scenario"], v["set"], v["verdict"]) for v in data["verdicts"]] == [
+        (3, "base", "WITNESSED"),
+        (3, "ext", "WITNESSED"),
+    ]
+    assert all(v["drives"][0]["schema"] == SCHEMA for v in data["verdicts"])
+    assert all(v["seconds"]["all"] > 0 and v["sizes"]["facts"] > 0 for v in data["verdicts"])
+
+
+def test_impossible_names_its_core_and_is_unexpected(capsys):
+    code, out, _ = run(capsys, "witness", "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)")
+    assert code == 10
+    assert "IMPOSSIBLE" in out
+    assert "minimal core" in out
+    assert "not sameLane(POV, SV, L)" in out
+
+
+def test_none_within_prints_its_limits(capsys):
+    code, out, _ = run(capsys, "witness", "F v_lon(SV) > 41 m/s", "--road", "main-3")
+    assert code == 10
+    assert "NONE-WITHIN" in out
+    assert "road main-3" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (("witness",), 2, "name scenarios or formulas"),
+        (("witness", "4", "--all"), 2, "one of the two"),
+        (("witness", "4", "--solver", "magic"), 2, "there is no such solver"),
+        (("witness", "4", "--solver", "gurobi"), 4, "gurobipy"),
+        (("witness", "4", "--dt", "0"), 2, "greater than 0"),
+        (("witness", "4", "--dt", "1e9"), 2, "greater than 0"),
+        (("witness", "4", "--horizon", "7"), 2, "no multiple of dt"),
+        (("witness", "4", "--param", "minDanger=0.5"), 2, "--dt 1/10"),
+        (("witness", "4", "--count", "0"), 2, "--count"),
+        (("witness", "4", "--timeout", "-1"), 2, "--timeout"),
+        (("witness", "4", "--lane", "main-7"), 2, "has the lanes"),
+        (("witness", "4", "--road", "nowhere"), 3, "there is no road"),
+        (("witness", "4", "--vehicle", "SV=tank"), 3, "there is no vehicle"),
+        (("witness", "4", "--out", "/proc/none"), 3, "cannot make the folder"),
+        (("witness", "99"), 3, "scenario_99"),
+        (("witness", "scenario_4(SV,POV"), 3, "ends too early"),
+        (("witness", "4", "--set", "extB"), 3, "extB"),
+        (("compare", "3", "4", "--set", "a", "--set", "b", "--set", "c"), 2, "at most two"),
+    ],
+)
+def test_mistakes_are_explained(capsys, arguments, code, message):
+    found, _, err = run(capsys, *arguments)
+    assert found == code
+    assert message in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "relation"),
+    [
+        (("scenario_3(SV,POV,L)", "scenario_4(POV,SV,L)"), "equivalent"),
+        (("scenario_3(SV,POV,L)", "scenario_4(POV,SV,L)", "--set", "extA"), "incomparable"),
+        (("4", "4", "--set", "base", "--set", "ext"), "stronger"),
+        (("dangerArises(SV,POV)", "scenario_3(SV,POV,L)"), "weaker"),
+    ],
+)
+def test_comparisons_come_with_evidence(capsys, tmp_path, arguments, relation):
+    target, folder = tmp_path / "answer.json", tmp_path / "out"
+    code, out, _ = run(capsys, "compare", *arguments, "--json", str(target), "--out", str(folder))
+    assert code == 0
+    assert relation in out
+    data = json.loads(target.read_text("utf-8"))
+    assert data["relation"] == relation
+    for direction in (data["forward"], data["backward"]):
+        assert (direction["certificate"] is None) != (direction["drive"] is None)
+    assert len(list(folder.iterdir())) == 2
+    assert run(capsys, "check", str(folder))[0] == 0
