@@ -1,0 +1,256 @@
+"""Faults planted in the finder never lead to a wrong answer; faults in refuting are caught."""
+
+import pytest
+
+from prove.claims import INVALID, PROVED, VALID, is_false_on, settle, speaks_of_all_lanes
+from roadproof.evidence import atoms
+from roadproof.logic import formula as f
+from roadproof.prove import countermodel, grounding, prover
+from roadproof.prove.grounding import Grounding, Window
+from roadproof.prove.search import Search
+from roadproof.prove.states import StateChecker
+from roadproof.verdict import Verdict
+
+SECONDS = 0.4
+true_smt, true_holds, true_shrink = Window.smt, Window.holds, Search._shrink
+true_unfold, true_atom, true_name = Grounding._unfold, Grounding.atom, Grounding._name_time
+true_spread, true_holds_part, true_judge = countermodel._spread, countermodel._holds, countermodel.judge
+
+
+def phi_at_the_end(monkeypatch):
+    """φ U ψ asks for φ also when ψ comes."""
+
+    def smt(self, when):
+        return true_smt(Window(self.low, self.high), when)
+
+    def holds(self, value, values):
+        return true_holds(Window(self.low, self.high), value, values)
+
+    monkeypatch.setattr(Window, "smt", smt)
+    monkeypatch.setattr(Window, "holds", holds)
+
+
+def open_windows(monkeypatch):
+    monkeypatch.setattr(Window, "smt", lambda self, when: [f"(<= {self.low.smt()} {when.smt()})"])
+    monkeypatch.setattr(Window, "holds", lambda self, value, values: value >= self.low.value(values))
+
+
+def swapped_operators(monkeypatch):
+    def unfold(self, formula, positive, moment, switch):
+        match formula:
+            case f.Eventually(interval, body):
+                formula = f.Always(interval, body)
+            case f.Always(interval, body):
+                formula = f.Eventually(interval, body)
+        true_unfold(self, formula, positive, moment, switch)
+
+    monkeypatch.setattr(Grounding, "_unfold", unfold)
+
+
+def shared_names(monkeypatch):
+    """All existentials fall on one moment."""
+
+    def name_time(self, site, earliest):
+        made = true_name(self, site, earliest)
+        first = next(iter(self.names.values()))
+        self.session.tell(f"(assert (= {made.smt()} {first}))")
+        return made
+
+    monkeypatch.setattr(Grounding, "_name_time", name_time)
+
+
+def no_guard(monkeypatch):
+    """A universal holds outside its window, too."""
+    monkeypatch.setattr(Window, "holds", lambda self, value, values: True)
+
+    def instantiate(self, universal, when):
+        universal.done.append(when)
+        self._moment(when)
+        self._add_clause((universal.site, str(when)), f"(=> {universal.switch} {universal.body(when)})")
+
+    monkeypatch.setattr(Grounding, "instantiate", instantiate)
+
+
+def frozen_atoms(monkeypatch):
+    monkeypatch.setattr(Grounding, "atom", lambda self, name, moment: true_atom(self, name, grounding.ZERO))
+
+
+def wishes_as_clauses(monkeypatch):
+    """A model has few instants, or there is none."""
+
+    def check(self, timeout):
+        ground = self.grounding
+        return ground.session.check([*ground.switches, *ground.wishes], timeout=timeout)
+
+    def shrink(self):
+        ground = self.grounding
+        wanted = {switch for switch in ground.session.core() if switch in ground.switches}
+        ground.switches = {switch: ground.switches[switch] for switch in ground.switches if switch in wanted}
+        ground.session.tell("(assert false)")
+        core = ground.session.core
+        ground.session.core = lambda: list(ground.switches)
+        try:
+            return true_shrink(self)
+        finally:
+            ground.session.core = core
+
+    monkeypatch.setattr(prover, "TURNS", ((True, 5.0),))
+    monkeypatch.setattr(Search, "_check", check)
+    monkeypatch.setattr(Search, "_shrink", shrink)
+
+
+def every_state_is_impossible(monkeypatch):
+    """Whatever a model says of one instant becomes a lemma against it."""
+    monkeypatch.setattr(
+        StateChecker,
+        "refute",
+        lambda self, wanted, deadline: tuple((name, not value) for name, value in wanted.items()) or None,
+    )
+    monkeypatch.setattr(StateChecker, "signals", lambda self, wanted: {})
+
+
+def no_membership(monkeypatch):
+    monkeypatch.setattr(Grounding, "_fact", lambda self, domain, element: "true")
+
+
+FINDER_FAULTS = [
+    phi_at_the_end,
+    open_windows,
+    swapped_operators,
+    shared_names,
+    no_guard,
+    frozen_atoms,
+    wishes_as_clauses,
+    every_state_is_impossible,
+    no_membership,
+]
+TEMPTING = [
+    "F p -> p",
+    "F p -> G p",
+    "F p and F q -> F (p and q)",
+    "G[0,1] p -> G[0,2] p",
+    "G[1,2] p -> p",
+    "p U q -> F (p and q)",
+    "p U q and p U r -> p U (q and r)",
+    "s(SV) >= s(POV) -> s(SV) > s(POV)",
+    "(every M in adjacentLanes(L): atLane(SV,M)) -> atLane(SV,L)",
+]
+
+
+def verdict_or_crash(claim: str) -> Verdict | str:
+    try:
+        return settle(claim, timeout=SECONDS).verdict
+    except (AssertionError, KeyError) as crash:
+        return type(crash).__name__
+
+
+@pytest.mark.parametrize("fault", FINDER_FAULTS, ids=lambda fault: fault.__name__)
+def test_a_fault_in_the_finder_proves_nothing_false(fault, monkeypatch):
+    assert set(TEMPTING) <= set(INVALID)
+    fault(monkeypatch)
+    verdicts = [verdict_or_crash(claim) for claim in TEMPTING]
+    assert not PROVED & set(verdicts)
+    # The fault is at work: without it, all of these are refuted.
+    assert set(verdicts) != {Verdict.REFUTED}
+
+
+# --- refuting ------------------------------------------------------------------------------------
+
+
+def wrong_side_held(monkeypatch):
+    """What lies between instants is the state of the other side than is said."""
+    turned = {"before": "after", "after": "before"}
+    monkeypatch.setattr(
+        countermodel, "_spread", lambda times, values, held: true_spread(times, values, turned[held])
+    )
+
+
+def not_judged(monkeypatch):
+    """A model over points in time is taken for a trace unseen."""
+    monkeypatch.setattr(countermodel, "judge", _always_false)
+
+
+class _Denied:
+    holds = False
+
+    def __init__(self, judgement):
+        self.truth = judgement.truth
+
+
+def _always_false(formula, drive=None, given=None):
+    judgement = true_judge(formula, drive, given or {})
+    return judgement if drive is not None or isinstance(formula, f.Compare | f.Named) else _Denied(judgement)
+
+
+def comparisons_turned(monkeypatch):
+    """The truth of comparisons is not that of the numbers handed out."""
+
+    def holds(part, found):
+        known = true_holds_part(part, found)
+        return not known if isinstance(part, f.Compare) else known
+
+    monkeypatch.setattr(countermodel, "_holds", holds)
+
+
+def road_unseen(monkeypatch):
+    monkeypatch.setattr(countermodel, "is_on_some_road", lambda truths, lanes: True)
+
+
+def capturing_rename(monkeypatch):
+    """Renames also what a quantifier inside calls by the old name."""
+
+    def rename(formula, old, new):
+        def visit(current):
+            match current:
+                case f.Occupies(vehicle, lanelet) if lanelet == old:
+                    return f.Occupies(vehicle, new)
+                case f.Some(variable, domain, body) | f.Every(variable, domain, body) if domain.of == old:
+                    return type(current)(variable, f.Domain(domain.kind, new), body)
+            return current
+
+        return f.transform(formula, visit)
+
+    for module in (atoms, grounding, countermodel):
+        monkeypatch.setattr(module, "rename", rename)
+
+
+REFUTING_FAULTS = [
+    wrong_side_held,
+    not_judged,
+    comparisons_turned,
+    road_unseen,
+    capturing_rename,
+]
+MORE = [
+    "not (not p and G[1,1] p and not (not p U[0,1] p))",
+    "p U q -> p or F (p and q)",
+    "atLane(SV,L) -> onMainRoad(SV) or inMergeZone(SV) or inDepartZone(SV)",
+    "(some l in lanelets(L): occ(SV,l) and occ(POV,l)) -> atLane(SV,L)",
+    "F (v_lon(SV) > 20 m/s) -> G (v_lon(SV) > 20 m/s)",
+    "F[0,minSafe] p -> p",
+]
+
+
+def wrong_refutation() -> str | None:
+    """A claim that is called false though it is true, or on a trace on which it is true."""
+    for claim in VALID + MORE + INVALID:
+        try:
+            result = settle(claim, timeout=SECONDS)
+            if result.verdict is not Verdict.REFUTED:
+                continue
+            true = claim in VALID or claim in MORE[2:4]
+            if true or (not speaks_of_all_lanes(claim) and not is_false_on(result.countermodel, claim)):
+                return claim
+        except AssertionError:
+            return claim
+    return None
+
+
+@pytest.mark.parametrize("fault", REFUTING_FAULTS, ids=lambda fault: fault.__name__)
+def test_a_fault_in_refuting_is_caught(fault, monkeypatch):
+    fault(monkeypatch)
+    assert wrong_refutation() is not None
+
+
+def test_without_a_fault_nothing_is_caught():
+    assert wrong_refutation() is None
