@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from roadproof.traffic.questions import Settings
 
 SUMMARY = "find disturbances in recorded traffic and match them with the scenarios"
+
+_HALF_WRITTEN = re.compile(r"\..+\.(json|csv|txt|md|tex|png|svg)\.[a-z0-9_]{8}")
 
 _EXAMPLES = """\
 PATH is a folder of highD files (XX_recordingMeta.csv, XX_tracksMeta.csv, XX_tracks.csv), or of
@@ -110,10 +113,19 @@ def run(args: argparse.Namespace) -> int:
         if compared is not None:
             print(as_text(compared))
         print(answer_questions(totals, failed).partition("## Facts")[2].partition("\n\n")[2], end="")
+    _sweep(args.out)
     for name, reason in failed.items():
         tell(f"left out: recording {name}: {reason}")
     tell(f"written to {args.out}: " + ", ".join(sorted(x.name for x in args.out.iterdir())))
     return _verdict(totals.broken, denied)
+
+
+def _sweep(out: Path) -> None:
+    """Remove what a killed run may have left: hidden files that were never put in their place."""
+    for folder in (out, out / "recordings", out / "figures"):
+        for path in folder.glob(".*"):
+            if _HALF_WRITTEN.fullmatch(path.name):
+                path.unlink(missing_ok=True)
 
 
 def _verdict(broken: list[str], denied: list[str]) -> int:

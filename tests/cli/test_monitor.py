@@ -1,0 +1,242 @@
+"""roadproof monitor: drives, samples and vehicles of recordings; verdicts, parts, exit codes, refusals."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from roadproof.cli.main import main
+from roadproof.export.drive_csv import csv_of
+from roadproof.traffic.evaluate import evaluate_recording
+from roadproof.traffic.highd import read_highd
+from roadproof.traffic.questions import ask, default_settings
+from roadproof.traffic.simulate import Traffic
+from roadproof.traffic.synthetic import simulate
+from roadproof.traffic.write_highd import write_highd
+
+ROAD = {
+    "name": "main-2",
+    "lanelets": [
+        {"id": f"m{k}", "lane": f"main-{k}", "zone": "main", "attribute": "main", "s": [None, None], "d": d}
+        for k, d in ((1, ["0", "7/2"]), (2, ["7/2", "7"]))
+    ],
+    "adjacent": [["main-1", "main-2"]],
+}
+
+
+def vehicle(s: str, d: str, v: str, *pieces: tuple[str | None, str]) -> dict[str, Any]:
+    made = [{"duration": t, "a_lon": a, "a_lat": "0"} for t, a in pieces]
+    box = {"length": "9/2", "width": "9/5", "s": s, "d": d, "v_lon": v, "v_lat": "0"}
+    return {**box, "pieces": made}
+
+
+@pytest.fixture
+def drive(tmp_path: Path) -> Path:
+    """POV brakes from 28 to 20 m/s ahead of SV at 29 m/s, in one lane: scenario 4."""
+    data = {
+        "schema": "roadproof/drive/1",
+        "scenario": 4,
+        "set": "base",
+        "formula": "scenario_4(SV, POV, L)",
+        "horizon": "4",
+        "lane": "main-1",
+        "parameters": {"minDanger": "3/5"},
+        "road": ROAD,
+        "vehicles": {
+            "SV": vehicle("5", "13/5", "29", (None, "0")),
+            "POV": vehicle("80", "14/5", "28", ("2", "-4"), (None, "0")),
+        },
+    }
+    path = tmp_path / "drive.json"
+    path.write_text(json.dumps(data))
+    return path
+
+
+def asked(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, dict[str, Any]]:
+    code = main(["monitor", *arguments, "--json", "-"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_drive_is_judged_in_dense_time(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, told = asked(["4", str(drive)], capsys)
+    assert (code, told["verdict"], told["view"], told["lane L"]) == (0, "true", "dense", "main-1")
+    assert told["schema"] == "roadproof/monitor/1"
+    assert told["robustness"] == [pytest.approx(0.2), pytest.approx(0.2)]  # POV is 0.2 m left of SV
+    parts = {part["formula"]: part for part in told["parts"]}
+    assert parts["laneKeep(SV, main-1)"]["true"] == [[0.0, None]]
+    [[begin, end]] = parts["rssViolation(SV, POV)"]["true"]
+    assert 0.6 < begin < 4
+    assert parts["instSafe(SV, POV)"]["true"][0][1] == pytest.approx(begin)
+    assert end is None or end > begin
+
+
+@pytest.mark.parametrize(
+    ("formula", "code", "verdict"),
+    [
+        ("v_lon(POV) >= 20 m/s", 0, "true"),
+        ("G v_lon(SV) > 28 m/s", 0, "true"),
+        ("scenario_3(SV, POV, L)", 10, "false"),
+        ("F v_lon(POV) < 20 m/s", 10, "false"),
+    ],
+)
+def test_verdicts_and_exit_codes_on_a_drive(
+    formula: str, code: int, verdict: str, drive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found, told = asked([formula, str(drive)], capsys)
+    assert (found, told["verdict"]) == (code, verdict)
+
+
+@pytest.mark.parametrize(
+    ("formula", "code", "verdict", "clipped"),
+    [
+        ("scenario_4(SV, POV, L)", 0, "true", "true"),
+        ("G v_lon(SV) > 28 m/s", 20, "undecided", "true"),
+        ("F v_lon(SV) > 30 m/s", 20, "undecided", "false"),
+        ("F[0,2] v_lon(SV) > 30 m/s", 10, "false", "false"),
+        ("initSafe(POV, SV)", 0, "true", "true"),
+    ],
+)
+def test_samples_end(
+    formula: str, code: int, verdict: str, clipped: str, drive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same trace by --view recorded and from CSV: three answers, and clip beside them."""
+    samples = drive.with_suffix(".csv")
+    samples.write_text(csv_of(json.loads(drive.read_text())))
+    for trace in ([str(drive), "--view", "recorded"], [str(samples)]):
+        found, told = asked([formula, *trace], capsys)
+        assert (found, told["verdict"], told["underTheOtherEnd"]) == (code, verdict, clipped)
+        _, told = asked([formula, *trace, "--end", "clip"], capsys)
+        assert (told["verdict"], told["underTheOtherEnd"]) == (clipped, verdict)
+
+
+def test_parts_of_samples(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, told = asked(["initSafe(SV, POV)", str(drive), "--view", "recorded"], capsys)
+    parts = {part["formula"]: part for part in told["parts"]}
+    last = parts["instSafe(SV, POV)"]["true"][0][1]
+    assert parts["initSafe(SV, POV)"]["true"] == [[0.0, pytest.approx(last - 0.6)]]
+    _, told = asked(["G[0,1] v_lon(SV) > 28 m/s", str(drive), "--view", "recorded"], capsys)
+    assert told["parts"][0]["true"] == [[0.0, 3.0]]
+    assert told["parts"][0]["undecided"] == [[3.04, 4.0]]
+
+
+def test_pictures(drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, start in (("a.png", b"\x89PNG"), ("b.svg", b"<?xml")):
+        assert main(["monitor", "4", str(drive), "--picture", str(tmp_path / name)]) == 0
+        assert (tmp_path / name).read_bytes().startswith(start)
+    assert main(["monitor", "4", str(drive), "--picture", str(tmp_path / "c.gif")]) == 2
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("recordings")
+    write_highd(simulate(Traffic(seconds=30, lane_width=3.5), seed=6), path)
+    return path
+
+
+def test_a_pair_is_answered_as_in_an_evaluation(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every match of base and ext, one by one; and the other scenarios are not true there."""
+    settings = default_settings()
+    found = evaluate_recording(read_highd(folder, "01"), ask(settings, 25))
+    matches = [m for m in found.matches if m.set_name in ("base", "ext") and m.min_danger == 0][:10]
+    assert len(matches) > 3
+    for match in matches:
+        who = ",".join(str(x) for x in (match.sv, match.pov, match.pov2) if x is not None)
+        trace = [f"{folder}/01_tracks.csv:{who}", "--frames", f"{match.start_frame}-{match.end_frame}"]
+        options = ["--set", match.set_name, "--param", "minDanger=0"]
+        code, told = asked([str(match.scenario), *trace, *options], capsys)
+        assert (code, told["verdict"], told["lane L"]) == (0, "true", match.lane)
+        if match.pov2 is None and match.scenario in (1, 4):
+            other = 5 - match.scenario  # 1 and 4 exclude each other with one L and one start (SPEC §6)
+            code, told = asked([str(other), *trace, *options], capsys)
+            assert code != 0
+
+
+def test_lanes_by_name_and_by_vehicle(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = list(csv.DictReader((folder / "01_tracks.csv").open()))
+    ids = sorted({int(row["id"]) for row in rows if row["laneId"] in ("6", "7", "8")})
+    first = next(row for row in rows if row["id"] == str(ids[0]))
+    trace = f"{folder}/01_tracks.csv:{ids[0]}"
+    code, told = asked(["atLane(SV, L)", trace, "--lane", first["laneId"]], capsys)
+    assert (code, told["verdict"], told["lane L"]) == (0, "true", first["laneId"])
+    code, told = asked(["atLane(SV, L)", trace, "--lane", "L=SV"], capsys)
+    assert told["lane L"] == first["laneId"]
+    other = next(x for x in ("6", "8") if x != first["laneId"])
+    assert main(["monitor", "atLane(SV, L)", trace, "--lane", other]) == 10
+
+
+HEADER = "time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        ([], "row 1: the header must be time,vehicle"),
+        (["time,s"], "row 1: the header must be"),
+        ([HEADER], "at least two samples"),
+        ([HEADER, "0,SV,1,2"], "row 2: 4 cells"),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2", "0.1,SV,nan,2,3,0,0,0,4,2"], "row 3, column s='nan'"),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2", "0.1,SV,1,2,3,0,0,0,5,2"], "length of SV changes"),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2", "x,SV,1,2,3,0,0,0,4,2"], "time='x'"),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2", "0,SV,1,2,3,0,0,0,4,2"], "at least two samples"),
+        (
+            [HEADER, *(f"{t},SV,1,2,3,0,0,0,4,2" for t in ("0", "0.1", "0.3"))],
+            "time=0.3 breaks the step of 0.1 s",
+        ),
+        (
+            [HEADER, "0,SV,1,2,3,0,0,0,4,2", "0,POV,1,2,3,0,0,0,4,2", "0.1,SV,1,2,3,0,0,0,4,2"],
+            "every vehicle needs exactly one row",
+        ),
+        ([HEADER, *(f"{t},SV,1,2,3,0,0,0,0,2" for t in ("0", "0.1"))], "size must be greater than zero"),
+    ],
+)
+def test_bad_samples(lines: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text("".join(f"{line}\n" for line in lines))
+    assert main(["monitor", "v_lon(SV) > 0", str(path)]) == 3
+    message = capsys.readouterr().err
+    assert said in message
+    assert "Traceback" not in message
+
+
+def test_order_of_rows_does_not_matter(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [f"{t},SV,{10 * t},2,{v},0,0,0,4,2" for t, v in ((0, 1), (1, 5), (2, 9))]
+    path = tmp_path / "x.csv"
+    path.write_text("\n".join([HEADER, rows[2], rows[0], rows[1]]) + "\n")
+    assert main(["monitor", "v_lon(SV) < 2 m/s", str(path)]) == 3  # times must ascend
+    assert "breaks the step" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["4", "trace.txt"], 3, "a trace is a drive"),
+        (["4", "nowhere.json"], 3, "cannot read nowhere.json"),
+        (["4", "nowhere.csv"], 3, "nowhere.csv: cannot be read"),
+        (["4", "{folder}/01_tracks.csv:1,2,3,4"], 3, "a trace is a drive"),
+        (["4", "{folder}/01_tracks.csv:1,99999"], 3, "has no vehicle 99999"),
+        (["4", "{folder}/01_tracks.csv:1,1"], 3, "each vehicle may be named once"),
+        (["2", "{drive}"], 3, "speaks of POV1, POV2"),
+        (["25", "{drive}"], 3, "scenario_25"),
+        (["4", "{drive}", "--dt", "0"], 2, "--dt 0"),
+        (["4", "{drive}", "--lane", "main-9"], 3, "lane L=main-9"),
+        (["4", "{folder}/01_tracks.csv:1,2", "--frames", "5"], 2, "--frames 5"),
+        (["4", "{folder}/01_tracks.csv:1,2", "--view", "dense"], 2, "only a drive file"),
+        (["F[0,1/3] v_lon(SV) > 0", "{drive}", "--view", "recorded"], 3, "no multiple of the time step"),
+        (["v_lon(SV) >", "{drive}"], 3, "claim, line 1"),
+    ],
+)
+def test_refusals(
+    arguments: list[str],
+    code: int,
+    said: str,
+    folder: Path,
+    drive: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    filled = [x.replace("{folder}", str(folder)).replace("{drive}", str(drive)) for x in arguments]
+    assert main(["monitor", *filled]) == code
+    message = capsys.readouterr().err
+    assert said in message
+    assert "Traceback" not in message
