@@ -30,7 +30,8 @@ class Request:
     """A question in the words of the command line; ``what`` is a scenario's number or a formula.
 
     ``road`` None takes the reference road with the zones that the formula speaks of; ``vehicles``
-    gives models by vehicle, "" for all others. ``horizon``, ``dt``: seconds; ``reach``: metres.
+    gives models by vehicle, "" for all others. ``natural``: whether natural drives are tried first.
+     ``horizon``, ``dt``: seconds; ``reach``: metres.
     """
 
     what: str
@@ -45,6 +46,7 @@ class Request:
     dt: Fraction = Fraction(3, 5)
     reach: Fraction = Fraction(80)
     collisions: bool = False
+    natural: bool = True
     count: int = 1
     means: Means = field(default_factory=Means)
 
@@ -143,6 +145,7 @@ def pose(specification: Specification, text: str, request: Request) -> Question:
     vehicles = {name: load_vehicle(request.vehicles.get(name, usual)) for name in query.vehicles}
     lanes = assignments(query, road, request.lanes)
     manners = Manners(reach=request.reach, collisions=request.collisions)
+    manners = manners if request.natural else manners.plain()
     values = dict(request.values)
     grid = make_grid(request.horizon, request.dt)
     return Question(query, road, vehicles, values, lanes, grid, manners)

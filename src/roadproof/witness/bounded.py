@@ -1,0 +1,46 @@
+"""Claims about drives up to a horizon: no counterexample within printed limits, or a judged one."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from roadproof.logic import syntax
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.show import text
+from roadproof.spec.library import load_library
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Request, as_formula, ask
+
+
+@dataclass(frozen=True)
+class BoundedResult:
+    """PROVED-BOUNDED with its limits, REFUTED with a drive file, or UNKNOWN with a reason.
+
+    PROVED where the negation is shown to be impossible for all time; ``certificate`` says how.
+    """
+
+    claim: str
+    verdict: Verdict
+    reason: str
+    drive: dict[str, Any] | None
+    certificate: Any | None
+
+
+def check_bounded(request: Request) -> BoundedResult:
+    """Check the claim ``request.what`` with dynamics, on the request's road, vehicles, grid and engine.
+
+    A counterexample is searched on the samples, settled by the horizon, with accelerations constant
+    between samples (grid view); one that is found has been judged in dense time. Raises as ``ask``.
+    """
+    specification = load_library(request.specs).select(request.set_name, request.options)
+    claim = as_formula(specification, request.what)[1]
+    parsed = parse_claim(claim)
+    negated = text(syntax.Claim(parsed.given, syntax.Prefix("not", parsed.body)))
+    outcome = ask(replace(request, what=negated, natural=False, count=1))
+    if outcome.drives:
+        return BoundedResult(claim, Verdict.REFUTED, "", outcome.drives[0], None)
+    if outcome.impossibility is not None:
+        certificate = outcome.impossibility.certificate
+        return BoundedResult(claim, Verdict.PROVED, "", None, certificate)
+    if outcome.verdict is Verdict.NONE_WITHIN:
+        return BoundedResult(claim, Verdict.PROVED_BOUNDED, outcome.reason, None, None)
+    return BoundedResult(claim, Verdict.UNKNOWN, outcome.reason, None, None)
