@@ -1,10 +1,12 @@
 """Answers of an evaluation asked once more, one by one, of the plain recursive evaluator."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
+from roadproof.logic.formula import Formula, transform
 from roadproof.monitor.batch import Batch
+from roadproof.monitor.compiled import Monitor
 from roadproof.monitor.recursive import ReadAs, Reading, Trace
 from roadproof.traffic.evaluate import SIGNALS, Findings, Match
 from roadproof.traffic.questions import PAIR, TRIPLE, Questions
@@ -19,6 +21,7 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
     many; of triples only the matches are asked. What is taken over from the evaluation is where
     traces start and end.
     """
+    pairs, triples = _shared(questions.pairs), _shared(questions.triples)
     matched = set(findings.matches)
     place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
     names = [lane.name for lane in recording.lanes]
@@ -31,7 +34,7 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
             {name: names.index(lane) if lane else -1 for name, lane in lanes.items()},
             (t.start_frame, t.end_frame),
         )
-        for name, formula in questions.pairs[t.min_danger].formulas.items():
+        for name, formula in pairs[t.min_danger].items():
             asked = questions.asked[name]
             sv, pov = (t.first, t.second) if asked.sv == "first" else (t.second, t.first)
             lane = lanes[asked.lane]
@@ -41,18 +44,33 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
             if reading.holds(formula, 0, _view(questions)) != (match in matched):
                 yield _line(recording, match, match in matched)
     for match in findings.matches:
-        if match.pov2 is not None and not _holds_for_three(recording, questions, match, place, names):
-            yield _line(recording, match, True)
+        if match.pov2 is not None:
+            formula = triples[match.min_danger][f"{match.set_name}/{match.scenario}/first"]
+            if not _holds_for_three(recording, questions, match, formula, place, names):
+                yield _line(recording, match, True)
+
+
+def _shared(monitors: Iterable[Monitor]) -> list[dict[str, Formula]]:
+    """The formulas as they were given, equal parts being one object: they are then found quickly."""
+    known: dict[Formula, Formula] = {}
+    return [
+        {name: transform(x, lambda part: known.setdefault(part, part)) for name, x in m.formulas.items()}
+        for m in monitors
+    ]
 
 
 def _holds_for_three(
-    recording: Recording, questions: Questions, match: Match, place: Mapping[int, int], names: list[str]
+    recording: Recording,
+    questions: Questions,
+    match: Match,
+    formula: Formula,
+    place: Mapping[int, int],
+    names: list[str],
 ) -> bool:
     assert match.pov2 is not None
     vehicles = dict(zip(TRIPLE, (place[x] for x in (match.sv, match.pov, match.pov2)), strict=True))
     lanes = {"L": names.index(match.lane)}
     reading = _read(recording, questions, vehicles, lanes, (match.start_frame, match.end_frame))
-    formula = questions.triples[match.min_danger].formulas[f"{match.set_name}/{match.scenario}/first"]
     return reading.holds(formula, 0, _view(questions))
 
 
