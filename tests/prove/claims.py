@@ -158,6 +158,9 @@ BEYOND = [
     "(some M in adjacentLanes(L): every N in adjacentLanes(M): atLane(SV,N)) -> atLane(SV,L)",
     "not (some M in adjacentLanes(L): every N in lanes: not atLane(SV,N) and atLane(SV,M))",
     "minSafe <= minDanger -> (G[0,minDanger] p -> G[0,minSafe] p)",
+    "G (s(SV) = 0 m and d(SV) = 0 m) -> G atLane(SV,L) or G not atLane(SV,L)",
+    "s(SV) = s(POV) and d(SV) = d(POV) and length(SV) = length(POV) and width(SV) = width(POV)"
+    " -> (atLane(SV,L) <-> atLane(POV,L))",
 ]
 
 

@@ -6,7 +6,7 @@ paper's sense, signals as functions of time; it may jump, and which lanes a vehi
 as far as some road allows it.
 """
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
@@ -20,10 +20,12 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
+from roadproof.prove.roads import boxes_of, contains, is_on_some_road, is_same_where_it_stands, whose
 from roadproof.prove.search import Model
 from roadproof.prove.states import TYPICAL_SIZE
 
-ZONES = tuple(f.Domain("zone", name) for name in ("main", "merge", "depart"))
+# Further than the boxes of a model lie from each other; only to keep its instants apart, in m.
+STRIDE = Fraction(1000)
 
 
 @dataclass(frozen=True)
@@ -62,8 +64,14 @@ def realise(
     bare = put_in(_on_road(claim, atoms, model))
     named = {name: put_in(meaning) for name, meaning in atoms.named.items()}
     parts = dict.fromkeys(part for x in (bare, *named.values()) for part in _parts(x))
-    truths = [{part: _holds(part, model.signals[instant]) for part in parts} for instant in model.states]
+    states = [_completed(parts, found, fixed) for found in model.signals.values()]
+    truths = [{part: _holds(part, found) for part in parts} for found in states]
+    moved = [_moved_on(parts, found, STRIDE * number) for number, found in enumerate(states)]
+    if truths == [{part: _holds(part, found) for part in parts} for found in moved]:
+        states = moved
     if not all(is_on_some_road(truth, _all_lanes(claim, model)) for truth in truths):
+        return None
+    if not is_same_where_it_stands(truths, [boxes_of(parts, found, fixed) for found in states]):
         return None
     times = list(model.states)
     helds: tuple[Literal["before", "after"], ...] = ("before", "after")
@@ -73,8 +81,8 @@ def realise(
             continue
         shown = {name: judge(meaning, None, given).truth(meaning) for name, meaning in named.items()}
         instants = tuple(
-            Instant(time, _numbers(model.signals[time]), {n: truth.at(time) for n, truth in shown.items()})
-            for time in times
+            Instant(time, _numbers(found), {n: truth.at(time) for n, truth in shown.items()})
+            for time, found in zip(times, states, strict=True)
         )
         return Countermodel(instants, {n: v for n, v in fixed.items() if n in defaults}, held)
     return None
@@ -109,35 +117,35 @@ def _all_lanes(claim: Formula, model: Model) -> tuple[str, ...] | None:
     return model.elements if any(domain.kind == "lanes" for domain in domains) else None
 
 
-def is_on_some_road(truths: Mapping[Formula, bool], lanes: Sequence[str] | None) -> bool:
-    """Whether it is seen that a road allows these truth values of road predicates at one instant.
+def _completed(
+    parts: Iterable[Formula], found: Mapping[str, Fraction | bool], fixed: Mapping[str, Fraction]
+) -> Mapping[str, Fraction | bool]:
+    """The state with what it leaves open: vehicles stand apart, and a box is where one inside it is."""
+    apart = {front: STRIDE / 20 * number for number, front in enumerate(_fronts(parts), 1)}
+    found = {**apart, **found}
+    boxes = boxes_of(parts, found, fixed)
+    where = {(domain, vehicle): part for part in parts for domain, vehicle in whose(part) if vehicle in boxes}
+    inside = [(domain, boxes[who]) for (domain, who), part in where.items() if _holds(part, found)]
+    around = {
+        state.opaque(part): True
+        for (domain, who), part in where.items()
+        if isinstance(part, f.Some | f.Occupies)
+        and any(domain == other and contains(boxes[who], inner) for other, inner in inside)
+    }
+    return {**around, **found}
 
-    ``a is on a lanelet of D`` can be had for each vehicle and each D alone, but for this: each
-    lanelet is of one of three zones, and of a lane. Of anything more involved it is not seen.
-    """
-    road = [part for part in truths if isinstance(part, f.Occupies | f.Some | f.Every)]
-    if all(isinstance(part, f.Occupies) for part in road):
-        return True
-    on: dict[tuple[str, f.Domain], bool] = {}
-    for part in road:
-        match part:
-            case f.Some(variable, domain, f.Occupies(vehicle, lanelet)) if variable == lanelet:
-                if on.setdefault((vehicle, domain), truths[part]) != truths[part]:
-                    return False
-            case _:
-                return False
-    for vehicle in {vehicle for vehicle, _ in on}:
-        zones = [on[vehicle, zone] for zone in ZONES if (vehicle, zone) in on]
-        in_lane = any(
-            true for (who, domain), true in on.items() if who == vehicle and domain.kind == "lanelets"
-        )
-        if in_lane and len(zones) == len(ZONES) and not any(zones):
-            return False
-        lanelets = [] if lanes is None else [(vehicle, f.Domain("lanelets", lane)) for lane in lanes]
-        in_no_lane = lanes is not None and not any(on.get(where, True) for where in lanelets)
-        if any(zones) and in_no_lane:
-            return False
-    return True
+
+def _moved_on(
+    parts: Iterable[Formula], found: Mapping[str, Fraction | bool], by: Fraction
+) -> Mapping[str, Fraction | bool]:
+    """The state with all vehicles moved along the road, where no box of another instant stands."""
+    return {**found, **{front: found.get(front, Fraction(0)) + by for front in _fronts(parts)}}
+
+
+def _fronts(parts: Iterable[Formula]) -> list[str]:
+    """The symbols of the positions along the road that are compared."""
+    compared = {leaf for part in parts for side in terms_of(part) for leaf in t.leaves(side)}
+    return sorted(state.symbol(x) for x in compared if isinstance(x, t.Signal) and x.name == "s")
 
 
 def _without_empty_windows(formula: Formula) -> Formula:

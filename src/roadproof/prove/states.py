@@ -7,7 +7,7 @@ combination comes back as a clause that holds at every instant.
 """
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -130,6 +130,8 @@ class _Question:
         if assumed != "nothing":
             for leaf in self.leaves:
                 self.session.tell(_plausible(leaf, checker.defaults))
+            for consequence in self._where_boxes_lie():
+                self.session.tell(f"(assert {consequence})")
         self.switches: dict[str, tuple[str, bool]] = {}
         for name, positive in wanted.items():
             switch = f"a${len(self.switches) + 1}"
@@ -151,6 +153,31 @@ class _Question:
                     return leaf
 
         return put_in
+
+    def _where_boxes_lie(self) -> Iterator[str]:
+        """A box around one that is on a lanelet of a domain is so, too; for boxes that are compared."""
+        on = {
+            (part.domain, part.body.vehicle): state.opaque(part)
+            for meaning in self.meanings.values()
+            for part in f.subformulas(meaning)
+            if isinstance(part, f.Some) and isinstance(part.body, f.Occupies)
+        }
+        for (domain, inner), inside in on.items():
+            for (other, outer), around in on.items():
+                ends = [*self._ends("s", "length", inner, outer), *self._ends("d", "width", inner, outer)]
+                if inner != outer and domain == other and len(ends) == 4:
+                    yield f"(=> (and {inside} {' '.join(ends)}) {around})"
+
+    def _ends(self, signal: t.SignalName, size: t.SizeName, inner: str, outer: str) -> Iterator[str]:
+        """What says that one side of the inner box lies within that of the outer, if both are compared."""
+        if {t.Signal(signal, inner), t.Signal(signal, outer)} <= set(self.leaves):
+            a, b = (state.symbol(t.Signal(signal, vehicle)) for vehicle in (inner, outer))
+            x, y = (
+                state.symbol(leaf) if leaf in self.leaves else rational(TYPICAL_SIZE[size])
+                for leaf in (t.Size(size, inner), t.Size(size, outer))
+            )
+            yield f"(<= {a} {b})"
+            yield f"(>= (- {a} {x}) (- {b} {y}))"
 
     @property
     def symbols(self) -> list[str]:
