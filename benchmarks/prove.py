@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from multiprocessing.connection import Connection
 
 from roadproof.evidence.atoms import Atoms
@@ -21,7 +22,7 @@ from roadproof.logic.formula import Formula
 from roadproof.prove.prover import prove
 from roadproof.solve.smt import ask
 from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.spec.library import Specification, bundled_library
 
 CLAIMS = [
     *(f"scenario_{i}(SV,POV,L) -> dangerArises(SV,POV)" for i in (1, 3, 4, 5, 6, 7, 8)),
@@ -29,6 +30,14 @@ CLAIMS = [
     "scenario_3(SV,POV,L) -> scenario_3@extA(SV,POV,L)",
     "scenario_3(SV,POV,L) <-> scenario_4(POV,SV,L)",
     "not (scenario_1(SV,POV,L) and scenario_4(SV,POV,L))",
+]
+COMMANDS = [
+    ["--help"],
+    ["list"],
+    ["prove", CLAIMS[0]],
+    ["prove", "P9"],
+    ["prove"],
+    ["check", "proofs"],
 ]
 
 
@@ -91,6 +100,15 @@ def timed(work: Callable[[], str]) -> tuple[str, float]:
     return work(), time.perf_counter() - begun
 
 
+def verdict_of(specification: Specification, claim: str) -> str:
+    return str(prove(specification, claim).verdict)
+
+
+def exit_code_of(words: list[str]) -> str:
+    command = [sys.executable, "-m", "roadproof.cli.main", *words]
+    return str(subprocess.run(command, capture_output=True, check=True).returncode)
+
+
 def limited(script: str, solver: str, limit: float) -> str:
     """The solver's answer within ``limit`` seconds, in a process that can be stopped."""
 
@@ -115,21 +133,14 @@ def main() -> None:
     for claim in CLAIMS:
         atomised = Atoms().atomise(read_claim(specification, claim).formula)
         script = quantified(without_adjacent_lanes(atomised))
-        ours = timed(lambda: str(prove(specification, claim).verdict))
+        ours = timed(partial(verdict_of, specification, claim))
         scripts = {"z3": script, "cvc5": f"(set-option :enum-inst true)\n{script}"}
-        theirs = [timed(lambda s=s, x=x: limited(x, s, limit)) for s, x in scripts.items()]
-        print("".join(f" {answer:>9} {seconds:6.2f} s" for answer, seconds in (ours, *theirs)), f" {claim}")
-    for words in (
-        ["--help"],
-        ["list"],
-        ["prove", CLAIMS[0]],
-        ["prove", "P9"],
-        ["prove"],
-        ["check", "proofs"],
-    ):
-        command = [sys.executable, "-m", "roadproof.cli.main", *words]
-        _, seconds = timed(lambda: str(subprocess.run(command, capture_output=True, check=True).returncode))
-        print(f"{seconds:6.2f} s  roadproof {' '.join(words)}")
+        theirs = [timed(partial(limited, text, solver, limit)) for solver, text in scripts.items()]
+        shown = "".join(f" {answer:>9} {seconds:6.2f} s" for answer, seconds in (ours, *theirs))
+        print(f"{shown}  {claim}", flush=True)
+    for words in COMMANDS:
+        _, seconds = timed(partial(exit_code_of, words))
+        print(f"{seconds:6.2f} s  roadproof {' '.join(words)}", flush=True)
 
 
 if __name__ == "__main__":

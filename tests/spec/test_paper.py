@@ -96,12 +96,12 @@ MUTANTS = {
     "leavingLane stays": ("atLane(a, L) and F not atLane(a, L)", "atLane(a, L) and F atLane(a, L)", rows(2, 5, 6, 8)),
     "enteringLane starts inside": ("not atLane(a, L) and F atLane", "atLane(a, L) and F atLane", rows(7)),
     "until the wrong way round": (
-        "behaviourSV_4(SV, POV: vehicle, L: lane)  := laneKeep(SV, L) U danger(SV, POV)",
-        "behaviourSV_4(SV, POV: vehicle, L: lane)  := danger(SV, POV) U laneKeep(SV, L)",
+        'behaviourSV_4(SV, POV: vehicle, L: lane) "SV keeps its lane"\n  := laneKeep(SV, L) U danger(SV, POV)',
+        "behaviourSV_4(SV, POV: vehicle, L: lane) := danger(SV, POV) U laneKeep(SV, L)",
         rows(4),
     ),
     "decel for accel": (
-        "behaviourPOV_3(POV, SV: vehicle, L: lane) := accel",
+        'behaviourPOV_3(POV, SV: vehicle, L: lane) "POV behind is faster"\n  := accel',
         "behaviourPOV_3(POV, SV: vehicle, L: lane) := decel",
         rows(3),
     ),

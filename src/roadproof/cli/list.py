@@ -58,7 +58,7 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
             {
                 "name": name,
                 "arguments": list(signature(specification, name)),
-                "doc": specification.definitions[name].doc,
+                "doc": specification.describe(specification.definitions[name]),
             }
             for name in scenarios
         ],
@@ -66,7 +66,7 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
             {
                 "name": definition.name,
                 "parameters": [{"name": b.name, "sort": b.sort} for b in definition.parameters],
-                "doc": definition.doc,
+                "doc": specification.describe(definition),
             }
             for definition in others
         ],

@@ -2,7 +2,8 @@
 
 import argparse
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -77,7 +78,7 @@ def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibi
     formula = read_claim(specification, what).formula
     if expand:
         return Exhibit(Claim(claim.given, as_syntax(formula, expand=True)))
-    definitions = definitions_used(specification, claim.body)
+    definitions = _described(specification, definitions_used(specification, claim.body))
     return Exhibit(claim, definitions, parameters_used(specification.library, claim.body, definitions))
 
 
@@ -87,13 +88,18 @@ def _find_definition(specification: Specification, name: str, expand: bool) -> E
     claim = _application(specification, specification.definitions[name])
     if not expand:
         read_claim(specification, text(_compared(claim) if _is_number(specification, claim) else claim))
-        definitions = definitions_used(specification, claim.body)
+        definitions = _described(specification, definitions_used(specification, claim.body))
         return Exhibit(None, definitions, parameters_used(specification.library, claim.body, definitions))
     if not _is_number(specification, claim):
         return Exhibit(Claim(claim.given, as_syntax(read_claim(specification, text(claim)).formula, True)))
     comparison = read_claim(specification, text(_compared(claim))).formula
     assert isinstance(comparison, f.Compare), "a number compared with zero is a comparison"
     return Exhibit(Claim(claim.given, term_as_syntax(comparison.left)))
+
+
+def _described(specification: Specification, definitions: Sequence[Definition]) -> tuple[Definition, ...]:
+    """The definitions with what their descriptions mention written out."""
+    return tuple(replace(definition, doc=specification.describe(definition)) for definition in definitions)
 
 
 def _application(specification: Specification, definition: Definition) -> Claim:

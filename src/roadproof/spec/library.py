@@ -27,6 +27,7 @@ from roadproof.logic.syntax import (
 )
 
 LARGEST_FILE = 1_000_000
+_MENTION = re.compile(r"\[(\w+)\]")
 _INDEX = re.compile(r"\{([^{}]*)\}")
 _INDEX_EXPRESSION = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:([+-])\s*(\d{1,4}))?\s*")
 
@@ -94,6 +95,15 @@ class Specification:
     def in_set(self, set_name: str) -> "Specification":
         """The same options under another set."""
         return self if set_name == self.set_name else self.library.select(set_name, self.options)
+
+    def describe(self, definition: Definition, depth: int = 4) -> str:
+        """Its description, with each ``[name]`` in it replaced by the description of that definition."""
+
+        def look_up(found: re.Match[str]) -> str:
+            other = self.definitions.get(found[1])
+            return found[0] if other is None or depth == 0 else self.describe(other, depth - 1)
+
+        return _MENTION.sub(look_up, definition.doc)
 
 
 def unknown(what: str, name: str, known: Iterable[str]) -> str:
