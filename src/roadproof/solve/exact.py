@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias, assert_never
 from roadproof.encode.circuit import All, AnyOf, Leaf, nodes
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import ColumnFact, Problem, Row
-from roadproof.solve.smt import Session
+from roadproof.solve.smt import Answer, Session
 
 Status: TypeAlias = Literal["found", "infeasible", "unknown"]
 
@@ -21,11 +21,18 @@ class ExactSolution:
     values: tuple[Fraction, ...] = ()
 
 
-def solve_exactly(problem: Problem, time_limit: float | None = None) -> ExactSolution:
-    """Ask z3 for a solution; ``infeasible`` is an exact no."""
+def solve_exactly(problem: Problem, time_limit: float = 60.0) -> ExactSolution:
+    """Ask z3 for a solution within ``time_limit`` s; ``infeasible`` is an exact no.
+
+    How long z3 takes depends on luck, so it starts again with another seed and twice the time.
+    """
     session = Session()
     session.tell("\n".join(script(problem)))
-    answer = session.check_plainly(time_limit)
+    answer: Answer = "unknown"
+    seed, turn, left = 0, 1.0, time_limit
+    while answer == "unknown" and left > 0:
+        answer = session.check_plainly(min(turn, left), seed)
+        seed, turn, left = seed + 1, turn * 2, left - turn
     if answer != "sat":
         return ExactSolution("infeasible" if answer == "unsat" else "unknown")
     values = [v for v in session.values([f"c{k}" for k in range(len(problem.columns))]) if v is not None]

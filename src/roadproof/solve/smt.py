@@ -45,13 +45,13 @@ class Session:
         query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
         return _answer(self.tell(f"(set-option :timeout {limit}){query}"))
 
-    def check_plainly(self, timeout: float | None = None) -> Answer:
+    def check_plainly(self, timeout: float, seed: int = 0) -> Answer:
         """``check-sat`` by z3's SMT core alone, without the strategies that z3 tries before it.
 
         On polynomial arithmetic with many disjunctions those spend most of a minute in vain.
         """
-        milliseconds = 4294967295 if timeout is None else max(1, int(timeout * 1000))
-        return _answer(self.tell(f"(check-sat-using (try-for smt {milliseconds}))"))
+        strategy = f"(using-params smt :random_seed {seed})"
+        return _answer(self.tell(f"(check-sat-using (try-for {strategy} {max(1, int(timeout * 1000))}))"))
 
     def core(self) -> list[str]:
         """The assumptions that the last ``unsat`` used."""

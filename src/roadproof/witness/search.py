@@ -150,7 +150,7 @@ class _Search:
     def _solve(self, problem: Problem) -> Solution:
         left = max(0.1, self.deadline - time.monotonic())
         if self.means.engine == "smt":
-            exact = solve_exactly(problem, left)
+            exact = solve_exactly(problem, max(2.0, left / 3))
             return Solution(exact.status, exact.values)
         try:
             return solve_mixed(problem, box_of(problem), solver=self.means.solver, time_limit=left)
