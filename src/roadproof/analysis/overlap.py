@@ -103,7 +103,7 @@ def groups_of(asked: Asked, pairs: Sequence[Pair]) -> list[tuple[Pair, list[Pair
     one set the order may be turned around, which a conjunction does not mind.
     """
     _, specification = asked.load()
-    likes = {name: _likes(specification.in_set(name)) for name in asked.sets}
+    likes = {name: likes_of(specification.in_set(name)) for name in asked.sets}
     groups: dict[Pair, list[Pair]] = {}
     for a, b in pairs:
         first, second = likes[a.set_name][a.number], likes[b.set_name][b.number]
@@ -113,7 +113,7 @@ def groups_of(asked: Asked, pairs: Sequence[Pair]) -> list[tuple[Pair, list[Pair
     return list(groups.items())
 
 
-def _likes(specification: Specification) -> dict[int, int]:
+def likes_of(specification: Specification) -> dict[int, int]:
     """For every scenario the first one that differs from it in the road sector only."""
     first: dict[Formula, int] = {}
     likes: dict[int, int] = {}

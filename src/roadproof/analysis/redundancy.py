@@ -1,0 +1,206 @@
+"""Which parts of a scenario could be left out: every occurrence, replaced by true and by false.
+
+A replacement is redundant where the formula stays equivalent on all traces, which is proved, and
+needed where a judged drive tells the two apart. Drives found for one question are tried on the next.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from roadproof.analysis.meeting import Node, applied, vehicles_of
+from roadproof.analysis.overlap import Asked
+from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.evidence.certificate import to_json
+from roadproof.evidence.refutation import trace_data
+from roadproof.evidence.witness import from_json, judge_file
+from roadproof.judge.exact import judge
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, is_state, subformulas
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
+from roadproof.prove.prover import prove
+from roadproof.spec.bind import bind, default_values
+from roadproof.spec.elaborate import read_claim
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Request, ask
+from roadproof.witness.question import Means
+
+
+@dataclass(frozen=True)
+class Change:
+    """One occurrence of a part replaced by a truth value; ``where``: the definitions around it.
+
+    ``weakens``: what is left holds wherever the whole formula does; else it holds only there.
+    """
+
+    where: tuple[str, ...]
+    part: str
+    value: bool
+    changed: str
+    weakens: bool
+
+    def __str__(self) -> str:
+        return f"{self.part} in {self.where[-1]} as {str(self.value).lower()}"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """PROVED: the change may be made. REFUTED: it matters, as a drive shows, or else a trace. UNKNOWN.
+
+    ``trace`` is a judged countermodel over points in time, where no drive was found.
+    """
+
+    node: Node
+    change: Change
+    verdict: Verdict
+    claim: str
+    certificate: str | None = None
+    drive: Mapping[str, Any] | None = None
+    trace: Mapping[str, Any] | None = None
+    reason: str = ""
+
+
+def changes_of(formula: Formula, whole: bool = False) -> Iterator[Change]:
+    """Every occurrence of a part of ``formula``, but itself, by true and by false, from the outside in.
+
+    A definition of one instant that compares numbers, or uses no other one, is one part unless
+    ``whole``: ``rssViolation``, ``aheadOf``, ``atLane``.
+    """
+
+    def walk(
+        current: Formula,
+        rebuild: Callable[[Formula], Formula],
+        where: tuple[str, ...],
+        positive: bool,
+        root: bool,
+    ) -> Iterator[Change]:
+        if isinstance(current, f.Named) and (whole or not _is_simple(current)):
+            label = f"{current.name}({','.join(current.arguments)})"
+            yield from walk(current.body, rebuild, (*where, label), positive, root)
+            return
+        if isinstance(current, f.Truth):
+            return
+        if not root:
+            shown = text(as_syntax(current))
+            for value in (True, False):
+                changed = text(as_syntax(rebuild(f.Truth(value))))
+                yield Change(where, shown, value, changed, value == positive)
+        parts = () if isinstance(current, f.Named) else f.children(current)
+        for place, part in enumerate(parts):
+            inside = _inside(current, parts, place, rebuild)
+            yield from walk(part, inside, where, positive != isinstance(current, f.Not), False)
+
+    yield from walk(formula, lambda x: x, (), True, True)
+
+
+def _inside(
+    around: Formula, parts: tuple[Formula, ...], place: int, rebuild: Callable[[Formula], Formula]
+) -> Callable[[Formula], Formula]:
+    return lambda new: rebuild(f.with_children(around, (*parts[:place], new, *parts[place + 1 :])))
+
+
+def _is_simple(formula: f.Named) -> bool:
+    below = list(subformulas(formula.body))
+    numbers = any(isinstance(x, f.Compare) for x in below)
+    roads = any(isinstance(x, f.Occupies) for x in below)
+    alone = not any(isinstance(x, f.Named) for x in below)
+    return is_state(formula) and (alone or (numbers and not roads))
+
+
+def examine(
+    asked: Asked, nodes: Sequence[Node], whole: bool = False, tell: Callable[[str], None] = lambda _: None
+) -> Iterator[Finding]:
+    """The findings on every change of every scenario of ``nodes``, one after the other.
+
+    ``nodes`` that differ in their road sectors only should be given together: they share drives.
+    """
+    pool: list[Shown] = []
+    for node in nodes:
+        yield from _Examining(asked, node, pool).run(whole, tell)
+
+
+class _Examining:
+    def __init__(self, asked: Asked, node: Node, pool: list[Shown]) -> None:
+        self.asked = asked
+        self.library, self.specification = asked.load()
+        self.values = {**default_values(self.library), **asked.values}
+        self.node = node
+        self.text = applied(node, self.specification, vehicles_of(self.specification, node))
+        self.pool = pool
+        self.mine: list[Shown] = []
+
+    def run(self, whole: bool, tell: Callable[[str], None]) -> Iterator[Finding]:
+        formula = read_claim(self.specification, self.text).formula
+        changes = list(changes_of(formula, whole))
+        self._collect()
+        known: dict[str, Finding] = {}
+        for number, change in enumerate(changes, 1):
+            tell(f"scenario {self.node}: {number} of {len(changes)} changes")
+            if change.changed not in known:
+                known[change.changed] = self._decide(change)
+            yield replace(known[change.changed], change=change)
+
+    def _collect(self) -> None:
+        """Drives of this scenario, and drives for earlier ones put on a road of its sector."""
+        for shown in self.pool:
+            placed = show_elsewhere(shown, self.text, self.library)
+            if placed is not None:
+                self.mine.append(placed)
+        if not self.mine:
+            found = self._ask(self.text)
+            if found is not None:
+                self._keep(found)
+
+    def _keep(self, found: Shown) -> None:
+        self.mine.append(found)
+        self.pool.append(found)
+
+    def _decide(self, change: Change) -> Finding:
+        apart = f"{self.text} and not ({change.changed})"
+        if change.weakens:
+            apart = f"({change.changed}) and not {self.text}"
+        elsewhere = any(name.startswith("roadSector_") for name in change.where)
+        for shown in (*self.mine, *(x for x in self.pool if x not in self.mine)):
+            told = self._tells_apart(shown, apart, elsewhere)
+            if told is not None:
+                return Finding(self.node, change, Verdict.REFUTED, apart, None, told.data)
+        claim = f"{self.text} <-> ({change.changed})"
+        result = prove(self.specification, claim, self.asked.proof_seconds, f"redundancy-{self.node}")
+        if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
+            return Finding(self.node, change, Verdict.PROVED, claim, to_json(result.certificate))
+        found = self._ask(apart)
+        if found is not None:
+            self._keep(found)
+            return Finding(self.node, change, Verdict.REFUTED, apart, None, found.data)
+        within = f"no drive was found within {self.asked.timeout:g} s, {self.asked.horizon} s ahead"
+        if result.countermodel is not None:
+            model = result.countermodel
+            instants = [(i.time, i.values, i.atoms) for i in model.instants]
+            trace = trace_data(instants, model.parameters, model.held)
+            return Finding(self.node, change, Verdict.REFUTED, claim, trace=trace, reason=within)
+        reason = f"{within}, and no proof within {self.asked.proof_seconds:g} s: {result.reason}"
+        return Finding(self.node, change, Verdict.UNKNOWN, claim, reason=reason)
+
+    def _tells_apart(self, shown: Shown, formula: str, elsewhere: bool) -> Shown | None:
+        """The drive judged on ``formula`` where it is, or also on roads of other zones."""
+        file = replace(from_json(dict(shown.data), "drive"), formula=formula, scenario=None)
+        query = read_claim(self.specification, formula)
+        if not set(query.vehicles) <= set(file.drive.vehicles):
+            return None
+        if elsewhere:
+            return show_elsewhere(shown, formula, self.library)
+        values = {**self.values, **file.values}
+        if not judge(bind(query.formula, file.road, file.lanes, values), file.drive).holds:
+            return None
+        ruling = judge_file(file, self.library)
+        return Shown(formula, as_data(file, ruling)) if ruling.accepted else None
+
+    def _ask(self, formula: str) -> Shown | None:
+        means = Means("smooth", time_limit=self.asked.timeout, explain=False)
+        options, specs, horizon = self.asked.options, self.asked.specs, self.asked.horizon
+        request = Request(
+            formula, self.asked.sets[0], options, specs, self.values, horizon=horizon, means=means
+        )
+        drives = ask(request).drives
+        return Shown(formula, drives[0]) if drives else None
