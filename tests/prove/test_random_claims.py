@@ -118,7 +118,7 @@ seen: Counter[str] = Counter()
 
 
 @settings(
-    max_examples=50,
+    max_examples=40,
     deadline=None,
     derandomize=True,
     database=None,
