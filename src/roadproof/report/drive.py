@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from math import nan
 from typing import Any
 
 from roadproof.errors import RoadproofError
@@ -109,11 +110,12 @@ def _gaps(axes: Any, file: DriveFile, colours: Mapping[str, str], library: Libra
             ]
             if max(gaps) < 0:
                 continue
-            kept = [(t, g, g + m) for t, g, m in zip(seconds, gaps, margins, strict=True) if g >= 0]
+            shown = [gap if gap >= 0 else nan for gap in gaps]  # nan leaves the line open
+            needed = [gap + margin for gap, margin in zip(shown, margins, strict=True)]
             colour = colours[ahead]
-            axes.plot([k[0] for k in kept], [k[1] for k in kept], color=colour, label=f"{behind} to {ahead}")
+            axes.plot(seconds, shown, color=colour, label=f"{behind} to {ahead}")
             label = f"RSS distance {behind} to {ahead}"
-            axes.plot([k[0] for k in kept], [k[2] for k in kept], color=colour, ls="--", lw=1, label=label)
+            axes.plot(seconds, needed, color=colour, ls="--", lw=1, label=label)
     axes.set_ylabel("gap along, m", fontsize=7)
     axes.set_xlim(0, float(file.horizon))
     if axes.get_lines():
