@@ -1,0 +1,27 @@
+"""A drive as CSV: one row a sample and vehicle, decimals in SI units."""
+
+import csv
+import io
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from roadproof.evidence.witness import from_json
+from roadproof.world.motion import state_at
+
+HEADER = ("time", "vehicle", "s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "length", "width")
+
+
+def csv_of(data: Mapping[str, Any], dt: Fraction = Fraction(1, 25)) -> str:
+    """The drive of a drive file (``roadproof/drive/1``) sampled every ``dt`` seconds up to its horizon."""
+    file = from_json(dict(data), "drive")
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(HEADER)
+    for k in range(int(file.horizon / dt) + 1):
+        for name, motion in file.drive.vehicles.items():
+            state = state_at(motion, k * dt)
+            signals = (state.s, state.d, state.v_lon, state.v_lat, state.a_lon, state.a_lat)
+            sizes = (motion.length, motion.width)
+            writer.writerow([f"{float(k * dt):.3f}", name, *(f"{float(x):.6g}" for x in (*signals, *sizes))])
+    return out.getvalue()
