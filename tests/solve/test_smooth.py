@@ -23,7 +23,9 @@ def test_a_least_square_within_rows_and_bounds():
 
 
 def test_a_cost_beside_squares():
-    found = minimise([], BOX, [], [Square(0.5, X + Affine((), -1.0)), Square(1.0, Y)], Affine(((0, 2.0),), 0.0))
+    found = minimise(
+        [], BOX, [], [Square(0.5, X + Affine((), -1.0)), Square(1.0, Y)], Affine(((0, 2.0),), 0.0)
+    )
     assert found == pytest.approx((-1.0, 0.0), abs=1e-4)
 
 
