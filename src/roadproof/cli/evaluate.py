@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "find disturbances in recorded traffic and match them with the scenarios"
 
+MOST_FACTS = 12
 _HALF_WRITTEN = re.compile(r"\..+\.(json|csv|txt|md|tex|png|svg)\.[a-z0-9_]{8}")
 
 _EXAMPLES = """\
@@ -112,7 +113,10 @@ def run(args: argparse.Namespace) -> int:
         compared = comparison_table(totals, failed)
         if compared is not None:
             print(as_text(compared))
-        print(answer_questions(totals, failed).partition("## Facts")[2].partition("\n\n")[2], end="")
+        facts = answer_questions(totals, failed).partition("## Facts")[2].partition("\n\n")[2].splitlines()
+        print("\n".join(facts[:MOST_FACTS]))
+        if len(facts) > MOST_FACTS:
+            print(f"… {len(facts) - MOST_FACTS} more in {args.out / 'answers.md'}")
     _sweep(args.out)
     for name, reason in failed.items():
         tell(f"left out: recording {name}: {reason}")
