@@ -101,24 +101,42 @@ def _extremum(terms: tuple[Term, ...], op: str) -> str:
 
 
 def comparison(compare: f.Compare) -> str:
-    """A comparison as an SMT-LIB formula; 1/0 is ∞, which is above every number and equals itself."""
+    """A comparison as an SMT-LIB formula; 1/0 is ∞, which is above every number and equals itself.
+
+    Inverses are compared by the signs of what they invert, without a division.
+    """
     left, right, op = compare.left, compare.right, compare.op
     if op in ("<", "<="):
         left, right, op = right, left, ">" if op == "<" else ">="
-    at_infinity = [f"(= {term(side.term)} 0.0)" for side in (left, right) if isinstance(side, t.Inverse)]
-    finite = f"({op} {_finite(left)} {_finite(right)})"
-    if isinstance(left, t.Inverse) and isinstance(right, t.Inverse):
-        both = "true" if op == ">=" else f"(not {at_infinity[1]})"
-        return f"(ite {at_infinity[0]} {both} (and (not {at_infinity[1]}) {finite}))"
-    if isinstance(left, t.Inverse):
-        return f"(or {at_infinity[0]} {finite})"
-    if isinstance(right, t.Inverse):
-        return f"(and (not {at_infinity[0]}) {finite})"
-    return finite
+    match left, right:
+        case t.Inverse(x), t.Inverse(y):
+            return _inverses(term(x), term(y), op)
+        case t.Inverse(x), _:
+            return _above_finite(term(x), term(right), op)
+        case _, t.Inverse(y):
+            return _below_inverse(term(left), term(y), op)
+        case _:
+            return f"({op} {term(left)} {term(right)})"
 
 
-def _finite(side: Term) -> str:
-    return f"(/ 1.0 {term(side.term)})" if isinstance(side, t.Inverse) else term(side)
+def _inverses(x: str, y: str, op: str) -> str:
+    """1/x op 1/y, where op is > or >=."""
+    infinite = "true" if op == ">=" else f"(not (= {y} 0.0))"
+    apart = f"(and (> {x} 0.0) (< {y} 0.0))"
+    alike = f"(or (and (> {x} 0.0) (> {y} 0.0)) (and (< {x} 0.0) (< {y} 0.0)))"
+    return f"(ite (= {x} 0.0) {infinite} (or {apart} (and {alike} ({op} {y} {x}))))"
+
+
+def _above_finite(x: str, number: str, op: str) -> str:
+    """1/x op number, where op is > or >=."""
+    positive, negative = f"({op} 1.0 (* {number} {x}))", f"({op} (* {number} {x}) 1.0)"
+    return f"(or (= {x} 0.0) (and (> {x} 0.0) {positive}) (and (< {x} 0.0) {negative}))"
+
+
+def _below_inverse(number: str, y: str, op: str) -> str:
+    """number op 1/y, where op is > or >=."""
+    positive, negative = f"({op} (* {number} {y}) 1.0)", f"({op} 1.0 (* {number} {y}))"
+    return f"(or (and (> {y} 0.0) {positive}) (and (< {y} 0.0) {negative}))"
 
 
 def state(formula: Formula) -> str:
