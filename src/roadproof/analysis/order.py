@@ -6,7 +6,7 @@ proved, and none if a drive refutes each. Nodes with one formula share all evide
 one road sector is put on roads of the others.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import permutations
@@ -25,7 +25,7 @@ from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import Query, read_claim
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, ask
-from roadproof.witness.question import Means
+from roadproof.witness.question import Means, usual_road
 from roadproof.world.drive import Drive
 
 FAR = Fraction(2000)
@@ -83,14 +83,16 @@ class Order:
         return other in seen
 
 
-def kinds_of(asked: Asked) -> tuple[Kind, ...]:
-    """The scenarios of all sets of ``asked``, sorted into those with one formula."""
+def kinds_of(asked: Asked, numbers: Sequence[int] | None = None) -> tuple[Kind, ...]:
+    """The scenarios of all sets of ``asked`` in groups with one formula; ``numbers``: only these."""
     _, specification = asked.load()
     found: dict[Formula, list[Node]] = {}
     likes: dict[Formula, int] = {}
     for set_name in asked.sets:
         there = specification.in_set(set_name)
         for number in scenario_numbers(there):
+            if numbers is not None and number not in numbers:
+                continue
             node = Node(number, set_name)
             formula = read_claim(specification, _text(asked, node)).formula
             found.setdefault(without_names(formula), []).append(node)
@@ -109,9 +111,11 @@ def _text(asked: Asked, node: Node) -> str:
     return applied(node, specification, vehicles_of(specification, node))
 
 
-def find_order(asked: Asked, tell: Callable[[str], None] = lambda _: None) -> Order:
+def find_order(
+    asked: Asked, numbers: Sequence[int] | None = None, tell: Callable[[str], None] = lambda _: None
+) -> Order:
     """Decide all implications between the scenarios of ``asked``; ``tell`` hears about the progress."""
-    return _Ordering(asked, kinds_of(asked), tell).run()
+    return _Ordering(asked, kinds_of(asked, numbers), tell).run()
 
 
 @dataclass(frozen=True)
@@ -184,7 +188,7 @@ class _Ordering:
         text = _text(self.asked, kind.node)
         alone = " and ".join([text, *(f"not {x}" for x in self._same_elsewhere(kind))])
         if not self.pool.get(kind.like):
-            found = self._ask(alone, self.asked.timeout)
+            found = self._ask(text, text)
             if found is None:
                 return
             self.pool.setdefault(kind.like, []).append(found)
@@ -237,15 +241,17 @@ class _Ordering:
             self.queries[text] = read_claim(self.specification, text)
         return self.queries[text]
 
-    def _ask(self, text: str, seconds: float) -> Shown | None:
+    def _ask(self, text: str, on: str) -> Shown | None:
+        """A drive for a formula, on the usual road of another: what is negated chooses no road."""
         request = Request(
             text,
             self.asked.sets[0],
             self.asked.options,
             self.asked.specs,
             self.values,
+            usual_road(self._query(on).formula),
             horizon=self.asked.horizon,
-            means=Means("smooth", time_limit=seconds, explain=False),
+            means=Means("smooth", time_limit=self.asked.timeout, explain=False),
         )
         drives = ask(request).drives
         return Shown(text, drives[0]) if drives else None
@@ -264,7 +270,7 @@ class _Ordering:
         for text, below in sorted(self.open[one, other]):
             if (text, below) not in self.open[one, other]:
                 continue
-            found = self._ask(f"{text} and not {below}", self.asked.timeout)
+            found = self._ask(f"{text} and not {below}", text)
             if found is None:
                 self.order.doubts.append(
                     (one, other, f"neither a proof nor a drive against {text} -> {below}")

@@ -24,7 +24,7 @@ from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, ask
-from roadproof.witness.question import Means
+from roadproof.witness.question import Means, usual_road
 
 
 @dataclass(frozen=True)
@@ -199,8 +199,9 @@ class _Examining:
     def _ask(self, formula: str) -> Shown | None:
         means = Means("smooth", time_limit=self.asked.timeout, explain=False)
         options, specs, horizon = self.asked.options, self.asked.specs, self.asked.horizon
+        road = usual_road(read_claim(self.specification, self.text).formula)
         request = Request(
-            formula, self.asked.sets[0], options, specs, self.values, horizon=horizon, means=means
+            formula, self.asked.sets[0], options, specs, self.values, road, horizon=horizon, means=means
         )
         drives = ask(request).drives
         return Shown(formula, drives[0]) if drives else None

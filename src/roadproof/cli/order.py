@@ -31,7 +31,7 @@ SCHEMA = "roadproof/order/1"
 _EXAMPLES = """\
 examples:
   roadproof order --out order                    all scenarios of base, extA and ext; DOT, SVG, evidence
-  roadproof order --set base --set ext --json -
+  roadproof order --set base --set ext --among 1-8
 
 a -> b: whenever a holds, so does b, with the same roles and the same L. Scenario 2 implies one with two
 vehicles if it does so for one of its POVs. `roadproof check DIR` checks the evidence again.
@@ -42,6 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_specification_options(parser, "base, extA, ext", several=True)
     add_parameter_option(parser)
+    parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
     parser.add_argument(
         "--timeout", type=float, default=120.0, metavar="S", help="seconds for one drive (default: 120)"
     )
@@ -51,6 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from roadproof.analysis.meeting import read_numbers
     from roadproof.analysis.order import find_order
     from roadproof.analysis.overlap import Asked
 
@@ -71,7 +73,8 @@ def run(args: argparse.Namespace) -> int:
         values=parameter_values(args, library),
         timeout=args.timeout,
     )
-    found = find_order(asked, tell)
+    numbers = read_numbers(args.among, library.select(sets[0], options)) if args.among else None
+    found = find_order(asked, numbers, tell)
     tell("all decided" if not found.doubts else f"{len(found.doubts)} in doubt", last=True)
     data = _as_data(found, args.out)
     data["seconds"] = round(time.monotonic() - begun, 1)

@@ -1,0 +1,77 @@
+"""Redundancy: known answers on small formulas and on the paper's, and the evidence behind them."""
+
+from pathlib import Path
+
+from roadproof.analysis.meeting import Node
+from roadproof.analysis.overlap import Asked
+from roadproof.analysis.redundancy import Change, Finding, _Examining, changes_of
+from roadproof.evidence.certificate import read_certificate, refusal
+from roadproof.evidence.witness import from_json, judge_file
+from roadproof.solve.smt import ask
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import bundled_library
+from roadproof.verdict import Verdict
+
+BASE = bundled_library().select("base")
+
+
+def changes(text: str, whole: bool = False) -> list[Change]:
+    return list(changes_of(read_claim(BASE, text).formula, whole))
+
+
+def test_every_occurrence_is_changed_to_both_values() -> None:
+    found = changes("laneKeep(SV,L) U not aheadOf(SV,POV)")
+    texts = {x.changed for x in found}
+    assert texts == {
+        "true U not aheadOf(SV, POV)",
+        "false U not aheadOf(SV, POV)",
+        "laneKeep(SV, L) U true",
+        "laneKeep(SV, L) U false",
+        "laneKeep(SV, L) U not true",
+        "laneKeep(SV, L) U not false",
+    }
+    weaker = {x.changed for x in found if x.weakens}
+    assert weaker == {
+        "true U not aheadOf(SV, POV)",
+        "laneKeep(SV, L) U true",
+        "laneKeep(SV, L) U not false",
+    }
+
+
+def test_simple_predicates_are_opened_only_when_asked() -> None:
+    assert changes("aheadOf(SV,POV)") == []
+    assert len(changes("rssViolation(SV,POV)")) == 0
+    assert len(changes("rssViolation(SV,POV)", whole=True)) > 10
+    assert len(changes("F rssViolation(SV,POV)")) == 2
+
+
+def decide(number: int, part: str, value: bool) -> Finding:
+    """The finding on the first change of ``part`` in a scenario of base."""
+    examining = _Examining(Asked(timeout=30.0), Node(number, "base"), [])
+    found = changes_of(read_claim(BASE, examining.text).formula)
+    change = next(x for x in found if x.part == part and x.value is value)
+    return examining._decide(change)
+
+
+def test_adjacent_lanes_are_redundant_in_scenario_3(tmp_path: Path) -> None:
+    part = "atLane(SV, L) and (some M in adjacentLanes(L): atLane(POV, M))"
+    finding = decide(3, part, False)
+    assert finding.verdict is Verdict.PROVED
+    assert finding.certificate is not None
+    path = tmp_path / "certificate.json"
+    path.write_text(finding.certificate)
+    certificate = read_certificate(path)
+    assert certificate.claim.startswith("scenario_3(SV,POV,L) <-> (")
+    assert refusal(certificate, bundled_library(), ask) is None
+
+
+def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
+    found = [x for x in changes("scenario_8(SV,POV,L)") if x.part == "aheadOf(SV, POV)" and not x.value]
+    examining = _Examining(Asked(timeout=30.0), Node(8, "base"), [])
+    examining._collect()
+    finding = examining._decide(found[0])
+    assert finding.verdict is Verdict.REFUTED
+    assert finding.drive is not None
+    file = from_json(dict(finding.drive), "drive")
+    assert file.formula == f"scenario_8(SV,POV,L) and not ({found[0].changed})"
+    assert judge_file(file, bundled_library()).accepted
