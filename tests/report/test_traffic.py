@@ -92,11 +92,12 @@ def test_answers_come_from_the_numbers(totals: Totals) -> None:
 
 def test_violations_and_unequal_pairs_are_listed(totals: Totals) -> None:
     totals.broken.append("recording 01, minDanger 0, base: (1, 5) matches but is no disturbance")
-    totals.unequal_3_4.append(("01", 3, 9, "3/5"))
+    totals.unequal_3_4 += [("01", 3, 9, "0"), ("01", 3, 9, "3/5")]
     text = answer_questions(totals)
     assert "1 violations: CROSSCHECK-FAILED" in text
     assert "(1, 5) matches but is no disturbance" in text
     assert "1 matches lie outside the disturbance traces, which must not be" in text
+    assert "1 pairs match only one of scenarios 3 and 4" in text
     assert "recording 01, vehicles 3 and 9, minDanger 0.6" in text
 
 
