@@ -121,8 +121,8 @@ def _facts(totals: Totals) -> str:
     lines = [
         f"{sets} for each pair and scenario, s3 = s4 in base, every match a disturbance: {verdict}.",
         *totals.broken,
-        f"{len({entry[:3] for entry in totals.unequal_3_4})} pairs match only one of scenarios 3 and 4 in base because the two "
-        "vehicles start in different lanes, so that L differs between the roles"
+        f"{len({entry[:3] for entry in totals.unequal_3_4})} pairs match only one of scenarios 3 and 4 in "
+        "base because the two vehicles start in different lanes, so that L differs between the roles"
         + (":" if totals.unequal_3_4 else "."),
         *(
             f"recording {recording}, vehicles {one} and {other}, minDanger {decimal_of(danger)}"
