@@ -4,7 +4,6 @@ import argparse
 import os
 import re
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from roadproof.cli.options import (
     add_parameter_option,
     load_library_of,
     parameter_values,
+    read_seconds,
     select_specification,
     write_json,
 )
@@ -149,7 +149,7 @@ def _settings(args: argparse.Namespace) -> "Settings":
     if any(text.partition("=")[0].strip() == "minDanger" for text in args.params):
         raise UsageError("--param minDanger: evaluate takes several values of it; use --min-danger 0,0.6")
     if args.min_safe is not None:
-        values["minSafe"] = _seconds("--min-safe", args.min_safe)
+        values["minSafe"] = read_seconds("--min-safe", args.min_safe, or_zero=True)
     sets = _items("--sets", args.sets)
     chosen = [
         select_specification(argparse.Namespace(set_name=name, options=args.options), library)
@@ -160,7 +160,9 @@ def _settings(args: argparse.Namespace) -> "Settings":
         chosen[0].options,
         values,
         sets=tuple(sets),
-        min_danger=tuple(_seconds("--min-danger", x) for x in _items("--min-danger", args.min_danger)),
+        min_danger=tuple(
+            read_seconds("--min-danger", x, or_zero=True) for x in _items("--min-danger", args.min_danger)
+        ),
         scenarios=tuple(_numbers(args.scenarios)),
         classes=tuple(args.classes or ["Car"]),
         convention=args.end,
@@ -173,16 +175,6 @@ def _items(option: str, text: str) -> list[str]:
     if not all(items):
         raise UsageError(f"{option} {text}: write values separated by commas")
     return items
-
-
-def _seconds(option: str, text: str) -> Fraction:
-    try:
-        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
-    except (ValueError, ZeroDivisionError):
-        value = None
-    if value is None or value < 0:
-        raise UsageError(f"{option} {text[:40]}: write seconds, 0 or more, such as 0, 0.6 or 3/5")
-    return value
 
 
 def _numbers(text: str) -> Iterator[int]:

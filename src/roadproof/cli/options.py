@@ -129,6 +129,18 @@ def _read_value(name: str, text: str, unit: str) -> Fraction:
     return Fraction(top) / Fraction(bottom or 1) * UNITS[given][0]
 
 
+def read_seconds(option: str, text: str, or_zero: bool = False) -> Fraction:
+    """A time in seconds, greater than 0 (or 0 too). Raises ``UsageError``."""
+    try:
+        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
+    except (ValueError, ZeroDivisionError):
+        value = None
+    if value is None or value < 0 or (value == 0 and not or_zero):
+        least = "seconds, 0 or more" if or_zero else "a number greater than 0"
+        raise UsageError(f"{option} {text[:40]}: write {least}, such as 6, 0.6 or 3/5")
+    return value
+
+
 def _assignments(option: str, texts: Iterable[str]) -> list[tuple[str, str]]:
     """``NAME=VALUE`` texts as pairs. Raises ``UsageError`` where there is no ``=``."""
     pairs: list[tuple[str, str]] = []

@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import groupby
 from pathlib import Path
@@ -19,6 +19,7 @@ from roadproof.cli.options import (
     add_specification_options,
     chosen_options,
     load_library_of,
+    read_seconds,
     write_json,
     write_text,
 )
@@ -43,9 +44,11 @@ examples:
   roadproof prove 'scenario_4(SV,POV,L) -> scenario_4@ext(SV,POV,L)'
   roadproof prove 'given A, B: vehicle: danger(A,B) -> danger(B,A)' --out proofs
   roadproof prove --claims mine.txt --json -          one claim a paragraph
+  roadproof prove 'dangerArises(SV,POV) -> F aheadOf(SV,POV)' --engine smt --horizon 6 --dt 1/5
 
 A claim is about all traces, all roads, all vehicle sizes and all parameter values within their declared
 bounds. PROVED comes with a certificate, which `roadproof check` accepts; REFUTED with a counterexample.
+With --engine smt or milp a claim is about drives on one road, up to a horizon: PROVED-BOUNDED says which.
 """
 
 
@@ -63,6 +66,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--timeout", type=float, default=60.0, metavar="S", help="seconds a claim (default: 60)"
     )
+    parser.add_argument(
+        "--engine",
+        choices=("dense", "smt", "milp"),
+        default="dense",
+        help="dense: for all time (default); smt, milp: up to a horizon, with the motion of vehicles",
+    )
+    parser.add_argument("--horizon", metavar="S", default="6", help="with smt, milp: seconds (default: 6)")
+    parser.add_argument(
+        "--dt", metavar="S", default="3/5", help="with smt, milp: seconds a sample (default: 3/5)"
+    )
+    parser.add_argument("--road", metavar="R", help="with smt, milp: a reference road or a .toml file")
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument(
         "--no-drive", action="store_true", help="do not look for a drive that refutes a claim"
@@ -70,6 +84,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and an index")
     parser.add_argument("--verbose", action="store_true", help="a line for every claim of the list")
     add_json_option(parser)
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """How to look for a drive that refutes a claim, up to a horizon; ``horizon`` and ``dt`` in seconds."""
+
+    engine: str
+    horizon: Fraction
+    dt: Fraction
+    road: str | None
 
 
 @dataclass(frozen=True)
@@ -81,6 +105,7 @@ class Job:
     options: Mapping[str, str]
     timeout: float
     seek_drive: bool
+    bounded: "Bounded | None" = None
 
 
 @dataclass(frozen=True)
@@ -156,9 +181,16 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     else:
         library.select(args.set_name or "base", options)
         tasks = choose(template_properties(), named, args.set_name)
+    bounded = None
+    if args.engine != "dense":
+        if not texts:
+            raise UsageError(f"--engine {args.engine} is for claims of your own: the list is about all time")
+        horizon, dt = read_seconds("--horizon", args.horizon), read_seconds("--dt", args.dt)
+        bounded = Bounded(args.engine, horizon, dt, args.road)
     if not tasks:
         raise UsageError(f"none of {', '.join(named)} is stated for set={args.set_name}: leave out --set")
-    return [Job(task, tuple(args.specs), options, args.timeout, not args.no_drive) for task in tasks]
+    seek_drive = not args.no_drive
+    return [Job(task, tuple(args.specs), options, args.timeout, seek_drive, bounded) for task in tasks]
 
 
 @contextmanager
@@ -182,6 +214,8 @@ def _answers(jobs: Sequence[Job], processes: int | None) -> Iterator[Iterator[Se
 
 def settle(job: Job) -> Settled:
     """Prove or refute one claim; a refuted or undecided one also by a drive, where there is one."""
+    if job.bounded is not None:
+        return _settle_bounded(job, job.bounded)
     from roadproof.prove.prover import prove
     from roadproof.spec.library import load_library
 
@@ -193,6 +227,36 @@ def settle(job: Job) -> Settled:
     if job.seek_drive and result.verdict in (Verdict.REFUTED, Verdict.UNKNOWN):
         drive = _refuting_drive(job)
     return Settled(task, result, drive)
+
+
+def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
+    """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
+    from roadproof.prove.prover import Result
+    from roadproof.spec.bind import default_values
+    from roadproof.spec.library import load_library
+    from roadproof.witness.ask import Request
+    from roadproof.witness.bounded import check_bounded
+    from roadproof.witness.question import Means
+
+    begun = time.monotonic()
+    request = Request(
+        job.task.claim,
+        job.task.set_name,
+        job.options,
+        job.specs,
+        default_values(load_library(job.specs)),
+        bounded.road,
+        horizon=bounded.horizon,
+        dt=bounded.dt,
+        means=Means("any", "smt" if bounded.engine == "smt" else "milp", time_limit=job.timeout),
+    )
+    found = check_bounded(request)
+    if found.verdict is Verdict.PROVED:
+        return settle(replace(job, bounded=None))
+    expected = Verdict.PROVED_BOUNDED if job.task.expected is Verdict.PROVED else job.task.expected
+    seconds = time.monotonic() - begun
+    result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
+    return Settled(replace(job.task, expected=expected), result, found.drive)
 
 
 def _refuting_drive(job: Job) -> Mapping[str, Any] | None:
@@ -244,7 +308,8 @@ def _table(settled: Sequence[Settled]) -> str:
 def _details(settled: Settled) -> str:
     result, task = settled.result, settled.task
     lines = [f"{settled.verdict}  {' '.join(task.claim.split())}"]
-    lines.append(f"  set {task.set_name}, dense time, all horizons, {result.seconds:.2f} s")
+    within = "up to a horizon" if settled.verdict is Verdict.PROVED_BOUNDED else "dense time, all horizons"
+    lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
     if result.reason:
         lines.append(f"  {result.reason}")
     if result.certificate is not None:
@@ -318,7 +383,7 @@ def _as_json(settled: Settled, file: str | None) -> dict[str, Any]:
         "claim": task.claim,
         "expected": str(task.expected),
         "verdict": str(settled.verdict),
-        "view": "dense",
+        "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
         "seconds": round(result.seconds, 4),
         "reason": result.reason,
         "assumptions": list(result.certificate.assumptions) if result.certificate else [],

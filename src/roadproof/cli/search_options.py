@@ -2,13 +2,13 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from roadproof.cli.options import (
     add_parameter_option,
     add_specification_options,
     parameter_values,
+    read_seconds,
     select_specification,
 )
 from roadproof.errors import UsageError
@@ -70,9 +70,9 @@ def read_request(args: argparse.Namespace, library: "Library") -> "Request":
         road=args.road,
         lanes=dict(_named(args.lanes, "L")),
         vehicles=dict(_named(args.vehicles, "")),
-        horizon=_seconds("--horizon", args.horizon),
-        dt=_seconds("--dt", args.dt),
-        reach=_seconds("--reach", args.reach),
+        horizon=read_seconds("--horizon", args.horizon),
+        dt=read_seconds("--dt", args.dt),
+        reach=read_seconds("--reach", args.reach),
         collisions=args.allow_collisions,
         means=Means(engine=args.engine, solver=args.solver, time_limit=args.timeout),
     )
@@ -82,13 +82,3 @@ def _named(texts: Sequence[str], usual: str) -> Iterator[tuple[str, str]]:
     for text in texts:
         name, equals, value = text.rpartition("=")
         yield (name if equals else usual), value
-
-
-def _seconds(option: str, text: str) -> Fraction:
-    try:
-        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
-    except (ValueError, ZeroDivisionError):
-        value = None
-    if value is None or value <= 0:
-        raise UsageError(f"{option} {text[:40]}: write a number greater than 0, such as 6, 0.6 or 3/5")
-    return value

@@ -3,12 +3,10 @@
 from dataclasses import dataclass, replace
 from typing import Any
 
-from roadproof.logic import syntax
-from roadproof.logic.parse import parse_claim
-from roadproof.logic.show import text
 from roadproof.spec.library import load_library
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, as_formula, ask
+from roadproof.witness.refute import negated
 
 
 @dataclass(frozen=True)
@@ -33,9 +31,7 @@ def check_bounded(request: Request) -> BoundedResult:
     """
     specification = load_library(request.specs).select(request.set_name, request.options)
     claim = as_formula(specification, request.what)[1]
-    parsed = parse_claim(claim)
-    negated = text(syntax.Claim(parsed.given, syntax.Prefix("not", parsed.body)))
-    outcome = ask(replace(request, what=negated, natural=False, count=1))
+    outcome = ask(replace(request, what=negated(claim), natural=False, count=1))
     if outcome.drives:
         return BoundedResult(claim, Verdict.REFUTED, "", outcome.drives[0], None)
     if outcome.impossibility is not None:

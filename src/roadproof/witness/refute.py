@@ -21,9 +21,13 @@ def refuting_drive(
     Looked for on the usual road at declared parameter values, ``seconds`` long. Raises
     ``InputError`` and ``UsageError`` for claims that are not about drives.
     """
-    parsed = parse_claim(claim)
-    negated = text(syntax.Claim(parsed.given, syntax.Prefix("not", parsed.body)))
     means = Means("smooth", time_limit=seconds, explain=False)
     values = default_values(load_library(specs))
-    outcome = ask(Request(negated, set_name, options, specs, values, means=means))
+    outcome = ask(Request(negated(claim), set_name, options, specs, values, means=means))
     return outcome.drives[0] if outcome.drives else None
+
+
+def negated(claim: str) -> str:
+    """The text of the negation of a claim, its ``given`` kept in front. Raises ``TextError``."""
+    parsed = parse_claim(claim)
+    return text(syntax.Claim(parsed.given, syntax.Prefix("not", parsed.body)))
