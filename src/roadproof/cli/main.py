@@ -31,8 +31,6 @@ COMMANDS = {
     "order": "roadproof.cli.order",
     "redundancy": "roadproof.cli.redundancy",
     "coverage": "roadproof.cli.coverage",
-    "explore": "roadproof.cli.explore",
-    "classify": "roadproof.cli.classify",
 }
 TRACEBACK = "ROADPROOF_TRACEBACK"
 _READER_GONE = 141  # what shells report for SIGPIPE; not 0, since the answer was not delivered
