@@ -13,6 +13,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import read_certificate, refusal
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.prove.prover import prove
+from roadproof.report.overlap import as_csv, as_matrix, draw_overlap
 from roadproof.solve.smt import ask
 from roadproof.spec.elaborate import apply_definition
 from roadproof.spec.library import bundled_library
@@ -164,3 +165,34 @@ def test_the_command_writes_what_it_promises_and_goes_on(
     assert again[kept["a"], kept["b"]]["seconds"] == kept["seconds"]
     assert main([*line, "--start", "any"]) == 2
     assert "another question" in capsys.readouterr().err
+
+
+def verdict(a: int, b: int, name: str, *core: str) -> dict[str, object]:
+    cores = [{"formula": "", "parts": list(core)}] if core else []
+    shown = {"a": a, "b": b, "set_a": "base", "set_b": "base", "verdict": name, "formula": "p and q"}
+    return {**shown, "core": list(core), "cores": cores, "certificate": None, "drive": None, "reason": ""}
+
+
+def test_the_matrix_is_symmetric_within_a_set_only() -> None:
+    answers = [
+        verdict(1, 4, "IMPOSSIBLE", "p", "not p"),
+        verdict(1, 5, "WITNESSED"),
+        verdict(4, 5, "UNKNOWN"),
+    ]
+    rows = as_matrix(answers, across=False).splitlines()
+    assert rows[:4] == ["      1  4  5", "   1     .  #", "   4  .     ?", "   5  #  ?   "]
+    assert as_matrix(answers, across=True).splitlines()[:3] == ["      4  5", "   1  .  #", "   4     ?"]
+    assert as_csv(answers).splitlines()[1] == "1,4,base,base,IMPOSSIBLE,p and q,p; not p,,"
+
+
+def test_the_heat_map_shows_every_core_once() -> None:
+    pytest.importorskip("matplotlib")
+    core = ("initSafe(SV, POV)", "not sameLane(POV, SV, L)")
+    answers = [
+        verdict(1, 3, "IMPOSSIBLE", *core),
+        verdict(1, 4, "IMPOSSIBLE", *core),
+        verdict(3, 4, "WITNESSED"),
+    ]
+    drawn = draw_overlap(answers, "title", across=False)
+    assert drawn["png"].startswith(b"\x89PNG")
+    assert drawn["svg"].count(b"not sameLane") == 1

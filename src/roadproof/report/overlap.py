@@ -51,7 +51,7 @@ def draw_overlap(verdicts: Sequence[Mapping[str, Any]], title: str, across: bool
     found = _cells(verdicts, across)
     captions, numbers = _captions(verdicts)
     lines = [line for k, caption in enumerate(captions, 1) for line in _caption(k, caption)]
-    figure, (axes, below) = make_figure([0.33 * len(rows) + 0.8, 0.3 + 0.15 * len(lines)])
+    figure, (axes, below) = make_figure([0.31 * len(rows) + 1.0, 0.3 + 0.14 * len(lines)], width=8.0)
     for y, row in enumerate(rows):
         for x, column in enumerate(columns):
             verdict = found.get((row, column))
@@ -70,7 +70,7 @@ def draw_overlap(verdicts: Sequence[Mapping[str, Any]], title: str, across: bool
     present = [v for v in SIGNS if v in found.values()]
     for verdict in present:
         axes.fill([], [], color=_COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
-    axes.legend(fontsize=6, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
+    axes.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0, 1.04), ncols=2, frameon=False)
     below.axis("off")
     below.text(0, 1, "\n".join(lines), fontsize=6, va="top", family="monospace", transform=below.transAxes)
     figure.suptitle(title, fontsize=9)
@@ -89,20 +89,21 @@ def _cells(verdicts: Sequence[Mapping[str, Any]], across: bool) -> dict[tuple[in
 
 def _captions(
     verdicts: Sequence[Mapping[str, Any]],
-) -> tuple[list[tuple[str, ...]], dict[tuple[int, int], int]]:
+) -> tuple[list[str], dict[tuple[int, int], int]]:
     """The different cores, and for each pair the number of its own from 1."""
-    captions: list[tuple[str, ...]] = []
+    captions: list[str] = []
     numbers: dict[tuple[int, int], int] = {}
     for x in verdicts:
-        core = tuple(x.get("core", ()))
-        if not core:
+        cores = dict.fromkeys("  ×  ".join(core["parts"]) for core in x.get("cores", ()))
+        if not cores:
             continue
-        if core not in captions:
-            captions.append(core)
-        numbers[x["a"], x["b"]] = captions.index(core) + 1
+        caption = ";   ".join(cores)
+        if caption not in captions:
+            captions.append(caption)
+        numbers[x["a"], x["b"]] = captions.index(caption) + 1
     return captions, numbers
 
 
-def _caption(number: int, core: Sequence[str]) -> list[str]:
-    """One core on lines; what clashes is joined by a cross."""
-    return wrap(f"{number:>3}  " + "  ×  ".join(core), 120, subsequent_indent="     ")
+def _caption(number: int, caption: str) -> list[str]:
+    """One caption on lines; what clashes is joined by a cross, one clash for each way to meet."""
+    return wrap(f"{number:>3}  {caption}", 115, subsequent_indent="     ")
