@@ -196,3 +196,26 @@ def test_the_heat_map_shows_every_core_once() -> None:
     drawn = draw_overlap(answers, "title", across=False)
     assert drawn["png"].startswith(b"\x89PNG")
     assert drawn["svg"].count(b"not sameLane") == 1
+
+
+def test_evidence_lies_beside_a_json_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "answers"
+    assert main(["overlap", "--among", "5,6", "--jobs", "1", "--json", str(target)]) == 0
+    (answer,) = json.loads(target.read_text())["verdicts"]
+    assert Path(answer["certificate"]).parent == tmp_path / "answers-evidence"
+    assert main(["check", answer["certificate"]]) == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "said"),
+    [
+        (["--among", "4"], 2, "at least two scenarios"),
+        (["--among", "4,99"], 3, "no scenario '99'"),
+        (["--set", "base", "--set", "base"], 2, "two different ones"),
+        (["--set", "bas"], 3, "did you mean 'base'"),
+        (["--timeout", "0"], 2, "greater than 0"),
+    ],
+)
+def test_mistakes(line: list[str], code: int, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["overlap", *line]) == code
+    assert said in capsys.readouterr().err

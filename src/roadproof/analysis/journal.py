@@ -35,7 +35,9 @@ class Journal:
             if not self.path.exists():
                 self._append({"question": question})
         except OSError as error:
-            raise InputError(f"cannot write into {folder}: {error.strerror}; choose another --out") from None
+            raise InputError(
+                f"cannot write into {folder}: {error.strerror}; name another folder with --out"
+            ) from None
 
     def answers(self) -> list[dict[str, Any]]:
         """The answers whose evidence file is still there; a last line cut short is left out."""
@@ -46,8 +48,8 @@ class Journal:
         entries = [entry for line in lines if (entry := _parsed(line)) is not None]
         if not entries or entries[0].get("question") != self.question:
             raise UsageError(
-                f"--out {self.folder} holds the answers to another question: name another folder, or "
-                f"remove {self.path}"
+                f"{self.folder} holds the answers to another question, or to this one under another library: "
+                f"name another folder with --out, or remove {self.path}"
             )
         return [e for e in entries[1:] if e.get("evidence") and (self.folder / e["evidence"]).is_file()]
 

@@ -39,7 +39,8 @@ examples:
   roadproof overlap --set base --set ext --among 1-8  scenarios of one set against those of another
 
 # held together on a judged drive, . proved impossible for all time (certificate and core).
-With --out, a run that was broken off goes on where it was; `roadproof check DIR` checks the evidence.
+Evidence goes to DIR, or with --json FILE alone to FILE-evidence; `roadproof check DIR` checks it.
+A run that was broken off goes on where it was.
 """
 
 
@@ -76,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     question = {"lanes": args.lanes, "roles": args.roles, "start": args.start}
     folder = args.out
     if folder is None and args.json not in (None, "-"):
-        folder = Path(args.json).with_suffix("")
+        folder = Path(args.json).with_name(f"{Path(args.json).stem}-evidence")
     verdicts = _settle(asked, pairs, folder, args.jobs)
     data = {
         "schema": SCHEMA,
