@@ -40,6 +40,7 @@ def test_every_occurrence_is_changed_to_both_values() -> None:
 
 def test_simple_predicates_are_opened_only_when_asked() -> None:
     assert changes("aheadOf(SV,POV)") == []
+    assert changes("F initialCondition_1(SV,POV,L)") == []
     assert len(changes("rssViolation(SV,POV)")) == 0
     assert len(changes("rssViolation(SV,POV)", whole=True)) > 10
     assert len(changes("F rssViolation(SV,POV)")) == 2

@@ -79,7 +79,7 @@ def changes_of(formula: Formula, whole: bool = False) -> Iterator[Change]:
             label = f"{current.name}({','.join(current.arguments)})"
             yield from walk(current.body, rebuild, (*where, label), positive, root)
             return
-        if isinstance(current, f.Truth):
+        if isinstance(current, f.Truth) or (isinstance(current, f.Named) and current.body == f.TRUE):
             return
         if not root:
             shown = text(as_syntax(current))
