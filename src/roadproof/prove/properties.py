@@ -85,10 +85,8 @@ def choose(tasks: Sequence[Task], names: Sequence[str], set_name: str | None) ->
 
 
 def read_claims(path: Path) -> list[str]:
-    """The claims of a file: paragraphs, with ``#`` comments. Raises ``InputError``."""
-    paragraphs = re.split(r"\n[ \t]*\n", read_specification(path).text.replace("\r\n", "\n"))
-    return [p.strip() for p in paragraphs if any(_is_claim_line(line) for line in p.splitlines())]
-
-
-def _is_claim_line(line: str) -> bool:
-    return bool(line.strip()) and not line.lstrip().startswith("#")
+    """The claims of a file: paragraphs, without ``#`` comments. Raises ``InputError``."""
+    text = read_specification(path).text.replace("\r\n", "\n")
+    kept = [line for line in text.split("\n") if not line.lstrip().startswith("#")]
+    lines = [line.partition("#")[0].rstrip() for line in kept]
+    return [claim.strip() for claim in re.split(r"\n{2,}", "\n".join(lines)) if claim.strip()]
