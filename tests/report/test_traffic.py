@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.report import write_traffic
 from roadproof.report.answers import answer_questions
 from roadproof.report.paper import MARK
 from roadproof.report.traffic import comparison_table, decimal, percent, results_table
@@ -130,7 +129,7 @@ def test_report_files(totals: Totals, tmp_path: Path) -> None:
 
 def test_unwritable(totals: Totals, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="cannot write"):
         write_report(tmp_path / "file", totals, {})
 
 
@@ -138,7 +137,7 @@ def test_half_a_file_is_never_seen(totals: Totals, tmp_path: Path, monkeypatch: 
     def fails(source: str, target: Path) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(write_traffic.write_whole.__globals__["os"], "replace", fails)
+    monkeypatch.setattr("roadproof.files.os.replace", fails)
     with pytest.raises(KeyboardInterrupt):
         write_report(tmp_path, totals, {})
     assert list(tmp_path.iterdir()) == []

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import shutil
 from collections import Counter
 from dataclasses import replace
@@ -12,7 +13,6 @@ import pytest
 
 from roadproof.errors import InputError
 from roadproof.traffic import experiment as module
-from roadproof.traffic import results
 from roadproof.traffic.evaluate import Findings, Match, Trace
 from roadproof.traffic.experiment import Experiment, run_experiment
 from roadproof.traffic.questions import default_settings
@@ -82,7 +82,7 @@ def test_killed_and_started_again(
     moment: int, folder: Path, undisturbed: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Killed while the ``moment``-th file is being put in its place: the next run ends the same."""
-    replace_file, calls = results.os.replace, [0]
+    replace_file, calls = os.replace, [0]
 
     def killed(source: str, target: Path) -> None:
         calls[0] += 1
@@ -90,10 +90,10 @@ def test_killed_and_started_again(
             raise KeyboardInterrupt
         replace_file(source, target)
 
-    monkeypatch.setattr(results.os, "replace", killed)
+    monkeypatch.setattr(os, "replace", killed)
     with pytest.raises(KeyboardInterrupt):
         run_experiment(Experiment(folder, tmp_path, default_settings()))
-    monkeypatch.setattr(results.os, "replace", replace_file)
+    monkeypatch.setattr(os, "replace", replace_file)
     assert not list(tmp_path.rglob(".*"))
     (tmp_path / "recordings").mkdir(exist_ok=True)
     (tmp_path / "recordings" / ".03.json.killed").write_text("{")  # what a hard kill may leave
@@ -158,7 +158,7 @@ def test_bad_recordings(folder: Path, tmp_path: Path) -> None:
 
 def test_unwritable_output(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="cannot write"):
         run_experiment(Experiment(folder, tmp_path / "file" / "out", default_settings()))
 
 

@@ -17,7 +17,8 @@ from roadproof.cli.options import (
     write_text,
 )
 from roadproof.cli.working import tell
-from roadproof.errors import InputError, UsageError
+from roadproof.errors import UsageError
+from roadproof.files import make_folder
 from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
         timeout=args.timeout,
     )
     if args.out is not None:
-        _make_folder(args.out)
+        make_folder(args.out)
     covered = prove_coverage(asked)
     proved = all(x.verdict is Verdict.PROVED for x in covered)
     found: list[Gap | NoGap] = []
@@ -114,13 +115,6 @@ def run(args: argparse.Namespace) -> int:
     return ExitCode.AS_EXPECTED if proved else ExitCode.UNEXPECTED if gaps else ExitCode.UNKNOWN
 
 
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make the folder {folder}: {error.strerror}") from None
-
-
 def _claim(covered: "Covered", number: int, folder: Path | None) -> dict[str, Any]:
     certificate = covered.certificate
     if folder is not None and certificate is not None:
@@ -146,8 +140,8 @@ def _gap(gap: "Gap", number: int, folder: Path | None) -> dict[str, Any]:
 
 
 def _draw(gaps: "list[Gap]", folder: Path, args: argparse.Namespace) -> None:
+    from roadproof.files import write_whole
     from roadproof.report.drive import draw_drive
-    from roadproof.report.files import write_whole
 
     library = load_library_of(args)
     for number, gap in enumerate(gaps, 1):

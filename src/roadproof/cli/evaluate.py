@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
+    add_reading_options,
     load_library_of,
     parameter_values,
     read_seconds,
@@ -62,23 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="truncated",
         help="what the end of a trace means (default: truncated)",
     )
-    parser.add_argument(
-        "--option",
-        dest="options",
-        metavar="NAME=VALUE",
-        action="append",
-        default=[],
-        help="choose a reading, such as lateral_sign=literal; may be repeated",
-    )
-    parser.add_argument(
-        "--spec",
-        dest="specs",
-        metavar="FILE",
-        action="append",
-        type=Path,
-        default=[],
-        help="a specification file of yours, on top of the library; may be repeated",
-    )
+    add_reading_options(parser)
     add_parameter_option(parser)
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument("--keep-going", action="store_true", help="leave out recordings that cannot be used")

@@ -89,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
         print(as_text(observed))
         print("; ".join(f"{name}: {value}" for name, value in told.items()))
     if args.picture is not None:
-        from roadproof.report.files import write_whole
+        from roadproof.files import write_whole
 
         write_whole(args.picture, draw_strips(observed)[args.picture.suffix[1:]])
     codes = {

@@ -2,16 +2,15 @@
 
 import argparse
 import json
-import os
 import re
 import sys
-import tempfile
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.errors import InputError, UsageError
+from roadproof.files import whole_file
 
 if TYPE_CHECKING:
     from roadproof.spec.library import Library, Specification
@@ -33,6 +32,11 @@ def add_specification_options(
     else:
         text = f"spec set{default}"
         parser.add_argument("--set", dest="set_name", metavar="S", default=set_name, help=text)
+    add_reading_options(parser)
+
+
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """``--option`` and ``--spec``: which readings, and which files on top of the library."""
     parser.add_argument(
         "--option",
         dest="options",
@@ -162,19 +166,6 @@ def write_json(data: Mapping[str, Any], target: str) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file whole or not at all: a reader never sees half of it. Raises ``InputError``."""
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists") from None
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except OSError as error:
-        os.unlink(temporary)
-        raise InputError(f"cannot write {path}: {error.strerror}") from None
-    except BaseException:
-        os.unlink(temporary)
-        raise
+    """Write a file whole or not at all, into a folder that exists. Raises ``InputError``."""
+    with whole_file(path) as file:
+        file.write(text.encode("utf-8"))

@@ -18,7 +18,8 @@ from roadproof.cli.options import (
     write_text,
 )
 from roadproof.cli.working import tell
-from roadproof.errors import InputError, UsageError
+from roadproof.errors import UsageError
+from roadproof.files import make_folder
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
     for name in sets:
         library.select(name, options)
     if args.out is not None:
-        _make_folder(args.out)
+        make_folder(args.out)
     asked = Asked(
         sets,
         options=options,
@@ -85,13 +86,6 @@ def run(args: argparse.Namespace) -> int:
     if args.json != "-":
         _print(data)
     return ExitCode.UNKNOWN if found.doubts else ExitCode.AS_EXPECTED
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make the folder {folder}: {error.strerror}") from None
 
 
 def _as_data(found: "Order", folder: Path | None) -> dict[str, Any]:
@@ -148,7 +142,7 @@ def _missing(found: "Order") -> list[dict[str, Any]]:
 
 
 def _write_pictures(data: Mapping[str, Any], folder: Path, pictures: bool) -> None:
-    from roadproof.report.files import write_whole
+    from roadproof.files import write_whole
     from roadproof.report.order import as_dot, draw_order
 
     write_json(data, str(folder / "index.json"))

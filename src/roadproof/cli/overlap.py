@@ -213,7 +213,7 @@ def _print(verdicts: Sequence[Mapping[str, Any]], across: bool, seconds: float) 
 
 
 def _write(data: Mapping[str, Any], folder: Path, across: bool, pictures: bool) -> None:
-    from roadproof.report.files import write_whole
+    from roadproof.files import write_whole
     from roadproof.report.overlap import as_csv, draw_overlap
 
     write_json(data, str(folder / "index.json"))

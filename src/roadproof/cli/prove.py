@@ -24,6 +24,7 @@ from roadproof.cli.options import (
     write_text,
 )
 from roadproof.errors import RoadproofError, UsageError
+from roadproof.files import make_folder
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     jobs = _jobs(args)
     if args.out is not None:
-        _make_folder(args.out)
+        make_folder(args.out)
     own = not jobs[0].task.title
     settled: list[Settled] = []
     files: dict[str, str] = {}
@@ -404,13 +405,6 @@ def _counterexample(settled: Settled) -> dict[str, Any] | None:
 
 
 # --- files ---------------------------------------------------------------------------------------
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"--out {folder}: {error.strerror}; name a folder that can be made") from None
 
 
 def _write_evidence(settled: Settled, folder: Path) -> dict[str, str]:

@@ -80,7 +80,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.report.files import write_whole
+    from roadproof.files import write_whole
     from roadproof.traffic.planting import PLANTED_COLUMNS, lane_width, rows_of
     from roadproof.traffic.simulate import Traffic
 

@@ -2,7 +2,6 @@
 
 import argparse
 import os
-import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING
 from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
 from roadproof.cli.search_options import add_search_options, read_request
 from roadproof.errors import InputError, UsageError
+from roadproof.files import write_whole
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
@@ -180,17 +180,5 @@ def fulfil(task: Task) -> "Outcome":
         write_text(task.folder / f"{stem}.csv", csv_of(data))
         if task.pictures:
             for kind, content in draw_drive(data, load_library(task.request.specs)).items():
-                _write_bytes(task.folder / f"{stem}.{kind}", content)
+                write_whole(task.folder / f"{stem}.{kind}", content)
     return outcome
-
-
-def _write_bytes(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from None

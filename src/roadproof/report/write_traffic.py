@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from roadproof.files import write_whole
 from roadproof.report.answers import answer_questions
-from roadproof.report.files import write_whole
 from roadproof.report.tables import LOOKS
 from roadproof.report.traffic import comparison_table, results_table
 from roadproof.report.traffic_figures import draw_figures

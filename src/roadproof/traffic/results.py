@@ -7,17 +7,16 @@ a run that was killed and started again ends with the same bytes as one that was
 import csv
 import hashlib
 import json
-import os
-import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Any, TextIO
 
-from roadproof.errors import InputError
+from roadproof.files import make_folder, whole_file
 from roadproof.traffic.detectors import Detection
 from roadproof.traffic.evaluate import Findings, Match, Trace
 from roadproof.traffic.questions import Settings
@@ -63,7 +62,7 @@ def save_findings(path: Path, findings: Findings, mark: str) -> None:
     for name in _ROWS:
         found[name] = [list(vars(row).values()) for row in found[name]]
     told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "findings": found}
-    with whole_file(path) as file:
+    with whole_text(path) as file:
         file.write(json.dumps(told) + "\n")
 
 
@@ -84,21 +83,15 @@ _ROWS: Mapping[str, Callable[..., Any]] = {"traces": Trace, "matches": Match, "d
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[TextIO]:
-    """A file to write to that appears whole, or not at all if anything fails. Raises ``InputError``."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+def whole_text(path: Path) -> Iterator[TextIO]:
+    """A text file that appears whole or not at all; its folder is made. Raises ``InputError``."""
+    make_folder(path.parent)
+    with whole_file(path) as file:
+        text = TextIOWrapper(file, "utf-8", newline="")
         try:
-            with os.fdopen(descriptor, "w", encoding="utf-8", newline="") as file:
-                yield file
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror}); choose another folder") from None
+            yield text
+        finally:
+            text.detach()
 
 
 @dataclass
@@ -221,7 +214,7 @@ def write_results(
     """
     totals = begin_totals(settings)
     notes = {}
-    with whole_file(folder / "matches.csv") as matches, whole_file(folder / "pairs.csv") as pairs:
+    with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
         match_rows.writerow(MATCH_COLUMNS)
         pair_rows.writerow((*PAIR_COLUMNS, *settings.sets))
@@ -231,7 +224,7 @@ def write_results(
             pair_rows.writerows(_pair_rows(settings, found))
             if found.notes:
                 notes[found.recording] = list(found.notes)
-    with whole_file(folder / "results.json") as file:
+    with whole_text(folder / "results.json") as file:
         told = {**as_json(totals), "notes": notes, "failed": dict(failed)}
         file.write(json.dumps(told, indent=1) + "\n")
     return totals

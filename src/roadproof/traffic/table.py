@@ -6,8 +6,6 @@ first cell that breaks a rule is named by file, row (the header is row 1), colum
 """
 
 import math
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError, MissingSolverError
+from roadproof.files import whole_file
 
 Kind: TypeAlias = Literal["integer", "number", "text"]
 Column: TypeAlias = npt.NDArray[Any]
@@ -82,20 +81,8 @@ def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None 
     pl = _polars()
 
     frame = pl.DataFrame({name: pl.Series(name, values) for name, values in columns.items()})
-    try:
-        descriptor, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(descriptor, "wb") as file:
-                frame.write_csv(file, float_precision=decimals, float_scientific=False if decimals else None)
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
-    except OSError as error:
-        raise InputError(
-            f"{path}: the file cannot be written ({error.strerror}); choose another folder"
-        ) from None
+    with whole_file(path) as file:
+        frame.write_csv(file, float_precision=decimals, float_scientific=False if decimals else None)
 
 
 def _polars() -> ModuleType:

@@ -1,0 +1,45 @@
+"""Files that appear whole or not at all: a reader never sees half of one."""
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from roadproof.errors import InputError
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[BinaryIO]:
+    """A file to write bytes to, by way of a hidden one beside it, which is gone if anything fails.
+
+    The folder must exist. Raises ``InputError`` where the file cannot be written.
+    """
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                yield file
+            os.chmod(temporary, 0o644)
+            os.replace(temporary, path)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists") from None
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder, and those above it, where there is none. Raises ``InputError``."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot write into {folder}: {error.strerror}; name another folder") from None
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file, and make its folder where there is none. Raises ``InputError``."""
+    make_folder(path.parent)
+    with whole_file(path) as file:
+        file.write(content)
