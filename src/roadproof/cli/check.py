@@ -2,14 +2,12 @@
 
 import argparse
 import json
-import os
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.cli.options import add_json_option, write_json
+from roadproof.cli.working import work_in_order
 from roadproof.errors import InputError, RoadproofError
 from roadproof.verdict import ExitCode
 
@@ -73,11 +71,10 @@ class Finding:
 def run(args: argparse.Namespace) -> int:
     jobs = [Job(path, tuple(args.specs), args.solver, args.timeout) for path in _files(args.paths)]
     findings: list[Finding] = []
-    with _findings(jobs, args.jobs) as found:
-        for finding in found:
-            findings.append(finding)
-            if not finding.accepted and args.json != "-":
-                print(f"rejected  {finding.path}: {finding.reason}", flush=True)
+    for finding in work_in_order(examine, jobs, args.jobs):
+        findings.append(finding)
+        if not finding.accepted and args.json != "-":
+            print(f"rejected  {finding.path}: {finding.reason}", flush=True)
     accepted = sum(finding.accepted for finding in findings)
     if args.json != "-":
         print(f"{accepted} of {len(findings)} accepted by {args.solver} and the exact judge")
@@ -109,21 +106,6 @@ def _files(paths: Sequence[Path]) -> list[Path]:
         else:
             raise InputError(f"{path} does not exist")
     return files
-
-
-@contextmanager
-def _findings(jobs: Sequence[Job], processes: int | None) -> Iterator[Iterator[Finding]]:
-    workers = min(processes or os.cpu_count() or 1, len(jobs))
-    if workers <= 1:
-        yield map(examine, jobs)
-        return
-    with ProcessPoolExecutor(workers) as pool:
-        try:
-            yield pool.map(examine, jobs, chunksize=4)
-        except BaseException:
-            for process in list((pool._processes or {}).values()):
-                process.kill()
-            raise
 
 
 def examine(job: Job) -> Finding:

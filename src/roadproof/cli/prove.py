@@ -1,13 +1,9 @@
 """``roadproof prove``: claims over dense time, for all horizons and parameter values, with certificates."""
 
 import argparse
-import os
 import re
-import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import groupby
@@ -23,6 +19,7 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
+from roadproof.cli.working import tell, work_in_order
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.files import make_folder
 from roadproof.verdict import Verdict, exit_code
@@ -131,14 +128,13 @@ def run(args: argparse.Namespace) -> int:
     own = not jobs[0].task.title
     settled: list[Settled] = []
     files: dict[str, str] = {}
-    with _answers(jobs, args.jobs) as answers:
-        for number, answer in enumerate(answers, 1):
-            settled.append(answer)
-            if args.out is not None:
-                files |= _write_evidence(answer, args.out)
-            _progress(f"{number} of {len(jobs)} claims", number == len(jobs))
-            if args.json != "-" and (own or args.verbose):
-                print(_details(answer) if own else _line(answer), flush=True)
+    for number, answer in enumerate(work_in_order(settle, jobs, args.jobs), 1):
+        settled.append(answer)
+        if args.out is not None:
+            files |= _write_evidence(answer, args.out)
+        tell(f"{number} of {len(jobs)} claims", number == len(jobs))
+        if args.json != "-" and (own or args.verbose):
+            print(_details(answer) if own else _line(answer), flush=True)
     if args.out is not None:
         index = [_index_entry(s, files.get(s.task.name)) for s in settled]
         write_json({"schema": "roadproof/index/1", "claims": index}, str(args.out / "index.json"))
@@ -192,25 +188,6 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         raise UsageError(f"none of {', '.join(named)} is stated for set={args.set_name}: leave out --set")
     seek_drive = not args.no_drive
     return [Job(task, tuple(args.specs), options, args.timeout, seek_drive, bounded) for task in tasks]
-
-
-@contextmanager
-def _answers(jobs: Sequence[Job], processes: int | None) -> Iterator[Iterator[Settled]]:
-    """Results in the order of ``jobs``; one job runs in this process."""
-    workers = min(processes or os.cpu_count() or 1, len(jobs))
-    if workers == 1:
-        yield map(settle, jobs)
-        return
-    pool = ProcessPoolExecutor(workers)
-    try:
-        yield pool.map(settle, jobs, chunksize=4 if len(jobs) > 16 else 1)
-    except BaseException:
-        # Without this, an interrupted or failed run would wait for every claim still queued.
-        for process in list((pool._processes or {}).values()):
-            process.kill()
-        raise
-    finally:
-        pool.shutdown(cancel_futures=True)
 
 
 def settle(job: Job) -> Settled:
@@ -273,11 +250,6 @@ def _refuting_drive(job: Job) -> Mapping[str, Any] | None:
 
 
 # --- what is answered ----------------------------------------------------------------------------
-
-
-def _progress(text: str, last: bool) -> None:
-    if sys.stderr.isatty():
-        print(f"\r{text}", end="\n" if last else "", file=sys.stderr, flush=True)
 
 
 def _line(settled: Settled) -> str:

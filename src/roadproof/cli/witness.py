@@ -3,15 +3,14 @@
 import argparse
 import os
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
 from roadproof.cli.search_options import add_search_options, read_request
+from roadproof.cli.working import count_workers, work_in_order
 from roadproof.errors import InputError, UsageError
 from roadproof.files import write_whole
 from roadproof.verdict import Verdict, exit_code
@@ -60,11 +59,12 @@ def run(args: argparse.Namespace) -> int:
         make_folder(args.out)
     outcomes: list[Outcome] = []
     tasks = [Task(r, k + 1, args.out, not args.no_pictures) for k, r in enumerate(requests)]
-    with _answers(tasks, args.jobs) as answers:
-        for outcome in answers:
-            outcomes.append(outcome)
-            if args.json != "-":
-                print(_line(outcome, args.verbose), flush=True)
+    if count_workers(tasks, args.jobs) > 1:
+        _warm_up()
+    for outcome in work_in_order(fulfil, tasks, args.jobs):
+        outcomes.append(outcome)
+        if args.json != "-":
+            print(_line(outcome, args.verbose), flush=True)
     if args.json:
         verdicts = [outcome.as_json() for outcome in outcomes]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
@@ -101,25 +101,6 @@ class Task:
     number: int
     folder: Path | None
     pictures: bool
-
-
-@contextmanager
-def _answers(tasks: Sequence[Task], jobs: int | None) -> "Iterator[Iterator[Outcome]]":
-    """The outcomes in the order of the tasks; several processes where there are several tasks."""
-    workers = min(jobs or os.cpu_count() or 1, len(tasks))
-    if workers <= 1:
-        yield map(fulfil, tasks)
-        return
-    _warm_up()
-    pool = ProcessPoolExecutor(workers)
-    try:
-        yield pool.map(fulfil, tasks)
-    except BaseException:
-        for process in list((pool._processes or {}).values()):
-            process.kill()
-        raise
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
 
 
 def _warm_up() -> None:

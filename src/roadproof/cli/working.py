@@ -2,8 +2,9 @@
 
 import os
 import sys
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from typing import TypeVar
 
 from roadproof.errors import UsageError
@@ -19,17 +20,41 @@ def work(
 
     The iterator is to be used up or closed. An error in a job, or an interruption, ends the others.
     """
-    if processes is not None and processes < 1:
-        raise UsageError(f"--jobs {processes} must be greater than 0")
-    workers = min(processes or os.cpu_count() or 1, len(jobs))
+    workers = count_workers(jobs, processes)
     if workers <= 1:
         yield from map(function, jobs)
         return
-    pool = ProcessPoolExecutor(workers)
-    try:
+    with _pool(workers) as pool:
         for future in as_completed([pool.submit(function, job) for job in jobs]):
             yield future.result()
+
+
+def work_in_order(
+    function: Callable[[Job], Answer], jobs: Sequence[Job], processes: int | None
+) -> Generator[Answer, None, None]:
+    """As ``work``, but in the order of ``jobs``."""
+    workers = count_workers(jobs, processes)
+    if workers <= 1:
+        yield from map(function, jobs)
+        return
+    with _pool(workers) as pool:
+        yield from pool.map(function, jobs, chunksize=4 if len(jobs) > 100 else 1)
+
+
+def count_workers(jobs: Sequence[object], processes: int | None) -> int:
+    """How many processes the jobs are given. Raises ``UsageError`` where none would be left."""
+    if processes is not None and processes < 1:
+        raise UsageError(f"--jobs {processes} must be greater than 0")
+    return min(processes or os.cpu_count() or 1, len(jobs))
+
+
+@contextmanager
+def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    pool = ProcessPoolExecutor(workers)
+    try:
+        yield pool
     except BaseException:
+        # Without this, a run that failed or was interrupted would wait for every job still queued.
         for process in list((pool._processes or {}).values()):
             process.kill()
         raise

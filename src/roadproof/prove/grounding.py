@@ -92,6 +92,10 @@ class Grounding:
     _known: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
     _declared: set[str] = field(default_factory=set)
 
+    def known_parameters(self) -> list[str]:
+        """The parameters that some clause speaks of."""
+        return [name for name in self.bounds if name in self._declared]
+
     def demand(self, formula: Formula, positive: bool) -> None:
         """Assert an atomised formula, or its negation, at time 0."""
         self.session.tell(f"(assert {self.truth(formula, positive, ZERO)})")

@@ -142,7 +142,7 @@ class Search:
         """Values of all named times and parameters in the current model."""
         grounding = self.grounding
         names = [name for name in grounding.names.values() if at(name) in grounding.moments]
-        names += [name for name in grounding.bounds if name in grounding._declared]
+        names += grounding.known_parameters()
         read = grounding.session.values(names)
         return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
 
