@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all: a reader never sees half of one."""
+"""Files that appear whole or not at all: a reader never sees half of one; and reading with a limit."""
 
 import os
 import tempfile
@@ -43,3 +43,15 @@ def write_whole(path: Path, content: bytes) -> None:
     make_folder(path.parent)
     with whole_file(path) as file:
         file.write(content)
+
+
+def read_limited(path: Path, most: int, advice: str) -> bytes:
+    """The bytes of a file of at most ``most``. Raises ``InputError``, with ``advice`` where it is larger."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(most + 1)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    if len(data) > most:
+        raise InputError(f"{path} is larger than {most} bytes: {advice}")
+    return data

@@ -52,7 +52,7 @@ def certify(
     formula = query.formula
     atoms = Atoms()
     atomised = atoms.atomise(formula)
-    bounds = {name: p.bound for name, p in specification.library.parameters.items()}
+    bounds = specification.library.bounds
     ground = derive_query(atomised, atoms, instances, names, lemmas, bounds, query.lanes)
     queries = [("claim", ground)]
     for number, lemma in enumerate(lemmas, 1):

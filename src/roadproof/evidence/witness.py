@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, cast, get_args
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.files import read_limited
 from roadproof.judge.exact import Judgement, judge
 from roadproof.judge.replay import first_overlap
 from roadproof.spec.bind import bind, default_values
@@ -126,13 +127,7 @@ def _motion_json(motion: Motion) -> dict[str, Any]:
 
 def load_drive(path: Path) -> DriveFile:
     """Read a drive file. Raises ``InputError`` naming file, field, value and rule."""
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    if len(data) > LARGEST_FILE:
-        raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: this is no drive file")
+    data = read_limited(path, LARGEST_FILE, "this is no drive file")
     try:
         content = json.loads(data.decode("utf-8"))
     except (UnicodeDecodeError, ValueError, RecursionError):

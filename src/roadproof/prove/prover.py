@@ -8,7 +8,7 @@ from fractions import Fraction
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify
-from roadproof.evidence.derivation import Lemma, Site, met_names
+from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.prove.countermodel import Countermodel, realise
@@ -64,7 +64,7 @@ def prove(
     atoms = Atoms()
     atomised = atoms.atomise(query.formula)
     defaults = default_values(specification.library)
-    bounds = {name: p.bound for name, p in specification.library.parameters.items()}
+    bounds = specification.library.bounds
     states = StateChecker(atoms, bounds, defaults)
     attempt = _Attempt(atoms, bounds, defaults, states, query.lanes, deadline)
 
@@ -152,9 +152,16 @@ class _Attempt:
         return last
 
     def never_holds(self, premise: Formula) -> bool:
-        """Whether the negation of ``premise`` is proved quickly."""
+        """Whether the negation of ``premise`` is proved quickly, its query derived apart as for a claim."""
         until = min(self.deadline, time.monotonic() + VACUITY_SECONDS)
-        return isinstance(self._search(f.negation(premise), {}, True).run(until), Proof)
+        names: dict[Site, str] = {}
+        goal = f.negation(premise)
+        proof = self._search(goal, names, True).run(until)
+        if not isinstance(proof, Proof):
+            return False
+        met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.lanes)
+        query = derive_query(goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.lanes)
+        return ask(query, timeout=VACUITY_SECONDS) == "unsat"
 
     def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:
         return Search(goal, self.atoms, self.bounds, self.states, self.lanes, names, wishful)
@@ -180,8 +187,7 @@ def _certificate(
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
     try:
-        bounds = {name: p.bound for name, p in specification.library.parameters.items()}
-        met = met_names(atomised, atoms, instances, names, bounds, query.lanes)
+        met = met_names(atomised, atoms, instances, names, specification.library.bounds, query.lanes)
         made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
         return certify(specification, query.text, instances, met, made, label, scenario)
     except InputError as error:

@@ -13,6 +13,7 @@ from importlib import resources
 from pathlib import Path
 
 from roadproof.errors import InputError, Position, TextError
+from roadproof.files import read_limited
 from roadproof.logic import syntax
 from roadproof.logic.parse import parse_library
 from roadproof.logic.syntax import (
@@ -50,6 +51,11 @@ class Library:
     sets: Mapping[str, SetBlock]
     variants: Mapping[tuple[str, str], tuple[Definition, ...]]
     sources: Mapping[str, Source]
+
+    @property
+    def bounds(self) -> dict[str, str]:
+        """The declared bound of every parameter against 0: ``>``, ``>=`` or none ('')."""
+        return {name: parameter.bound for name, parameter in self.parameters.items()}
 
     def select(self, set_name: str = "base", options: Mapping[str, str] | None = None) -> "Specification":
         """The definitions in force for a spec set and option values (defaults where not given).
@@ -118,13 +124,7 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
 
 def read_specification(path: Path) -> Source:
     """The text of a user's file. Raises ``InputError`` where it cannot be read as UTF-8 text."""
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    if len(data) > LARGEST_FILE:
-        raise InputError(f"{path} is larger than {LARGEST_FILE} bytes: split it, or name another file")
+    data = read_limited(path, LARGEST_FILE, "split it, or name another file")
     try:
         return Source(str(path), data.decode("utf-8"))
     except UnicodeDecodeError as error:
