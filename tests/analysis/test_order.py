@@ -4,9 +4,17 @@ import json
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from roadproof.analysis.meeting import Node
-from roadproof.analysis.order import Edge, Kind, Order, find_order, kinds_of
+from roadproof.analysis.order import (
+    decide_family,
+    families_of,
+    kinds_of,
+    reachable,
+    transitive_reduction,
+)
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
 from roadproof.report.order import as_dot
@@ -28,11 +36,19 @@ def test_scenarios_with_one_formula_are_one_kind() -> None:
 
 
 def test_implications_are_chains_of_edges() -> None:
-    a, b, c = node(1), node(1, "extA"), node(1, "ext")
-    order = Order(tuple(Kind((x,), 0) for x in (a, b, c)), [Edge(a, b, "", ""), Edge(b, c, "", "")])
-    assert order.implies(a, c)
-    assert not order.implies(c, a)
+    pairs = {("a", "b"), ("b", "c"), ("a", "c"), ("c", "d")}
+    assert reachable("a", pairs) == {"a", "b", "c", "d"}
+    assert reachable("d", pairs) == {"d"}
+    assert transitive_reduction(pairs) == {("a", "b"), ("b", "c"), ("c", "d")}
     assert as_dot([["1@base"], ["1@ext"]], [{"from": "1@base", "to": "1@ext"}]).count("->") == 1
+
+
+@given(st.sets(st.tuples(st.sampled_from("abcde"), st.sampled_from("abcde"))))
+def test_a_reduction_reaches_as_far(pairs: set[tuple[str, str]]) -> None:
+    reduced = transitive_reduction(pairs)
+    assert reduced <= pairs
+    assert all(reachable(x, reduced) == reachable(x, pairs) for x in "abcde")
+    assert all(below not in reachable(above, reduced - {(above, below)}) for above, below in reduced)
 
 
 def test_every_answer_comes_with_its_evidence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -64,9 +80,40 @@ def call(name: str) -> str:
     return f"scenario_{number}{'' if set_name == 'base' else '@' + set_name}(SV,POV,L)"
 
 
-def test_scenarios_of_different_size_are_compared(tmp_path: Path) -> None:
-    order = find_order(Asked(timeout=60.0), (2, 4))
-    assert order.edges == []
-    assert order.doubts == []
-    refuted = {(drive.node.number, other.number) for drive in order.drives for other in drive.others}
+def test_scenarios_of_different_size_are_compared() -> None:
+    asked = Asked(timeout=60.0)
+    kinds = kinds_of(asked, (2, 4))
+    refuted = set()
+    for family in families_of(kinds):
+        decided = decide_family(asked, kinds, family)
+        assert decided.edges == ()
+        assert decided.doubts == ()
+        refuted |= {(drive.node.number, other.number) for drive in decided.drives for other in drive.others}
     assert refuted == {(2, 4), (4, 2)}
+
+
+def test_a_run_that_was_broken_off_goes_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    line = ["order", "--set", "base", "--among", "1,6", "--out", str(out), "--no-pictures", "--json", "-"]
+    assert main([*line, "--jobs", "1"]) == 0
+    whole = json.loads(capsys.readouterr().out)
+    journal = out / "answers.jsonl"
+    first, second, _ = journal.read_text().splitlines(keepends=True)
+    journal.write_text(first + second)
+    before = {path.name: path.stat().st_mtime_ns for path in out.glob("drive-*")}
+    assert main([*line, "--jobs", "1"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert {k: v for k, v in again.items() if k != "seconds"} == {
+        k: v for k, v in whole.items() if k != "seconds"
+    }
+    after = {path.name: path.stat().st_mtime_ns for path in out.glob("drive-*")}
+    kept = {name for name in before if before[name] == after[name]}
+    assert kept == {name for name in before if "base-01" in name} != set(before)
+
+
+def test_a_family_in_doubt_is_asked_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    line = ["order", "--set", "base", "--among", "1,6", "--out", str(out), "--no-pictures", "--jobs", "1"]
+    assert main([*line, "--timeout", "0.01"]) == 20
+    assert "in doubt: 1@base -> 6@base" in capsys.readouterr().out
+    assert main(line) == 0

@@ -1,13 +1,13 @@
 """Answers kept as they come, so that a run that was broken off goes on where it was.
 
-A folder holds one evidence file an answer (certificate or drive) and ``answers.jsonl``: a first line
-that says what was asked, then a line for each answer.
+A folder holds the evidence files of the answers (certificates and drives) and ``answers.jsonl``: a first
+line that says what was asked, then a line for each answer with the names of its files.
 """
 
 import hashlib
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +40,10 @@ class Journal:
             ) from None
 
     def answers(self) -> list[dict[str, Any]]:
-        """The answers whose evidence file is still there; a last line cut short is left out."""
+        """The answers whose evidence files are all still there; a last line cut short is left out.
+
+        An answer without evidence is a doubt, to be asked again.
+        """
         try:
             lines = self.path.read_text("utf-8").splitlines()
         except (OSError, UnicodeDecodeError) as error:
@@ -51,11 +54,14 @@ class Journal:
                 f"{self.folder} holds the answers to another question, or to this one under another library: "
                 f"name another folder with --out, or remove {self.path}"
             )
-        return [e for e in entries[1:] if e.get("evidence") and (self.folder / e["evidence"]).is_file()]
+        return [e for e in entries[1:] if e.get("evidence") and self._all_there(e["evidence"])]
 
     def add(self, answer: Mapping[str, Any]) -> None:
-        """Append one answer; its evidence file has been written before."""
+        """Append one answer; the files that ``evidence`` names have been written before."""
         self._append(answer)
+
+    def _all_there(self, names: Sequence[str]) -> bool:
+        return all((self.folder / name).is_file() for name in names)
 
     def _append(self, entry: Mapping[str, Any]) -> None:
         torn = self.path.exists() and self.path.stat().st_size > 0 and not self._ends_well()

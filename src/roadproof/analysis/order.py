@@ -3,11 +3,12 @@
 ``a -> b`` is about all traces, roads, lanes L and parameter values, with the same roles. Where one of
 the two has more vehicles, the other may have any of its POVs: there is an edge if one such reading is
 proved, and none if a drive refutes each. Nodes with one formula share all evidence, and a drive found for
-one road sector is put on roads of the others.
+one road sector is put on roads of the others. Families of nodes that differ in their sectors only share
+nothing with other families, so that each can be decided by itself.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import permutations
 from typing import Any
@@ -62,25 +63,22 @@ class Refuting:
     data: Mapping[str, Any]
 
 
-@dataclass
-class Order:
-    """``edges`` generate all implications between kinds; ``doubts`` are pairs that are not decided."""
+@dataclass(frozen=True)
+class Doubt:
+    """An implication of which some reading was neither proved nor refuted, nor any proved."""
 
-    kinds: tuple[Kind, ...]
-    edges: list[Edge] = field(default_factory=list)
-    drives: list[Refuting] = field(default_factory=list)
-    doubts: list[tuple[Node, Node, str]] = field(default_factory=list)
+    above: Node
+    below: Node
+    reason: str
 
-    def implies(self, one: Node, other: Node) -> bool:
-        """Whether a chain of edges leads from one kind to the other."""
-        seen, waiting = {one}, [one]
-        while waiting:
-            current = waiting.pop()
-            for edge in self.edges:
-                if edge.above == current and edge.below not in seen:
-                    seen.add(edge.below)
-                    waiting.append(edge.below)
-        return other in seen
+
+@dataclass(frozen=True)
+class Decided:
+    """All that was found about implications: together it settles each of them, or doubts it."""
+
+    edges: tuple[Edge, ...] = ()
+    drives: tuple[Refuting, ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
 
 def kinds_of(asked: Asked, numbers: Sequence[int] | None = None) -> tuple[Kind, ...]:
@@ -111,11 +109,38 @@ def _text(asked: Asked, node: Node) -> str:
     return applied(node, specification, vehicles_of(specification, node))
 
 
-def find_order(
-    asked: Asked, numbers: Sequence[int] | None = None, tell: Callable[[str], None] = lambda _: None
-) -> Order:
-    """Decide all implications between the scenarios of ``asked``; ``tell`` hears about the progress."""
-    return _Ordering(asked, kinds_of(asked, numbers), tell).run()
+def families_of(kinds: Sequence[Kind]) -> list[tuple[Kind, ...]]:
+    """The kinds in groups that differ in their road sectors only."""
+    families: dict[int, list[Kind]] = {}
+    for kind in kinds:
+        families.setdefault(kind.like, []).append(kind)
+    return [tuple(family) for family in families.values()]
+
+
+def decide_family(asked: Asked, kinds: Sequence[Kind], family: Sequence[Kind]) -> Decided:
+    """Decide the implications from the kinds of ``family`` to all other ``kinds``."""
+    return _Deciding(asked, tuple(kinds), tuple(family)).run()
+
+
+def transitive_reduction(pairs: Set[tuple[str, str]]) -> set[tuple[str, str]]:
+    """The pairs of a relation that do not follow from others by a chain."""
+    kept = set(pairs)
+    for above, below in sorted(pairs):
+        rest = kept - {(above, below)}
+        if below in reachable(above, rest):
+            kept = rest
+    return kept
+
+
+def reachable(name: str, pairs: Set[tuple[str, str]]) -> set[str]:
+    """All that a chain of pairs leads to from ``name``, and ``name``."""
+    seen, waiting = {name}, [name]
+    while waiting:
+        current = waiting.pop()
+        new = {below for above, below in pairs if above == current} - seen
+        seen |= new
+        waiting += new
+    return seen
 
 
 @dataclass(frozen=True)
@@ -126,48 +151,41 @@ class _Cast:
     others: tuple[tuple[Node, str], ...]
 
 
-class _Ordering:
-    def __init__(self, asked: Asked, kinds: tuple[Kind, ...], tell: Callable[[str], None]) -> None:
+class _Deciding:
+    def __init__(self, asked: Asked, kinds: tuple[Kind, ...], family: tuple[Kind, ...]) -> None:
         self.asked = asked
         self.library, self.specification = asked.load()
         self.values = {**default_values(self.library), **asked.values}
-        self.order = Order(kinds)
-        self.tell = tell
-        self.pool: dict[int, list[Shown]] = {}
+        self.kinds = kinds
+        self.family = family
+        self.pool: list[Shown] = []
         self.queries: dict[str, Query] = {}
+        self.edges: list[Edge] = []
+        self.drives: list[Refuting] = []
+        self.doubts: list[Doubt] = []
         # By kind and kind: the readings of the second that no drive has refuted yet.
         self.open: dict[tuple[Node, Node], set[tuple[str, str]]] = {}
 
-    def run(self) -> Order:
-        kinds = self.order.kinds
-        for kind in kinds:
+    def run(self) -> Decided:
+        for kind in self.family:
             for cast in self._casts(kind):
-                for other, text in cast.others:
-                    self.open.setdefault((kind.node, other), set()).add((cast.text, text))
-        for number, kind in enumerate(kinds, 1):
-            self.tell(f"{number} of {len(kinds)} formulas: drives")
+                for node, text in cast.others:
+                    self.open.setdefault((kind.node, node), set()).add((cast.text, text))
+        for kind in self.family:
             self._refute_with_pool(kind)
-        left = sorted((pair for pair, readings in self.open.items() if readings), key=self._distance)
-        for number, (one, other) in enumerate(left, 1):
-            self.tell(f"{number} of {len(left)} implications that no drive has refuted")
-            if self.open[one, other] and not self.order.implies(one, other):
-                self._decide(one, other)
-        self._reduce()
-        return self.order
-
-    def _distance(self, pair: tuple[Node, Node]) -> tuple[bool, int, int, int]:
-        """Neighbouring sets first, so that what follows by a chain is not proved again."""
-        one, other = pair
-        steps = self.asked.sets.index(other.set_name) - self.asked.sets.index(one.set_name)
-        return steps < 0, abs(steps), one.number, other.number
+        for kind in self.family:
+            for other in (x.node for x in self.kinds):
+                if self.open.get((kind.node, other)):
+                    self._decide(kind, other)
+        return Decided(tuple(self.edges), tuple(self.drives), tuple(self.doubts))
 
     # --- drives ----------------------------------------------------------------------------------
 
     def _casts(self, kind: Kind) -> Iterator[_Cast]:
         mine = vehicles_of(self.specification, kind.node)
         by_size: dict[tuple[str, ...], list[tuple[Node, str]]] = {}
-        for other in self.order.kinds:
-            if other is kind:
+        for other in self.kinds:
+            if other == kind:
                 continue
             theirs = vehicles_of(self.specification, other.node)
             if len(theirs) <= len(mine):
@@ -187,19 +205,19 @@ class _Ordering:
     def _refute_with_pool(self, kind: Kind) -> None:
         text = _text(self.asked, kind.node)
         alone = " and ".join([text, *(f"not {x}" for x in self._same_elsewhere(kind))])
-        if not self.pool.get(kind.like):
+        if not self.pool:
             found = self._ask(text, text)
             if found is None:
                 return
-            self.pool.setdefault(kind.like, []).append(found)
-        for shown in tuple(self.pool[kind.like]):
+            self.pool.append(found)
+        for shown in tuple(self.pool):
             placed = show_elsewhere(shown, alone, self.library)
             if placed is not None:
                 self._use(kind, placed)
 
     def _same_elsewhere(self, kind: Kind) -> list[str]:
         """The kinds that differ from this one in the sector only."""
-        return [_text(self.asked, x.node) for x in self.order.kinds if x.like == kind.like and x is not kind]
+        return [_text(self.asked, x.node) for x in self.family if x != kind]
 
     def _use(self, kind: Kind, shown: Shown) -> None:
         """Refute with a drive all that it refutes of what is still open."""
@@ -214,9 +232,7 @@ class _Ordering:
             ruling = judge_file(file, self.library)
             if not ruling.accepted:
                 continue
-            self.order.drives.append(
-                Refuting(kind.node, tuple(node for node, _ in false), as_data(file, ruling))
-            )
+            self.drives.append(Refuting(kind.node, tuple(node for node, _ in false), as_data(file, ruling)))
             for node, text in false:
                 self.open[kind.node, node].discard((cast.text, text))
 
@@ -258,45 +274,37 @@ class _Ordering:
 
     # --- proofs ----------------------------------------------------------------------------------
 
-    def _decide(self, one: Node, other: Node) -> None:
+    def _decide(self, kind: Kind, other: Node) -> None:
         """A proof of one of the readings, or drives against all that are left."""
-        kind = next(k for k in self.order.kinds if k.node == one)
+        one = kind.node
         for text, below in sorted(self.open[one, other]):
             claim = f"{text} -> {below}"
             result = prove(self.specification, claim, self.asked.proof_seconds)
             if result.verdict is Verdict.PROVED and result.certificate is not None:
-                self.order.edges.append(Edge(one, other, claim, to_json(result.certificate)))
+                self.edges.append(Edge(one, other, claim, to_json(result.certificate)))
                 return
         for text, below in sorted(self.open[one, other]):
             if (text, below) not in self.open[one, other]:
                 continue
             found = self._ask(f"{text} and not {below}", text)
             if found is None:
-                self.order.doubts.append(
-                    (one, other, f"neither a proof nor a drive against {text} -> {below}")
-                )
+                reason = f"neither a proof nor a drive against {text} -> {below}"
+                self.doubts.append(Doubt(one, other, reason))
                 return
             if len(vehicles_of(self.specification, one)) == len(self._query(f"{text} and {below}").vehicles):
-                self.pool.setdefault(kind.like, []).append(found)
+                self.pool.append(found)
                 self._use(kind, found)
                 self._share(kind, found)
             else:
-                self.order.drives.append(Refuting(one, (other,), found.data))
+                self.drives.append(Refuting(one, (other,), found.data))
                 self.open[one, other].discard((text, below))
 
     def _share(self, kind: Kind, found: Shown) -> None:
         """Use a new drive for the kinds that differ from its own in the sector only."""
-        for twin in self.order.kinds:
-            if twin.like == kind.like and twin is not kind:
+        for twin in self.family:
+            if twin != kind:
                 others = [f"not {x}" for x in self._same_elsewhere(twin)]
                 alone = " and ".join([_text(self.asked, twin.node), *others])
                 placed = show_elsewhere(found, alone, self.library)
                 if placed is not None:
                     self._use(twin, placed)
-
-    def _reduce(self) -> None:
-        """Leave out edges that follow from others."""
-        for edge in tuple(self.order.edges):
-            rest = replace(self.order, edges=[e for e in self.order.edges if e is not edge])
-            if rest.implies(edge.above, edge.below):
-                self.order.edges = rest.edges

@@ -50,6 +50,16 @@ class Asked:
         library = load_library(self.specs)
         return library, library.select(self.sets[0], self.options)
 
+    def question(self) -> dict[str, str]:
+        """What is asked as texts, without the limits of the search."""
+        values = " ".join(f"{name}={value}" for name, value in sorted(self.values.items()))
+        return {
+            "sets": ",".join(self.sets),
+            "meeting": repr(self.meeting),
+            "options": repr(sorted(self.options.items())),
+            "values": values,
+        }
+
 
 @dataclass(frozen=True)
 class Core:

@@ -3,7 +3,10 @@
 import argparse
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from itertools import permutations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,14 +20,15 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
-from roadproof.cli.working import tell
+from roadproof.cli.working import tell, work
 from roadproof.errors import UsageError
-from roadproof.files import make_folder
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
+    from roadproof.analysis.journal import Journal
     from roadproof.analysis.meeting import Node
-    from roadproof.analysis.order import Order
+    from roadproof.analysis.order import Decided, Kind
+    from roadproof.analysis.overlap import Asked
 
 SUMMARY = "which scenarios imply which: proofs for the implications, drives against the others"
 SCHEMA = "roadproof/order/1"
@@ -36,6 +40,7 @@ examples:
 
 a -> b: whenever a holds, so does b, with the same roles and the same L. Scenario 2 implies one with two
 vehicles if it does so for one of its POVs. `roadproof check DIR` checks the evidence again.
+A run with --out that was broken off goes on where it was.
 """
 
 
@@ -47,17 +52,39 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--timeout", type=float, default=120.0, metavar="S", help="seconds for one drive (default: 120)"
     )
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives, DOT and SVG")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
     add_json_option(parser)
 
 
+@dataclass(frozen=True)
+class Job:
+    asked: "Asked"
+    kinds: "tuple[Kind, ...]"
+    family: "tuple[Kind, ...]"
+
+
 def run(args: argparse.Namespace) -> int:
+    begun = time.monotonic()
+    asked, kinds = _asked(args)
+    answers = _settle(asked, kinds, args.out, args.jobs)
+    data = _as_data(asked, kinds, answers)
+    data["seconds"] = round(time.monotonic() - begun, 1)
+    if args.json:
+        write_json(data, args.json)
+    if args.out is not None:
+        _write_pictures(data, args.out, not args.no_pictures)
+    if args.json != "-":
+        _print(data)
+    return ExitCode.UNKNOWN if data["doubts"] else ExitCode.AS_EXPECTED
+
+
+def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
     from roadproof.analysis.meeting import read_numbers
-    from roadproof.analysis.order import find_order
+    from roadproof.analysis.order import kinds_of
     from roadproof.analysis.overlap import Asked
 
-    begun = time.monotonic()
     library = load_library_of(args)
     sets = tuple(dict.fromkeys(args.set_names or ["base", "extA", "ext"]))
     options = chosen_options(args)
@@ -65,8 +92,6 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--timeout {args.timeout} must be greater than 0")
     for name in sets:
         library.select(name, options)
-    if args.out is not None:
-        make_folder(args.out)
     asked = Asked(
         sets,
         options=options,
@@ -75,70 +100,123 @@ def run(args: argparse.Namespace) -> int:
         timeout=args.timeout,
     )
     numbers = read_numbers(args.among, library.select(sets[0], options)) if args.among else None
-    found = find_order(asked, numbers, tell)
-    tell("all decided" if not found.doubts else f"{len(found.doubts)} in doubt", last=True)
-    data = _as_data(found, args.out)
-    data["seconds"] = round(time.monotonic() - begun, 1)
-    if args.json:
-        write_json(data, args.json)
-    if args.out is not None:
-        _write_pictures(data, args.out, not args.no_pictures)
-    if args.json != "-":
-        _print(data)
-    return ExitCode.UNKNOWN if found.doubts else ExitCode.AS_EXPECTED
+    return asked, kinds_of(asked, numbers)
 
 
-def _as_data(found: "Order", folder: Path | None) -> dict[str, Any]:
-    """The order as plain data; evidence in files of ``folder``, or inside where there is none."""
+def _settle(
+    asked: "Asked", kinds: "tuple[Kind, ...]", folder: Path | None, processes: int | None
+) -> list[dict[str, Any]]:
+    """The answers for every family of kinds; those that a journal holds are not asked again."""
+    from roadproof.analysis.journal import Journal, fingerprint
+    from roadproof.analysis.order import families_of
+
+    families = {str(family[0].node): family for family in families_of(kinds)}
+    journal = None
+    if folder is not None:
+        question = {"order": " ".join(str(kind.node) for kind in kinds), **asked.question()}
+        journal = Journal(folder, fingerprint(asked.load()[0], question))
+    known = {x["family"]: x for x in (journal.answers() if journal is not None else [])}
+    jobs = [Job(asked, kinds, family) for name, family in families.items() if name not in known]
+    with closing(work(settle, jobs, processes)) as answers:
+        for family, decided in answers:
+            known[family] = _record(family, decided, journal)
+            tell(f"{len(known)} of {len(families)} families of scenarios")
+    tell(f"{len(families)} families of scenarios", last=True)
+    return [known[name] for name in families]
+
+
+def settle(job: Job) -> "tuple[str, Decided]":
+    """What is found for one family, which has the name of its first node."""
+    from roadproof.analysis.order import decide_family
+
+    return str(job.family[0].node), decide_family(job.asked, job.kinds, job.family)
+
+
+def _record(family: str, decided: "Decided", journal: "Journal | None") -> dict[str, Any]:
+    """The answers for a family as plain data; evidence in files, or inside where there is no folder."""
+    files: list[str] = []
+
+    def kept(name: str, content: str) -> str | None:
+        if journal is None:
+            return None
+        write_text(journal.folder / name, content)
+        files.append(name)
+        return str(journal.folder / name)
+
     edges = []
-    for edge in found.edges:
-        certificate = edge.certificate
-        if folder is not None:
-            certificate = str(folder / f"edge-{_file(edge.above)}-{_file(edge.below)}.json")
-            write_text(Path(certificate), edge.certificate)
+    for edge in decided.edges:
+        path = kept(f"edge-{_file(edge.above)}-{_file(edge.below)}.json", edge.certificate)
         names = {"from": str(edge.above), "to": str(edge.below), "claim": edge.claim}
-        edges.append({**names, "certificate": certificate})
-    drives: list[dict[str, Any]] = []
-    for number, drive in enumerate(found.drives, 1):
-        content: object = dict(drive.data)
-        if folder is not None:
-            path = folder / f"drive-{_file(drive.node)}-{number}.json"
-            write_text(path, json.dumps(drive.data, indent=2, ensure_ascii=False) + "\n")
-            content = str(path)
+        edges.append({**names, "certificate": path or edge.certificate})
+    drives = []
+    for number, drive in enumerate(decided.drives, 1):
+        content = json.dumps(drive.data, indent=2, ensure_ascii=False) + "\n"
+        path = kept(f"drive-{_file(drive.node)}-{number}.json", content)
         others = sorted({str(node) for node in drive.others})
-        drives.append({"number": number, "holds": str(drive.node), "fails": others, "drive": content})
-    doubts = [{"from": str(a), "to": str(b), "reason": why} for a, b, why in found.doubts]
-    return {
-        "schema": SCHEMA,
-        "sets": list(dict.fromkeys(node.set_name for kind in found.kinds for node in kind.nodes)),
-        "view": "dense",
-        "kinds": [[str(node) for node in kind.nodes] for kind in found.kinds],
-        "edges": edges,
-        "missing": _missing(found),
-        "drives": drives,
-        "doubts": doubts,
-    }
+        drives.append({"holds": str(drive.node), "fails": others, "drive": path or dict(drive.data)})
+    doubts = [{"from": str(x.above), "to": str(x.below), "reason": x.reason} for x in decided.doubts]
+    answer = {"family": family, "proved": edges, "drives": drives, "doubts": doubts}
+    if journal is not None:
+        journal.add({"evidence": [] if doubts else files, **answer})
+    return answer
 
 
 def _file(node: "Node") -> str:
     return f"{node.set_name}-{node.number:02}"
 
 
-def _missing(found: "Order") -> list[dict[str, Any]]:
+def _as_data(
+    asked: "Asked", kinds: "tuple[Kind, ...]", answers: Sequence[Mapping[str, Any]]
+) -> dict[str, Any]:
+    """All answers together: the edges of the Hasse diagram, and for the other pairs what refutes them."""
+    from roadproof.analysis.order import reachable, transitive_reduction
+
+    proved = [edge for answer in answers for edge in answer["proved"]]
+    pairs = {(edge["from"], edge["to"]) for edge in proved}
+    doubts = [
+        doubt
+        for answer in answers
+        for doubt in answer["doubts"]
+        if doubt["to"] not in reachable(doubt["from"], pairs)
+    ]
+    drives = [
+        {"number": number, **drive}
+        for number, drive in enumerate((drive for answer in answers for drive in answer["drives"]), 1)
+    ]
+    names = [str(kind.node) for kind in kinds]
+    reduced = transitive_reduction(pairs)
+    return {
+        "schema": SCHEMA,
+        "sets": list(asked.sets),
+        "view": "dense",
+        "kinds": [[str(node) for node in kind.nodes] for kind in kinds],
+        "proved": proved,
+        "edges": [edge for edge in proved if (edge["from"], edge["to"]) in reduced],
+        "missing": _missing(names, pairs, drives, {(x["from"], x["to"]) for x in doubts}),
+        "drives": drives,
+        "doubts": doubts,
+    }
+
+
+def _missing(
+    names: Sequence[str],
+    proved: set[tuple[str, str]],
+    drives: Sequence[Mapping[str, Any]],
+    doubtful: set[tuple[str, str]],
+) -> list[dict[str, Any]]:
     """The pairs of kinds without implication, with the numbers of the drives that show it."""
-    doubtful = {(a, b) for a, b, _ in found.doubts}
-    drives: dict[tuple[Node, Node], list[int]] = {}
-    for number, drive in enumerate(found.drives, 1):
-        for other in set(drive.others):
-            drives.setdefault((drive.node, other), []).append(number)
-    missing = []
-    for above in found.kinds:
-        for below in found.kinds:
-            pair = (above.node, below.node)
-            if above is below or pair in doubtful or found.implies(*pair):
-                continue
-            missing.append({"from": str(above.node), "to": str(below.node), "drives": drives[pair]})
-    return missing
+    from roadproof.analysis.order import reachable
+
+    refuting: dict[tuple[str, str], list[int]] = {}
+    for drive in drives:
+        for other in drive["fails"]:
+            refuting.setdefault((drive["holds"], other), []).append(drive["number"])
+    implied = {(above, below) for above in names for below in reachable(above, proved)}
+    return [
+        {"from": above, "to": below, "drives": refuting[above, below]}
+        for above, below in permutations(names, 2)
+        if (above, below) not in implied | doubtful
+    ]
 
 
 def _write_pictures(data: Mapping[str, Any], folder: Path, pictures: bool) -> None:

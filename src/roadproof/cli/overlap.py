@@ -132,7 +132,7 @@ def _settle(
     def key(x: Mapping[str, Any]) -> tuple[int, str, int, str]:
         return x["a"], x["set_a"], x["b"], x["set_b"]
 
-    journal = Journal(folder, fingerprint(asked.load()[0], _question(asked))) if folder is not None else None
+    journal = Journal(folder, fingerprint(asked.load()[0], asked.question())) if folder is not None else None
     known = {key(x["verdict"]): x["verdict"] for x in (journal.answers() if journal is not None else [])}
     wanted = [(a.number, a.set_name, b.number, b.set_name) for a, b in pairs]
     left = [pair for pair, name in zip(pairs, wanted, strict=True) if name not in known]
@@ -154,30 +154,20 @@ def settle(job: Job) -> "list[Entry]":
     return decide_group(job.asked, job.seed, job.pairs)
 
 
-def _question(asked: "Asked") -> dict[str, str]:
-    values = " ".join(f"{name}={value}" for name, value in sorted(asked.values.items()))
-    return {
-        "sets": ",".join(asked.sets),
-        "meeting": repr(asked.meeting),
-        "options": repr(sorted(asked.options.items())),
-        "values": values,
-    }
-
-
 def _record(entry: "Entry", journal: "Journal | None") -> dict[str, Any]:
     """The entry as plain data; its evidence in a file, or inside where there is no folder."""
     certificate: str | None = entry.certificate
     drive: object = entry.drive
     stem = f"{entry.a.set_name}-{entry.a.number:02}-{entry.b.set_name}-{entry.b.number:02}.json"
-    evidence = None
+    evidence: list[str] = []
     if journal is not None and certificate is not None:
-        evidence = f"impossible-{stem}"
-        write_text(journal.folder / evidence, certificate)
-        certificate = str(journal.folder / evidence)
+        evidence = [f"impossible-{stem}"]
+        write_text(journal.folder / evidence[0], certificate)
+        certificate = str(journal.folder / evidence[0])
     elif journal is not None and entry.drive is not None:
-        evidence = f"drive-{stem}"
-        write_text(journal.folder / evidence, json.dumps(entry.drive, indent=2, ensure_ascii=False) + "\n")
-        drive = str(journal.folder / evidence)
+        evidence = [f"drive-{stem}"]
+        write_text(journal.folder / evidence[0], json.dumps(entry.drive, indent=2, ensure_ascii=False) + "\n")
+        drive = str(journal.folder / evidence[0])
     verdict = {
         "a": entry.a.number,
         "b": entry.b.number,
