@@ -105,31 +105,32 @@ def parameter_values(args: argparse.Namespace, library: "Library") -> dict[str, 
         if name not in library.parameters:
             raise InputError(f"--param {name}={text}: {unknown('parameter', name, library.parameters)}")
         declared = library.parameters[name]
-        value = _read_value(name, text, declared.unit)
+        value = read_value("--param", name, text, declared.unit)
         if (declared.bound == ">" and value <= 0) or (declared.bound == ">=" and value < 0):
             raise InputError(f"--param {name}={text}: the library demands {name} {declared.bound} 0")
         values[name] = value
     return values
 
 
-def _read_value(name: str, text: str, unit: str) -> Fraction:
+def read_value(option: str, name: str, text: str, unit: str) -> Fraction:
+    """A value in SI units; without unit it is in ``unit``. Raises ``InputError`` that names ``option``."""
     from roadproof.spec.elaborate import UNITS
     from roadproof.spec.library import unknown
 
     read = _VALUE.fullmatch(text.strip())
     if read is None:
         raise InputError(
-            f"--param {name}={text}: this is no value; write a decimal or a fraction, with a unit if you "
+            f"{option} {name}={text}: this is no value; write a decimal or a fraction, with a unit if you "
             f"like, such as {name}=0.6, {name}=3/5 or '{name}=0.6 {unit}'"
         )
     number, given = read[1], read[2] or unit
     if given not in UNITS:
-        raise InputError(f"--param {name}={text}: {unknown('unit', given, UNITS)}")
+        raise InputError(f"{option} {name}={text}: {unknown('unit', given, UNITS)}")
     if UNITS[given][1] != UNITS[unit][1]:
-        raise InputError(f"--param {name}={text}: {name} is in {unit}, which {given} does not measure")
+        raise InputError(f"{option} {name}={text}: {name} is in {unit}, which {given} does not measure")
     top, _, bottom = number.partition("/")
     if bottom and Fraction(bottom) == 0:
-        raise InputError(f"--param {name}={text}: the denominator is zero")
+        raise InputError(f"{option} {name}={text}: the denominator is zero")
     return Fraction(top) / Fraction(bottom or 1) * UNITS[given][0]
 
 

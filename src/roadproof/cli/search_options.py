@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from roadproof.witness.ask import Request
 
 
-def add_search_options(parser: argparse.ArgumentParser) -> None:
+def add_search_options(parser: argparse.ArgumentParser, seconds: float = 60.0) -> None:
     """Where, with whom, how long and by whom is searched; ``read_request`` understands them."""
     add_specification_options(parser, several=True)
     add_parameter_option(parser)
@@ -50,7 +50,11 @@ def add_search_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--engine", choices=("milp", "smt"), default="milp", help="default: milp")
     parser.add_argument("--solver", default="highs", help="a mixed-integer solver for milp (default: highs)")
     parser.add_argument(
-        "--timeout", type=float, default=60.0, metavar="S", help="seconds a question (default: 60)"
+        "--timeout",
+        type=float,
+        default=seconds,
+        metavar="S",
+        help=f"seconds a question (default: {seconds:g})",
     )
 
 

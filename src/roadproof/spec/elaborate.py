@@ -93,6 +93,20 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
     return Query(text.strip(), made, vehicles or vehicles_of(made), tuple(sorted(elaborator.free["lane"])))
 
 
+def read_term(specification: Specification, text: str, source: str = "term") -> tuple[t.Term, Dimension]:
+    """Parse and elaborate a term such as ``v_lon(SV) - v_lon(POV)``, with its dimension.
+
+    Names are free as in ``read_claim``. Raises ``TextError``, for a formula too.
+    """
+    claim = parse_claim(text, source)
+    elaborator = _Elaborator(specification)
+    try:
+        made = elaborator.term(claim.body, elaborator.scope_of(claim.given))
+    except TextError as error:
+        raise error.locate(source, text) from None
+    return made.term, made.dimension or UNITS["unitless"][1]
+
+
 def apply_definition(specification: Specification, name: str, arguments: tuple[str, ...] = ()) -> Query:
     """The formula of a definition applied to names; to its own parameters where none are given.
 

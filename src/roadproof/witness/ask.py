@@ -11,6 +11,7 @@ from roadproof.encode.build import Manners
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
 from roadproof.evidence.witness import DriveFile, as_json, judge_file
+from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim, signature
@@ -21,6 +22,7 @@ from roadproof.witness.question import Found, Means, Question, assignments, usua
 from roadproof.witness.search import Answer, find_witness
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle
+from roadproof.world.vehicle import with_limits
 
 MOST_STEPS = 400
 
@@ -30,8 +32,9 @@ class Request:
     """A question in the words of the command line; ``what`` is a scenario's number or a formula.
 
     ``road`` None takes the reference road with the zones that the formula speaks of; ``vehicles``
-    gives models by vehicle, "" for all others. ``natural``: whether natural drives are tried first.
-     ``horizon``, ``dt``: seconds; ``reach``: metres.
+    gives models by vehicle, "" for all others, and ``limits`` other limits than the models', such as
+    ``{"POV": {"a_lon.min": -2}}`` (``world.vehicle.with_limits``). ``natural``: whether natural drives are
+    tried first. ``horizon``, ``dt``: seconds; ``reach``: metres.
     """
 
     what: str
@@ -42,6 +45,7 @@ class Request:
     road: str | None = None
     lanes: Mapping[str, str] = field(default_factory=dict)
     vehicles: Mapping[str, str] = field(default_factory=dict)
+    limits: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
     horizon: Fraction = Fraction(6)
     dt: Fraction = Fraction(3, 5)
     reach: Fraction = Fraction(80)
@@ -92,7 +96,7 @@ def ask(request: Request) -> Outcome:
         answers.append(find_witness(question, request.means, tuple(drives)))
     first = answers[0]
     files = tuple(
-        _file(library, specification, scenario, text, question, a.found)
+        drive_data(library, specification, scenario, text, question, a.found)
         for a in answers
         if a.found is not None
     )
@@ -135,14 +139,15 @@ def pose(specification: Specification, text: str, request: Request) -> Question:
     """The question with road, vehicles and grid in place. Raises ``UsageError``."""
     query = read_claim(specification, text)
     road = load_road(request.road or usual_road(query.formula))
-    for name in request.vehicles:
+    for name in (*request.vehicles, *request.limits):
         if name and name not in query.vehicles:
             known = ", ".join(query.vehicles)
             raise UsageError(f"vehicle {name}: the formula speaks of {known or 'no vehicle'}")
     if not query.vehicles:
         raise UsageError("the formula speaks of no vehicle, so no drive can show anything about it")
     usual = request.vehicles.get("", "car")
-    vehicles = {name: load_vehicle(request.vehicles.get(name, usual)) for name in query.vehicles}
+    models = {name: load_vehicle(request.vehicles.get(name, usual)) for name in query.vehicles}
+    vehicles = {name: with_limits(model, request.limits.get(name, {})) for name, model in models.items()}
     lanes = assignments(query, road, request.lanes)
     manners = Manners(reach=request.reach, collisions=request.collisions)
     manners = manners if request.natural else manners.plain()
@@ -168,7 +173,7 @@ def make_grid(horizon: Fraction, dt: Fraction) -> Grid:
     return Grid(dt, int(steps))
 
 
-def _file(
+def drive_data(
     library: Library,
     specification: Specification,
     scenario: int | None,
@@ -176,14 +181,14 @@ def _file(
     question: Question,
     found: Found,
 ) -> dict[str, Any]:
-    """The drive file, after it has been judged once more from what it says."""
+    """The drive file as plain data, after it has been judged once more from what it says."""
     file = DriveFile(
         scenario,
         specification.set_name,
         text,
         found.grid.horizon,
         found.lanes,
-        _telling(library, question),
+        telling_values(library, question.query.formula, question.values),
         specification.options,
         question.road,
         found.drive,
@@ -200,8 +205,8 @@ def _file(
     return as_json(file, {**verdict, "times": times})
 
 
-def _telling(library: Library, question: Question) -> dict[str, Fraction]:
-    """Values of the parameters that the formula speaks of, and of those that the user has changed."""
+def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Values of the parameters that ``formula`` speaks of, and of those that the user has changed."""
     declared = default_values(library)
-    spoken = parameters_of(question.query.formula)
-    return {n: v for n, v in question.values.items() if n in spoken or v != declared.get(n)}
+    spoken = parameters_of(formula)
+    return {n: v for n, v in values.items() if n in spoken or v != declared.get(n)}

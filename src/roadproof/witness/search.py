@@ -49,6 +49,15 @@ def find_witness(question: Question, means: Means, unlike: tuple[Drive, ...] = (
     return _Search(question, means, unlike).run()
 
 
+def show_none(question: Question, means: Means) -> Answer:
+    """Show that no drive on the grid answers the question, within limits that are printed.
+
+    NONE-WITHIN, or WITNESSED where the exact encoding has a solution that is judged a witness after all,
+    or UNKNOWN. Raises as ``find_witness``.
+    """
+    return _Search(question, means, ()).none()
+
+
 def _shortest(question: Question, means: Means, unlike: tuple[Drive, ...]) -> Answer:
     """The fewest steps for which there is a drive, by halving; each answer is judged by itself."""
     means = replace(means, objective="smooth")
@@ -90,7 +99,7 @@ class _Search:
             return self._answer(Verdict.UNKNOWN, None, self.doubts[-1])
         if not self.means.explain:
             return self._answer(Verdict.UNKNOWN, None, "none was found")
-        return self._none()
+        return self.none()
 
     def _answer(self, verdict: Verdict, found: Found | None, reason: str) -> Answer:
         return Answer(verdict, found, reason, self.seconds, self.sizes)
@@ -189,7 +198,7 @@ class _Search:
             return f"the drives that were found fail the formula between the samples of dt={grid.dt} s"
         return None
 
-    def _none(self) -> Answer:
+    def none(self) -> Answer:
         """Show that there is none on the grid: by a relaxation, else by the exact encoding."""
         start = time.perf_counter()
         manners = replace(

@@ -1,7 +1,10 @@
 """What a vehicle can do: its box and the limits of its motion (SPEC §2)."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
+
+from roadproof.errors import UsageError
 
 Range = tuple[Fraction, Fraction]
 
@@ -27,3 +30,37 @@ class Vehicle:
     cruise: Range
     jump_lon: Fraction
     jump_lat: Fraction
+
+
+# Ranges whose ends can be moved, and their units.
+LIMITS: Mapping[str, str] = {"v_lon": "m/s", "v_lat": "m/s", "a_lon": "m/s^2", "a_lat": "m/s^2"}
+
+
+def with_limits(vehicle: Vehicle, limits: Mapping[str, Fraction]) -> Vehicle:
+    """``vehicle`` with other ends of its ranges, given as ``v_lon.max`` or ``a_lon.min``; its name says so.
+
+    The cruising speeds are cut to the speeds that are left. Raises ``UsageError`` for a range that is empty,
+    that lets a vehicle reverse, or that leaves out going straight on at a steady speed.
+    """
+    if not limits:
+        return vehicle
+    ranges = {name: getattr(vehicle, name) for name in LIMITS}
+    for limit, value in limits.items():
+        name, _, end = limit.partition(".")
+        low, high = ranges[name]
+        ranges[name] = (value, high) if end == "min" else (low, value)
+    for name, (low, high) in ranges.items():
+        unit = LIMITS[name]
+        if low >= high:
+            raise UsageError(
+                f"{name} from {low} to {high} {unit} is empty: its least must be the smaller one"
+            )
+        if name == "v_lon" and low < 0:
+            raise UsageError(f"v_lon from {low} {unit}: a vehicle never reverses: use 0 or more")
+        if name != "v_lon" and not low <= 0 <= high:
+            raise UsageError(f"{name} from {low} to {high} {unit} leaves out 0, so no vehicle could drive on")
+    slow, fast = ranges["v_lon"]
+    cruise = max(slow, vehicle.cruise[0]), min(fast, vehicle.cruise[1])
+    cruise = cruise if cruise[0] < cruise[1] else (slow, fast)
+    changed = ", ".join(f"{limit}={value}" for limit, value in limits.items())
+    return replace(vehicle, name=f"{vehicle.name} with {changed}", cruise=cruise, **ranges)
