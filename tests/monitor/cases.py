@@ -1,6 +1,6 @@
 """Random formulas and ragged batches, and what the recursive reading says of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.formula import Formula
+from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.monitor import Batch, Monitor, compile
 from roadproof.monitor.answers import Convention
 from roadproof.monitor.recursive import Reading, Trace
@@ -136,3 +136,27 @@ def margin_differences(formula: Formula, batch: Batch, convention: Convention) -
                 yield f"trace {i}, sample {k}: {(found.low[k, i], found.high[k, i])} for {(low, high)}"
             if k == 0 and (at_start.low[i], at_start.high[i]) != (low, high):
                 yield f"trace {i} at its start: {(low, high)} expected"
+
+
+def random_traffic(
+    roots: Sequence[Formula], traces: int, longest: int, seed: int = 5, noise: float = 0.1
+) -> Batch:
+    """Cars that are safe at first and close in; lane predicates flicker at random; ``noise`` in m/s."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(longest)[:, None] / 25
+    lengths = rng.integers(longest // 2, longest + 1, traces)
+    signals = {}
+    for vehicle, start, v in (("SV", 0.0, 22.0), ("POV", rng.uniform(59, 67, traces), 14.0)):
+        signals["s", vehicle] = start + v * time + np.zeros(traces)
+        signals["d", vehicle] = rng.uniform(1, 3, traces) + np.zeros_like(time)
+        signals["v_lon", vehicle] = v + rng.normal(0, noise, (longest, traces))
+        signals["v_lat", vehicle] = rng.normal(0, 0.1, (longest, traces))
+        signals["a_lon", vehicle] = rng.normal(0, 1, (longest, traces))
+    sizes = {(name, x): rng.uniform(2, 5, traces) for name in ("length", "width") for x in ("SV", "POV")}
+    given = {}
+    for node in {x for root in roots for x in subformulas(root)}:
+        if isinstance(node, Named) and node.name in ("atLane", "onMainRoad"):
+            given[node] = rng.random((longest, traces)) < 0.95
+        elif isinstance(node, f.Some) and node.domain.kind == "adjacent":
+            given[node] = rng.random((longest, traces)) < 0.5
+    return Batch(Fraction(1, 25), lengths, signals, sizes, given)

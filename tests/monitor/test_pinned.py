@@ -8,12 +8,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from monitor.cases import boolean_differences, formulas, margin_differences, random_batch, trace_of
+from monitor.cases import (
+    boolean_differences,
+    formulas,
+    margin_differences,
+    random_batch,
+    random_traffic,
+    trace_of,
+)
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.logic.rewrite import with_values
-from roadproof.monitor import Batch, compile
+from roadproof.monitor import compile
 from roadproof.monitor.answers import Convention
 from roadproof.monitor.recursive import Reading, answer
 from roadproof.spec.bind import default_values
@@ -125,7 +132,7 @@ def test_scenarios_on_random_traffic(set_name: str, rss_form: str) -> None:
         f"scenario_{i}": with_values(apply_definition(specification, f"scenario_{i}").formula, values)
         for i in (1, 3, 4, 5, 6, 7, 8)
     }
-    batch = _traffic(list(scenarios.values()), traces=16, longest=20)
+    batch = random_traffic(list(scenarios.values()), traces=16, longest=20)
     monitor = compile(scenarios)
     truncated, clipped = monitor.evaluate(batch), monitor.evaluate(batch, "clip")
     margins = monitor.measure(batch)
@@ -142,25 +149,3 @@ def test_scenarios_on_random_traffic(set_name: str, rss_form: str) -> None:
             assert margins.margins[name].low[i] == reading.margin(formula, 0, "strong")
             assert margins.margins[name].high[i] == reading.margin(formula, 0, "weak")
     assert seen == {"true", "false", "undecided"}
-
-
-def _traffic(roots: list[Formula], traces: int, longest: int) -> Batch:
-    """Cars that are safe at first and close in; lane predicates flicker at random."""
-    rng = np.random.default_rng(5)
-    time = np.arange(longest)[:, None] / 25
-    lengths = rng.integers(longest // 2, longest + 1, traces)
-    signals = {}
-    for vehicle, start, v in (("SV", 0.0, 22.0), ("POV", rng.uniform(59, 67, traces), 14.0)):
-        signals["s", vehicle] = start + v * time + np.zeros(traces)
-        signals["d", vehicle] = rng.uniform(1, 3, traces) + np.zeros_like(time)
-        signals["v_lon", vehicle] = v + rng.normal(0, 0.1, (longest, traces))
-        signals["v_lat", vehicle] = rng.normal(0, 0.1, (longest, traces))
-        signals["a_lon", vehicle] = rng.normal(0, 1, (longest, traces))
-    sizes = {(name, x): rng.uniform(2, 5, traces) for name in ("length", "width") for x in ("SV", "POV")}
-    given = {}
-    for node in {x for root in roots for x in subformulas(root)}:
-        if isinstance(node, Named) and node.name in ("atLane", "onMainRoad"):
-            given[node] = rng.random((longest, traces)) < 0.95
-        elif isinstance(node, f.Some) and node.domain.kind == "adjacent":
-            given[node] = rng.random((longest, traces)) < 0.5
-    return Batch(Fraction(1, 25), lengths, signals, sizes, given)
