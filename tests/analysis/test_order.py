@@ -9,15 +9,20 @@ from hypothesis import strategies as st
 
 from roadproof.analysis.meeting import Node
 from roadproof.analysis.order import (
+    Decided,
+    Doubt,
     decide_family,
     families_of,
     kinds_of,
     reachable,
+    settle_doubts,
     transitive_reduction,
 )
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
 from roadproof.report.order import as_dot
+from roadproof.spec.bind import default_values
+from roadproof.witness.ask import Request, ask
 
 
 def node(number: int, set_name: str = "base") -> Node:
@@ -117,3 +122,17 @@ def test_a_family_in_doubt_is_asked_again(tmp_path: Path, capsys: pytest.Capture
     assert main([*line, "--timeout", "0.01"]) == 20
     assert "in doubt: 1@base -> 6@base" in capsys.readouterr().out
     assert main(line) == 0
+
+
+def test_a_drive_for_another_scenario_settles_a_doubt_with_its_vehicles_exchanged() -> None:
+    asked = Asked()
+    open_ = (("scenario_3(SV,POV,L)", "scenario_1(SV,POV,L)"),)
+    decided = Decided(doubts=(Doubt(node(3), node(1), open_),))
+    (drive,) = ask(Request("4", values=default_values(asked.load()[0]))).drives
+    settled = settle_doubts(asked, decided, [drive])
+    assert settled.doubts == ()
+    (refuting,) = settled.drives
+    assert refuting.data["vehicles"]["SV"] == drive["vehicles"]["POV"]
+    assert refuting.data["formula"] == "scenario_3(SV,POV,L) and not scenario_1(SV,POV,L)"
+    wrong = Doubt(node(3), node(4), (("scenario_3(SV,POV,L)", "scenario_3@ext(SV,POV,L)"),))
+    assert settle_doubts(asked, Decided(doubts=(wrong,)), [drive]).doubts == (wrong,)

@@ -7,7 +7,7 @@ one road sector is put on roads of the others. Families of nodes that differ in 
 nothing with other families, so that each can be decided by itself.
 """
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import permutations
@@ -24,6 +24,7 @@ from roadproof.logic.rewrite import without_names
 from roadproof.prove.prover import prove
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import Query, read_claim
+from roadproof.spec.library import Library, Specification
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, ask
 from roadproof.witness.question import Means, usual_road
@@ -65,11 +66,18 @@ class Refuting:
 
 @dataclass(frozen=True)
 class Doubt:
-    """An implication of which some reading was neither proved nor refuted, nor any proved."""
+    """An implication of which no reading was proved, and those in ``open`` were not refuted either.
+
+    A reading is the two scenarios applied to vehicles and a lane, as text.
+    """
 
     above: Node
     below: Node
-    reason: str
+    open: tuple[tuple[str, str], ...]
+
+    @property
+    def reason(self) -> str:
+        return "neither a proof nor a drive against " + ", ".join(f"{a} -> {b}" for a, b in self.open)
 
 
 @dataclass(frozen=True)
@@ -120,6 +128,43 @@ def families_of(kinds: Sequence[Kind]) -> list[tuple[Kind, ...]]:
 def decide_family(asked: Asked, kinds: Sequence[Kind], family: Sequence[Kind]) -> Decided:
     """Decide the implications from the kinds of ``family`` to all other ``kinds``."""
     return _Deciding(asked, tuple(kinds), tuple(family)).run()
+
+
+def settle_doubts(asked: Asked, decided: Decided, drives: Sequence[Mapping[str, Any]]) -> Decided:
+    """``decided`` with the doubts settled that drives found for other scenarios settle.
+
+    The vehicles may be exchanged: what is ahead for one scenario is behind for its mirror image.
+    """
+    library, specification = asked.load()
+    distinct = {repr(data["vehicles"]): data for data in drives}.values()
+    refuting = list(decided.drives)
+    doubts: list[Doubt] = []
+    for doubt in decided.doubts:
+        shown = [_refuted_by(distinct, *reading, library, specification) for reading in doubt.open]
+        if None in shown:
+            doubts.append(doubt)
+        else:
+            refuting += [Refuting(doubt.above, (doubt.below,), x.data) for x in shown if x is not None]
+    return replace(decided, drives=tuple(refuting), doubts=tuple(doubts))
+
+
+def _refuted_by(
+    drives: Iterable[Mapping[str, Any]],
+    text: str,
+    below: str,
+    library: Library,
+    specification: Specification,
+) -> Shown | None:
+    formula = f"{text} and not {below}"
+    wanted = set(read_claim(specification, formula).vehicles)
+    for data in drives:
+        names = tuple(data["vehicles"])
+        for roles in permutations(names) if wanted <= set(names) else ():
+            vehicles = {role: data["vehicles"][name] for name, role in zip(names, roles, strict=True)}
+            shown = show_elsewhere(Shown(formula, {**data, "vehicles": vehicles}), formula, library)
+            if shown is not None:
+                return shown
+    return None
 
 
 def transitive_reduction(pairs: Set[tuple[str, str]]) -> set[tuple[str, str]]:
@@ -288,8 +333,7 @@ class _Deciding:
                 continue
             found = self._ask(f"{text} and not {below}", text)
             if found is None:
-                reason = f"neither a proof nor a drive against {text} -> {below}"
-                self.doubts.append(Doubt(one, other, reason))
+                self.doubts.append(Doubt(one, other, tuple(sorted(self.open[one, other]))))
                 return
             if len(vehicles_of(self.specification, one)) == len(self._query(f"{text} and {below}").vehicles):
                 self.pool.append(found)

@@ -3,7 +3,7 @@
 import argparse
 import json
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from itertools import permutations
@@ -106,9 +106,12 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
 def _settle(
     asked: "Asked", kinds: "tuple[Kind, ...]", folder: Path | None, processes: int | None
 ) -> list[dict[str, Any]]:
-    """The answers for every family of kinds; those that a journal holds are not asked again."""
+    """The answers for every family of kinds; those that a journal holds are not asked again.
+
+    Doubts are left to the end, when the drives of all families are there to settle them.
+    """
     from roadproof.analysis.journal import Journal, fingerprint
-    from roadproof.analysis.order import families_of
+    from roadproof.analysis.order import families_of, settle_doubts
 
     families = {str(family[0].node): family for family in families_of(kinds)}
     journal = None
@@ -117,10 +120,19 @@ def _settle(
         journal = Journal(folder, fingerprint(asked.load()[0], question))
     known = {x["family"]: x for x in (journal.answers() if journal is not None else [])}
     jobs = [Job(asked, kinds, family) for name, family in families.items() if name not in known]
+    doubtful: dict[str, Decided] = {}
     with closing(work(settle, jobs, processes)) as answers:
         for family, decided in answers:
-            known[family] = _record(family, decided, journal)
-            tell(f"{len(known)} of {len(families)} families of scenarios")
+            if decided.doubts:
+                doubtful[family] = decided
+            else:
+                known[family] = _record(family, decided, journal)
+            tell(f"{len(known) + len(doubtful)} of {len(families)} families of scenarios")
+    if doubtful:
+        tell(f"{len(doubtful)} families in doubt: trying the drives of the others")
+        drives = [*_drives(known.values()), *(x.data for d in doubtful.values() for x in d.drives)]
+        for family, decided in doubtful.items():
+            known[family] = _record(family, settle_doubts(asked, decided, drives), journal)
     tell(f"{len(families)} families of scenarios", last=True)
     return [known[name] for name in families]
 
@@ -130,6 +142,12 @@ def settle(job: Job) -> "tuple[str, Decided]":
     from roadproof.analysis.order import decide_family
 
     return str(job.family[0].node), decide_family(job.asked, job.kinds, job.family)
+
+
+def _drives(answers: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The drive files of recorded answers."""
+    drives = [drive["drive"] for answer in answers for drive in answer["drives"]]
+    return [json.loads(Path(x).read_text("utf-8")) if isinstance(x, str) else x for x in drives]
 
 
 def _record(family: str, decided: "Decided", journal: "Journal | None") -> dict[str, Any]:
