@@ -1,16 +1,25 @@
 """Redundancy: known answers on small formulas and on the paper's, and the evidence behind them."""
 
+import json
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
+from roadproof.analysis import redundancy
 from roadproof.analysis.meeting import Node
 from roadproof.analysis.overlap import Asked
-from roadproof.analysis.redundancy import Change, Finding, _Examining, changes_of
+from roadproof.analysis.redundancy import Change, Finding, _Examining, changes_of, learn
+from roadproof.cli.main import main
 from roadproof.evidence.certificate import read_certificate, refusal
 from roadproof.evidence.witness import from_json, judge_file
+from roadproof.logic.formula import Formula
 from roadproof.solve.smt import ask
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
+from roadproof.witness.ask import Outcome, Request
+from roadproof.witness.ask import ask as ask_for_drive
 
 BASE = bundled_library().select("base")
 
@@ -48,7 +57,7 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
 
 def decide(number: int, part: str, value: bool) -> Finding:
     """The finding on the first change of ``part`` in a scenario of base."""
-    examining = _Examining(Asked(timeout=30.0), Node(number, "base"), [])
+    examining = _Examining(Asked(timeout=30.0), Node(number, "base"))
     found = changes_of(read_claim(BASE, examining.text).formula)
     change = next(x for x in found if x.part == part and x.value is value)
     return examining._decide(change)
@@ -68,7 +77,7 @@ def test_adjacent_lanes_are_redundant_in_scenario_3(tmp_path: Path) -> None:
 
 def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
     found = [x for x in changes("scenario_8(SV,POV,L)") if x.part == "aheadOf(SV, POV)" and not x.value]
-    examining = _Examining(Asked(timeout=30.0), Node(8, "base"), [])
+    examining = _Examining(Asked(timeout=30.0), Node(8, "base"))
     examining._collect()
     finding = examining._decide(found[0])
     assert finding.verdict is Verdict.REFUTED
@@ -76,3 +85,56 @@ def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
     file = from_json(dict(finding.drive), "drive")
     assert file.formula == f"scenario_8(SV,POV,L) and not ({found[0].changed})"
     assert judge_file(file, bundled_library()).accepted
+
+
+@pytest.fixture
+def few_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only the changes of one part of scenarios 3 and 11, so that a run takes seconds."""
+
+    def few(formula: Formula, whole: bool = False) -> Iterator[Change]:
+        yield from (x for x in changes_of(formula, whole) if x.part.startswith(("sameLane", "aheadOf")))
+
+    monkeypatch.setattr(redundancy, "changes_of", few)
+
+
+def test_scenarios_that_differ_in_their_road_only_share_drives(
+    few_changes: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    searched: list[str] = []
+
+    def counted(request: Request) -> Outcome:
+        searched.append(request.what)
+        return ask_for_drive(request)
+
+    monkeypatch.setattr(redundancy, "ask", counted)
+    out = tmp_path / "out"
+    line = ["redundancy", "--among", "3,11", "--out", str(out), "--jobs", "1", "--json", "-"]
+    assert main(line) == 0
+    whole = json.loads(capsys.readouterr().out)["verdicts"]
+    assert [x["redundant"] for x in whole if x["scenario"] == 3] == [
+        x["redundant"] for x in whole if x["scenario"] == 11
+    ]
+    assert searched
+    assert not any("scenario_11" in x for x in searched)
+    assert main(["check", str(out), "--jobs", "1"]) == 0
+    capsys.readouterr()
+
+    journal = out / "answers.jsonl"
+    question, first, _ = journal.read_text().splitlines(keepends=True)
+    journal.write_text(question + first)
+    searched.clear()
+    assert main(line) == 0
+    assert json.loads(capsys.readouterr().out)["verdicts"] == whole
+    assert not searched
+
+
+def test_what_was_looked_for_in_vain_is_not_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = Asked(timeout=30.0)
+    (change,) = (x for x in changes("scenario_3(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
+    learned = learn(asked, [], [change.changed])
+    monkeypatch.setattr(redundancy, "ask", lambda request: pytest.fail("searched again"))
+    (twin,) = (x for x in changes("scenario_11(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
+    finding = _Examining(asked, Node(11, "base"), learned)._decide(twin)
+    assert finding.verdict is Verdict.REFUTED
+    assert finding.trace is not None
+    assert "another road" in finding.reason

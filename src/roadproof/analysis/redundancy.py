@@ -1,15 +1,16 @@
 """Which parts of a scenario could be left out: every occurrence, replaced by true and by false.
 
 A replacement is redundant where the formula stays equivalent on all traces, which is proved, and
-needed where a judged drive tells the two apart. Drives found for one question are tried on the next.
+needed where a judged drive tells the two apart. Drives found for one question are tried on the next,
+and those for one scenario on the scenarios that differ from it in the road sector only.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from roadproof.analysis.meeting import Node, applied, vehicles_of
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.overlap import Asked, without_sectors
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.refutation import trace_data
@@ -22,6 +23,7 @@ from roadproof.logic.show import text
 from roadproof.prove.prover import prove
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, ask
 from roadproof.witness.question import Means, usual_road
@@ -39,9 +41,6 @@ class Change:
     value: bool
     changed: str
     weakens: bool
-
-    def __str__(self) -> str:
-        return f"{self.part} in {self.where[-1]} as {str(self.value).lower()}"
 
 
 @dataclass(frozen=True)
@@ -108,35 +107,56 @@ def _is_simple(formula: f.Named) -> bool:
     return is_state(formula) and (alone or (numbers and not roads))
 
 
-def examine(
-    asked: Asked, nodes: Sequence[Node], whole: bool = False, tell: Callable[[str], None] = lambda _: None
-) -> Iterator[Finding]:
-    """The findings on every change of every scenario of ``nodes``, one after the other.
+@dataclass(frozen=True)
+class Learned:
+    """What one scenario leaves to those that differ from it in the road sector only.
 
-    ``nodes`` that differ in their road sectors only should be given together: they share drives.
+    ``drives``, and ``vain``: the changes for which drives were looked for in vain, without sectors.
     """
-    pool: list[Shown] = []
-    for node in nodes:
-        yield from _Examining(asked, node, pool).run(whole, tell)
+
+    drives: tuple[Shown, ...] = ()
+    vain: frozenset[Formula] = frozenset()
+
+
+def examine(
+    asked: Asked, node: Node, whole: bool = False, learned: Learned = Learned()
+) -> tuple[Finding, ...]:
+    """The findings on every change of a scenario, in the order of ``changes_of``."""
+    return tuple(_Examining(asked, node, learned).run(whole))
+
+
+def learn(asked: Asked, drives: Iterable[Shown], vain: Iterable[str]) -> Learned:
+    """What the findings on one scenario teach about its likes; ``vain``: changed formulas, as text."""
+    _, specification = asked.load()
+    distinct = {repr(shown.data["vehicles"]): shown for shown in drives}
+    return Learned(tuple(distinct.values()), frozenset(_key(specification, x) for x in vain))
+
+
+def _in_sector(change: Change) -> bool:
+    return any(name.startswith("roadSector_") for name in (*change.where, change.part))
+
+
+def _key(specification: Specification, changed: str) -> Formula:
+    return without_sectors(read_claim(specification, changed).formula)
 
 
 class _Examining:
-    def __init__(self, asked: Asked, node: Node, pool: list[Shown]) -> None:
+    def __init__(self, asked: Asked, node: Node, learned: Learned = Learned()) -> None:
         self.asked = asked
         self.library, self.specification = asked.load()
         self.values = {**default_values(self.library), **asked.values}
         self.node = node
         self.text = applied(node, self.specification, vehicles_of(self.specification, node))
-        self.pool = pool
+        self.learned = learned
+        self.pool = list(learned.drives)
         self.mine: list[Shown] = []
 
-    def run(self, whole: bool, tell: Callable[[str], None]) -> Iterator[Finding]:
+    def run(self, whole: bool) -> Iterator[Finding]:
         formula = read_claim(self.specification, self.text).formula
         changes = list(changes_of(formula, whole))
         self._collect()
         known: dict[str, Finding] = {}
-        for number, change in enumerate(changes, 1):
-            tell(f"scenario {self.node}: {number} of {len(changes)} changes")
+        for change in changes:
             if change.changed not in known:
                 known[change.changed] = self._decide(change)
             yield replace(known[change.changed], change=change)
@@ -160,20 +180,22 @@ class _Examining:
         apart = f"{self.text} and not ({change.changed})"
         if change.weakens:
             apart = f"({change.changed}) and not {self.text}"
-        elsewhere = any(name.startswith("roadSector_") for name in change.where)
-        for shown in (*self.mine, *(x for x in self.pool if x not in self.mine)):
-            told = self._tells_apart(shown, apart, elsewhere)
+        strangers = [x for x in self.pool if x not in self.mine]
+        for shown in (*self.mine, *strangers):
+            told = self._tells_apart(shown, apart, _in_sector(change) or shown in strangers)
             if told is not None:
                 return Finding(self.node, change, Verdict.REFUTED, apart, None, told.data)
         claim = f"{self.text} <-> ({change.changed})"
         result = prove(self.specification, claim, self.asked.proof_seconds, f"redundancy-{self.node}")
         if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
             return Finding(self.node, change, Verdict.PROVED, claim, to_json(result.certificate))
-        found = self._ask(apart)
+        vain = not _in_sector(change) and _key(self.specification, change.changed) in self.learned.vain
+        found = None if vain else self._ask(apart)
         if found is not None:
             self._keep(found)
             return Finding(self.node, change, Verdict.REFUTED, apart, None, found.data)
         within = f"no drive was found within {self.asked.timeout:g} s, {self.asked.horizon} s ahead"
+        within += ", for the same scenario on another road" if vain else ""
         if result.countermodel is not None:
             model = result.countermodel
             instants = [(i.time, i.values, i.atoms) for i in model.instants]

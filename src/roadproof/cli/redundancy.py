@@ -3,7 +3,7 @@
 import argparse
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,13 +20,14 @@ from roadproof.cli.options import (
     write_text,
 )
 from roadproof.cli.working import tell, work
-from roadproof.errors import InputError, UsageError
+from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
+    from roadproof.analysis.journal import Journal
     from roadproof.analysis.meeting import Node
     from roadproof.analysis.overlap import Asked
-    from roadproof.analysis.redundancy import Finding
+    from roadproof.analysis.redundancy import Finding, Learned
 
 SUMMARY = "which parts of scenarios are redundant, by proof; drives that show the others needed"
 SCHEMA = "roadproof/redundancy/1"
@@ -39,7 +40,7 @@ examples:
 
 Every occurrence of a part is replaced by true and by false: redundant where the scenario stays
 equivalent (proved for all time), needed where a judged drive, or else a judged trace over points in time,
-tells the two apart.
+tells the two apart. A run with --out that was broken off goes on where it was.
 """
 
 
@@ -60,42 +61,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 @dataclass(frozen=True)
 class Job:
     asked: "Asked"
-    nodes: "tuple[Node, ...]"
+    node: "Node"
     whole: bool
+    learned: "Learned"
 
 
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
-    jobs = _jobs(args)
-    if args.out is not None:
-        try:
-            args.out.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(f"cannot make the folder {args.out}: {error.strerror}") from None
-    count = sum(len(job.nodes) for job in jobs)
-    findings: list[Finding] = []
-    with closing(work(settle, jobs, args.jobs)) as answers:
-        for found in answers:
-            findings += found
-            tell(f"{len({x.node for x in findings})} of {count} scenarios")
-    tell(f"{count} scenarios", last=True)
-    findings.sort(key=lambda x: x.node.number)
-    entries = [_entry(x, number, args.out) for number, x in enumerate(findings, 1)]
-    data = {"schema": SCHEMA, "set": args.set_name, "view": "dense", "verdicts": entries}
+    asked, numbers = _asked(args)
+    verdicts = _settle(asked, numbers, args.whole, args.out, args.jobs)
+    data = {
+        "schema": SCHEMA,
+        "set": args.set_name,
+        "view": "dense",
+        "seconds": round(time.monotonic() - begun, 1),
+        "verdicts": verdicts,
+    }
     if args.json:
         write_json(data, args.json)
     if args.out is not None:
         write_json(data, str(args.out / "index.json"))
     if args.json != "-":
-        _print(findings, time.monotonic() - begun)
-    doubt = any(x.verdict is Verdict.UNKNOWN for x in findings)
+        _print(verdicts, time.monotonic() - begun)
+    doubt = any(x["verdict"] == Verdict.UNKNOWN for x in verdicts)
     return ExitCode.UNKNOWN if doubt else ExitCode.AS_EXPECTED
 
 
-def _jobs(args: argparse.Namespace) -> list[Job]:
-    """One job for the scenarios that differ in their road sectors only: they share drives."""
-    from roadproof.analysis.meeting import Node, read_numbers, scenario_numbers
-    from roadproof.analysis.overlap import Asked, likes_of
+def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[int, ...]]":
+    from roadproof.analysis.meeting import read_numbers, scenario_numbers
+    from roadproof.analysis.overlap import Asked
 
     if not args.timeout > 0:
         raise UsageError(f"--timeout {args.timeout} must be greater than 0")
@@ -110,59 +104,131 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         values=parameter_values(args, library),
         timeout=args.timeout,
     )
-    groups: dict[int, list[Node]] = {}
+    return asked, numbers
+
+
+def _settle(
+    asked: "Asked", numbers: Sequence[int], whole: bool, folder: Path | None, processes: int | None
+) -> list[dict[str, Any]]:
+    """All verdicts in order; those that a journal holds are not asked again.
+
+    One scenario of each kind comes first; those that differ from it in their road sector learn from it.
+    """
+    from roadproof.analysis.journal import Journal, fingerprint
+    from roadproof.analysis.meeting import Node
+    from roadproof.analysis.overlap import likes_of
+    from roadproof.analysis.redundancy import Learned
+
+    library, specification = asked.load()
+    journal = None
+    if folder is not None:
+        question = {"whole": str(whole), "timeout": str(asked.timeout), **asked.question()}
+        journal = Journal(folder, fingerprint(library, question))
+    known: dict[int, list[dict[str, Any]]] = {
+        x["scenario"]: x["verdicts"] for x in (journal.answers() if journal is not None else [])
+    }
     likes = likes_of(specification)
+    first: dict[int, int] = {}
     for number in numbers:
-        groups.setdefault(likes[number], []).append(Node(number, args.set_name))
-    return [Job(asked, tuple(nodes), args.whole) for nodes in groups.values()]
+        first.setdefault(likes[number], number)
+    leaders = [n for n in first.values() if n not in known]
+    followers = [n for n in numbers if n not in known and n not in leaders]
+
+    def settle_all(chosen: Sequence[int], learned: Mapping[int, Learned]) -> None:
+        jobs = [
+            Job(asked, Node(n, specification.set_name), whole, learned.get(likes[n], Learned()))
+            for n in chosen
+        ]
+        with closing(work(settle, jobs, processes)) as answers:
+            for number, findings in answers:
+                known[number] = _record(number, findings, journal)
+                tell(f"{sum(n in known for n in numbers)} of {len(numbers)} scenarios")
+
+    settle_all(leaders, {})
+    settle_all(followers, {kind: _learned(asked, known[leader]) for kind, leader in first.items()})
+    tell(f"{len(numbers)} scenarios", last=True)
+    return [verdict for number in numbers for verdict in known[number]]
 
 
-def settle(job: Job) -> "list[Finding]":
-    """The findings on the scenarios of one job."""
+def settle(job: Job) -> "tuple[int, tuple[Finding, ...]]":
+    """The findings on the scenario of a job."""
     from roadproof.analysis.redundancy import examine
 
-    return list(examine(job.asked, job.nodes, job.whole))
+    return job.node.number, examine(job.asked, job.node, job.whole, job.learned)
 
 
-def _entry(finding: "Finding", number: int, folder: Path | None) -> dict[str, Any]:
-    certificate: str | None = finding.certificate
-    drive: object = finding.drive
-    if folder is not None and certificate is not None:
-        path = folder / f"redundant-{finding.node.number:02}-{number}.json"
-        write_text(path, certificate)
-        certificate = str(path)
-    elif folder is not None and finding.drive is not None:
-        path = folder / f"needed-{finding.node.number:02}-{number}.json"
-        write_text(path, json.dumps(finding.drive, indent=2, ensure_ascii=False) + "\n")
-        drive = str(path)
-    change = finding.change
-    return {
-        "scenario": finding.node.number,
-        "part": change.part,
-        "where": list(change.where),
-        "as": change.value,
-        "redundant": None if finding.verdict is Verdict.UNKNOWN else finding.verdict is Verdict.PROVED,
-        "verdict": str(finding.verdict),
-        "claim": finding.claim,
-        "certificate": certificate,
-        "drive": drive,
-        "trace": finding.trace,
-        "reason": finding.reason,
-    }
+def _learned(asked: "Asked", verdicts: Sequence[Mapping[str, Any]]) -> "Learned":
+    from roadproof.analysis.placing import Shown
+    from roadproof.analysis.redundancy import learn
+
+    drives = [(x["claim"], x["drive"]) for x in verdicts if x["drive"] is not None]
+    shown = [
+        Shown(claim, json.loads(Path(x).read_text("utf-8")) if isinstance(x, str) else x)
+        for claim, x in drives
+    ]
+    vain = [x["changed"] for x in verdicts if x["drive"] is None and not x["redundant"]]
+    return learn(asked, shown, vain)
 
 
-def _print(findings: "Sequence[Finding]", seconds: float) -> None:
-    for finding in findings:
-        if finding.verdict is Verdict.PROVED:
-            print(f"scenario {finding.node.number}: redundant: {finding.change}")
-    for finding in findings:
-        if finding.verdict is Verdict.UNKNOWN:
-            print(f"scenario {finding.node.number}: in doubt: {finding.change}: {finding.reason}")
-    redundant = sum(x.verdict is Verdict.PROVED for x in findings)
-    drives = sum(x.drive is not None for x in findings)
-    traces = sum(x.trace is not None for x in findings)
-    doubts = sum(x.verdict is Verdict.UNKNOWN for x in findings)
+def _record(number: int, findings: "Sequence[Finding]", journal: "Journal | None") -> list[dict[str, Any]]:
+    """The findings on a scenario as plain data; evidence in files, or inside where there is no folder."""
+    files: list[str] = []
+
+    def kept(name: str, content: str) -> str | None:
+        if journal is None:
+            return None
+        write_text(journal.folder / name, content)
+        files.append(name)
+        return str(journal.folder / name)
+
+    verdicts = []
+    for place, finding in enumerate(findings, 1):
+        certificate: str | None = finding.certificate
+        drive: object = finding.drive
+        if certificate is not None:
+            certificate = kept(f"redundant-{number:02}-{place:03}.json", certificate) or certificate
+        elif drive is not None:
+            content = json.dumps(drive, indent=2, ensure_ascii=False) + "\n"
+            drive = kept(f"needed-{number:02}-{place:03}.json", content) or drive
+        change = finding.change
+        verdicts.append(
+            {
+                "scenario": number,
+                "part": change.part,
+                "where": list(change.where),
+                "as": change.value,
+                "changed": change.changed,
+                "redundant": None
+                if finding.verdict is Verdict.UNKNOWN
+                else finding.verdict is Verdict.PROVED,
+                "verdict": str(finding.verdict),
+                "claim": finding.claim,
+                "certificate": certificate,
+                "drive": drive,
+                "trace": finding.trace,
+                "reason": finding.reason,
+            }
+        )
+    if journal is not None:
+        journal.add({"evidence": files, "scenario": number, "verdicts": verdicts})
+    return verdicts
+
+
+def _print(verdicts: Sequence[Mapping[str, Any]], seconds: float) -> None:
+    def say(verdict: Mapping[str, Any]) -> str:
+        value = str(verdict["as"]).lower()
+        return f"{verdict['part']} in {verdict['where'][-1]} as {value}"
+
+    for verdict in verdicts:
+        if verdict["redundant"]:
+            print(f"scenario {verdict['scenario']}: redundant: {say(verdict)}")
+    doubts = [x for x in verdicts if x["verdict"] == Verdict.UNKNOWN]
+    for verdict in doubts:
+        print(f"scenario {verdict['scenario']}: in doubt: {say(verdict)}: {verdict['reason']}")
+    redundant = sum(x["redundant"] is True for x in verdicts)
+    drives = sum(x["drive"] is not None for x in verdicts)
+    traces = sum(x["trace"] is not None for x in verdicts)
     print(
-        f"{len(findings)} changes: {redundant} redundant, {drives} told apart by a drive, {traces} by a "
-        f"trace, {doubts} in doubt, in {seconds:.1f} s"
+        f"{len(verdicts)} changes: {redundant} redundant, {drives} told apart by a drive, {traces} by a "
+        f"trace, {len(doubts)} in doubt, in {seconds:.1f} s"
     )
