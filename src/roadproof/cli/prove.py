@@ -3,10 +3,6 @@
 import argparse
 import re
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,19 +15,18 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
+from roadproof.cli.prove_answers import as_data, counterexample, details, line, table
+from roadproof.cli.prove_settle import Bounded, Job, Settled, settle
 from roadproof.cli.working import tell, work_in_order
-from roadproof.errors import RoadproofError, UsageError
+from roadproof.errors import UsageError
 from roadproof.files import make_folder
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
-    from roadproof.prove.countermodel import Countermodel
-    from roadproof.prove.properties import Task
-    from roadproof.prove.prover import Result
+    pass
 
 SUMMARY = "prove claims for all time, or refute them; without a claim, the template properties"
 SCHEMA = "roadproof/verdicts/1"
-DRIVE_SECONDS = 5.0
 _PROPERTY = re.compile(r"[A-Z]\d+")
 
 _EXAMPLES = """\
@@ -84,42 +79,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_json_option(parser)
 
 
-@dataclass(frozen=True)
-class Bounded:
-    """How to look for a drive that refutes a claim, up to a horizon; ``horizon`` and ``dt`` in seconds."""
-
-    engine: str
-    horizon: Fraction
-    dt: Fraction
-    road: str | None
-
-
-@dataclass(frozen=True)
-class Job:
-    """A task with all that a process needs to settle it."""
-
-    task: "Task"
-    specs: tuple[Path, ...]
-    options: Mapping[str, str]
-    timeout: float
-    seek_drive: bool
-    bounded: "Bounded | None" = None
-
-
-@dataclass(frozen=True)
-class Settled:
-    """A task with its result; ``drive`` is a judged drive on which the claim is false."""
-
-    task: "Task"
-    result: "Result"
-    drive: Mapping[str, Any] | None
-
-    @property
-    def verdict(self) -> Verdict:
-        """A drive refutes also where no countermodel over points in time was found."""
-        return Verdict.REFUTED if self.drive is not None else self.result.verdict
-
-
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     jobs = _jobs(args)
@@ -134,15 +93,15 @@ def run(args: argparse.Namespace) -> int:
             files |= _write_evidence(answer, args.out)
         tell(f"{number} of {len(jobs)} claims", number == len(jobs))
         if args.json != "-" and (own or args.verbose):
-            print(_details(answer) if own else _line(answer), flush=True)
+            print(details(answer) if own else line(answer), flush=True)
     if args.out is not None:
         index = [_index_entry(s, files.get(s.task.name)) for s in settled]
         write_json({"schema": "roadproof/index/1", "claims": index}, str(args.out / "index.json"))
     if args.json != "-" and not own:
-        print(_table(settled))
+        print(table(settled))
         print(f"{len(settled)} claims in {time.monotonic() - begun:.1f} s")
     if args.json:
-        verdicts = [_as_json(s, files.get(s.task.name)) for s in settled]
+        verdicts = [as_data(s, files.get(s.task.name)) for s in settled]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
     return exit_code((s.verdict, s.task.expected) for s in settled)
 
@@ -190,192 +149,6 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     return [Job(task, tuple(args.specs), options, args.timeout, seek_drive, bounded) for task in tasks]
 
 
-def settle(job: Job) -> Settled:
-    """Prove or refute one claim; a refuted or undecided one also by a drive, where there is one."""
-    if job.bounded is not None:
-        return _settle_bounded(job, job.bounded)
-    from roadproof.prove.prover import prove
-    from roadproof.spec.library import load_library
-
-    specification = load_library(job.specs).select(job.task.set_name, job.options)
-    task = job.task
-    label = task.id + (f"-{task.part}" if task.part else "")
-    result = prove(specification, task.claim, job.timeout, label, task.scenario)
-    drive = None
-    if job.seek_drive and result.verdict in (Verdict.REFUTED, Verdict.UNKNOWN):
-        drive = _refuting_drive(job)
-    return Settled(task, result, drive)
-
-
-def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
-    """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
-    from roadproof.prove.prover import Result
-    from roadproof.spec.bind import default_values
-    from roadproof.spec.library import load_library
-    from roadproof.witness.ask import Request
-    from roadproof.witness.bounded import check_bounded
-    from roadproof.witness.question import Means
-
-    begun = time.monotonic()
-    request = Request(
-        job.task.claim,
-        job.task.set_name,
-        job.options,
-        job.specs,
-        default_values(load_library(job.specs)),
-        bounded.road,
-        horizon=bounded.horizon,
-        dt=bounded.dt,
-        means=Means("any", "smt" if bounded.engine == "smt" else "milp", time_limit=job.timeout),
-    )
-    found = check_bounded(request)
-    if found.verdict is Verdict.PROVED:
-        return settle(replace(job, bounded=None))
-    expected = Verdict.PROVED_BOUNDED if job.task.expected is Verdict.PROVED else job.task.expected
-    seconds = time.monotonic() - begun
-    result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
-    return Settled(replace(job.task, expected=expected), result, found.drive)
-
-
-def _refuting_drive(job: Job) -> Mapping[str, Any] | None:
-    """A judged drive on a reference road on which the claim is false, at declared parameter values."""
-    try:
-        from roadproof.witness.refute import refuting_drive
-    except ImportError:
-        return None
-    try:
-        return refuting_drive(job.task.claim, job.task.set_name, job.options, job.specs, DRIVE_SECONDS)
-    except RoadproofError:
-        return None
-
-
-# --- what is answered ----------------------------------------------------------------------------
-
-
-def _line(settled: Settled) -> str:
-    task = settled.task
-    scenario = "" if task.scenario is None else f" {task.scenario}"
-    mark = "" if settled.verdict is task.expected else f", expected {task.expected}"
-    return f"{task.id}{scenario} {task.set_name}: {settled.verdict}{mark} ({settled.result.seconds:.2f} s)"
-
-
-def _table(settled: Sequence[Settled]) -> str:
-    """A line for each property and set; below it what was not as expected."""
-    rows: list[str] = []
-    for (name, title, set_name), group in groupby(
-        settled, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
-    ):
-        found = list(group)
-        verdicts = sorted({str(s.verdict) for s in found})
-        expected = str(found[0].task.expected)
-        slowest = max(s.result.seconds for s in found)
-        mark = "" if verdicts == [expected] else f"   expected {expected}"
-        count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
-        rows.append(
-            f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
-        )
-        rows += [f"      {_line(s)} {s.result.reason}" for s in found if s.verdict is not s.task.expected]
-    return "\n".join(rows)
-
-
-def _details(settled: Settled) -> str:
-    result, task = settled.result, settled.task
-    lines = [f"{settled.verdict}  {' '.join(task.claim.split())}"]
-    within = "up to a horizon" if settled.verdict is Verdict.PROVED_BOUNDED else "dense time, all horizons"
-    lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
-    if result.reason:
-        lines.append(f"  {result.reason}")
-    if result.certificate is not None:
-        certificate = result.certificate
-        count = sum(len(texts) for texts in certificate.instances.values())
-        lines.append(
-            f"  certificate: {count} instance{'s' if count != 1 else ''}, "
-            f"{len(certificate.lemmas)} lemma{'s' if len(certificate.lemmas) != 1 else ''}"
-            + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
-        )
-    if settled.drive is not None:
-        lines += _show_drive(settled.drive)
-    elif result.countermodel is not None:
-        lines += _show_countermodel(result.countermodel)
-    return "\n".join(lines)
-
-
-def _show_drive(drive: Mapping[str, Any]) -> list[str]:
-    """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
-    lanes = ", ".join(f"{k}={v}" for k, v in (drive.get("lanes") or {}).items()) or str(
-        drive.get("lane") or ""
-    )
-    lines = [f"  false on this drive, judged exactly in dense time{f' (lane {lanes})' if lanes else ''}:"]
-    for name, motion in drive["vehicles"].items():
-        start = f"starts at s={_short(motion['s'])} m, d={_short(motion['d'])} m"
-        speeds, across = [Fraction(motion["v_lon"])], Fraction(motion["d"])
-        v_lat = Fraction(motion["v_lat"])
-        for piece in motion["pieces"]:
-            if piece["duration"] is not None:
-                time, a_lat = Fraction(piece["duration"]), Fraction(piece["a_lat"])
-                across += v_lat * time + a_lat * time**2 / 2
-                v_lat += a_lat * time
-                speeds.append(speeds[-1] + Fraction(piece["a_lon"]) * time)
-        moved = f", moves to d={_short(str(across))} m" if abs(across - Fraction(motion["d"])) > 1 else ""
-        lines.append(f"    {name} {start}, {_short(str(speeds[0]))} -> {_short(str(speeds[-1]))} m/s{moved}")
-    return lines
-
-
-def _short(text: str) -> str:
-    return f"{float(Fraction(text)):.4g}"
-
-
-def _show_countermodel(countermodel: "Countermodel") -> list[str]:
-    lines = [
-        "  false on this trace over points in time, judged; it may jump, and no drive was found:",
-        f"    between two instants it keeps the state of the one {countermodel.held}",
-    ]
-    if countermodel.parameters:
-        shown = ", ".join(f"{n}={_number(v)}" for n, v in sorted(countermodel.parameters.items()))
-        lines.append(f"    parameters: {shown}")
-    for instant in countermodel.instants:
-        true = ", ".join(name for name, holds in instant.atoms.items() if holds) or "none of the predicates"
-        lines.append(f"    at {_number(instant.time)} s: {true}")
-        values = {n: v for n, v in instant.values.items() if n not in countermodel.parameters}
-        if values:
-            lines.append(f"      {', '.join(f'{n}={_number(v)}' for n, v in sorted(values.items()))}")
-    return lines
-
-
-def _number(value: Fraction) -> str:
-    return f"{float(value):.6g}"
-
-
-def _as_json(settled: Settled, file: str | None) -> dict[str, Any]:
-    task, result = settled.task, settled.result
-    return {
-        "property": task.id,
-        "part": task.part,
-        "scenario": task.scenario,
-        "set": task.set_name,
-        "claim": task.claim,
-        "expected": str(task.expected),
-        "verdict": str(settled.verdict),
-        "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
-        "seconds": round(result.seconds, 4),
-        "reason": result.reason,
-        "assumptions": list(result.certificate.assumptions) if result.certificate else [],
-        "certificate": file if result.certificate is not None else None,
-        "counterexample": _counterexample(settled),
-    }
-
-
-def _counterexample(settled: Settled) -> dict[str, Any] | None:
-    from roadproof.evidence.refutation import drive_data, trace_data
-
-    if settled.drive is not None:
-        return drive_data(settled.drive)
-    found = settled.result.countermodel
-    if found is None:
-        return None
-    return trace_data([(i.time, i.values, i.atoms) for i in found.instants], found.parameters, found.held)
-
-
 # --- files ---------------------------------------------------------------------------------------
 
 
@@ -407,4 +180,4 @@ def _index_entry(settled: Settled, file: str | None) -> dict[str, Any]:
         "verdict": str(settled.verdict),
         "evidence": None if file is None else Path(file).name,
     }
-    return entry if file is not None else {**entry, "counterexample": _counterexample(settled)}
+    return entry if file is not None else {**entry, "counterexample": counterexample(settled)}

@@ -1,0 +1,112 @@
+"""One claim of ``roadproof prove`` settled, in a process of its own: proof, countermodel, refuting drive."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from roadproof.errors import RoadproofError
+from roadproof.verdict import Verdict
+
+if TYPE_CHECKING:
+    from roadproof.prove.properties import Task
+    from roadproof.prove.prover import Result
+
+DRIVE_SECONDS = 5.0
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """How to look for a drive that refutes a claim, up to a horizon; ``horizon`` and ``dt`` in seconds."""
+
+    engine: str
+    horizon: Fraction
+    dt: Fraction
+    road: str | None
+
+
+@dataclass(frozen=True)
+class Job:
+    """A task with all that a process needs to settle it."""
+
+    task: "Task"
+    specs: tuple[Path, ...]
+    options: Mapping[str, str]
+    timeout: float
+    seek_drive: bool
+    bounded: "Bounded | None" = None
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A task with its result; ``drive`` is a judged drive on which the claim is false."""
+
+    task: "Task"
+    result: "Result"
+    drive: Mapping[str, Any] | None
+
+    @property
+    def verdict(self) -> Verdict:
+        """A drive refutes also where no countermodel over points in time was found."""
+        return Verdict.REFUTED if self.drive is not None else self.result.verdict
+
+
+def settle(job: Job) -> Settled:
+    """Prove or refute one claim; a refuted or undecided one also by a drive, where there is one."""
+    if job.bounded is not None:
+        return _settle_bounded(job, job.bounded)
+    from roadproof.prove.prover import prove
+    from roadproof.spec.library import load_library
+
+    specification = load_library(job.specs).select(job.task.set_name, job.options)
+    task = job.task
+    label = task.id + (f"-{task.part}" if task.part else "")
+    result = prove(specification, task.claim, job.timeout, label, task.scenario)
+    drive = None
+    if job.seek_drive and result.verdict in (Verdict.REFUTED, Verdict.UNKNOWN):
+        drive = _refuting_drive(job)
+    return Settled(task, result, drive)
+
+
+def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
+    """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
+    from roadproof.prove.prover import Result
+    from roadproof.spec.bind import default_values
+    from roadproof.spec.library import load_library
+    from roadproof.witness.ask import Request
+    from roadproof.witness.bounded import check_bounded
+    from roadproof.witness.question import Means
+
+    begun = time.monotonic()
+    request = Request(
+        job.task.claim,
+        job.task.set_name,
+        job.options,
+        job.specs,
+        default_values(load_library(job.specs)),
+        bounded.road,
+        horizon=bounded.horizon,
+        dt=bounded.dt,
+        means=Means("any", "smt" if bounded.engine == "smt" else "milp", time_limit=job.timeout),
+    )
+    found = check_bounded(request)
+    if found.verdict is Verdict.PROVED:
+        return settle(replace(job, bounded=None))
+    expected = Verdict.PROVED_BOUNDED if job.task.expected is Verdict.PROVED else job.task.expected
+    seconds = time.monotonic() - begun
+    result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
+    return Settled(replace(job.task, expected=expected), result, found.drive)
+
+
+def _refuting_drive(job: Job) -> Mapping[str, Any] | None:
+    """A judged drive on a reference road on which the claim is false, at declared parameter values."""
+    try:
+        from roadproof.witness.refute import refuting_drive
+    except ImportError:
+        return None
+    try:
+        return refuting_drive(job.task.claim, job.task.set_name, job.options, job.specs, DRIVE_SECONDS)
+    except RoadproofError:
+        return None
