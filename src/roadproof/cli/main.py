@@ -31,6 +31,8 @@ COMMANDS = {
     "order": "roadproof.cli.order",
     "redundancy": "roadproof.cli.redundancy",
     "coverage": "roadproof.cli.coverage",
+    "classify": "roadproof.cli.classify",
+    "explore": "roadproof.cli.explore",
 }
 TRACEBACK = "ROADPROOF_TRACEBACK"
 _READER_GONE = 141  # what shells report for SIGPIPE; not 0, since the answer was not delivered

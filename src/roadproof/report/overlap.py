@@ -9,7 +9,7 @@ from typing import Any
 from roadproof.report.figures import as_bytes, make_figure
 
 SIGNS = {"WITNESSED": "#", "IMPOSSIBLE": ".", "NONE-WITHIN": "-", "UNKNOWN": "?"}
-_COLOURS = {"WITNESSED": "#3f7d4e", "IMPOSSIBLE": "#e4e0d6", "NONE-WITHIN": "#d9a441", "UNKNOWN": "#b5473c"}
+COLOURS = {"WITNESSED": "#3f7d4e", "IMPOSSIBLE": "#e4e0d6", "NONE-WITHIN": "#d9a441", "UNKNOWN": "#b5473c"}
 _MEANING = {
     "WITNESSED": "they hold together on a judged drive",
     "IMPOSSIBLE": "proved for all time that they never do",
@@ -57,7 +57,7 @@ def draw_overlap(verdicts: Sequence[Mapping[str, Any]], title: str, across: bool
             verdict = found.get((row, column))
             if verdict is None:
                 continue
-            axes.fill((x, x + 1, x + 1, x), (y, y, y + 1, y + 1), color=_COLOURS[verdict], ec="white", lw=0.8)
+            axes.fill((x, x + 1, x + 1, x), (y, y, y + 1, y + 1), color=COLOURS[verdict], ec="white", lw=0.8)
             number = numbers.get((row, column)) or (None if across else numbers.get((column, row)))
             if number is not None:
                 axes.text(x + 0.5, y + 0.5, str(number), fontsize=6, ha="center", va="center")
@@ -69,7 +69,7 @@ def draw_overlap(verdicts: Sequence[Mapping[str, Any]], title: str, across: bool
     axes.set_aspect("equal")
     present = [v for v in SIGNS if v in found.values()]
     for verdict in present:
-        axes.fill([], [], color=_COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
+        axes.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
     axes.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0, 1.04), ncols=2, frameon=False)
     below.axis("off")
     below.text(0, 1, "\n".join(lines), fontsize=6, va="top", family="monospace", transform=below.transAxes)

@@ -1,0 +1,240 @@
+"""For which values of parameters and limits a formula has a drive: a map, and its boundaries narrowed.
+
+A drive that was found for one value is judged at all others, so that only values which no drive serves
+yet are searched. Nothing is said of values in between.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise, product
+from typing import Any, TypeAlias
+
+from roadproof.analysis.explore_knobs import Knob, Point, between, stated, with_point
+from roadproof.analysis.explore_search import (
+    Claim,
+    Pool,
+    Reply,
+    Task,
+    claim_of,
+    duration_parameters,
+    look,
+)
+from roadproof.analysis.explore_text import conjoin
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import load_library
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Request
+from roadproof.witness.impossible import Impossibility, show_impossible
+
+PROOF_SECONDS = 5.0
+MOST_SEARCHES = 10  # for one boundary
+
+LookAll: TypeAlias = Callable[[Sequence[Task]], Iterable[Reply]]
+Say: TypeAlias = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """The values of ``knobs`` for which ``request.what``, a formula, has a drive.
+
+    ``steps``: values of each knob; ``precision``: how far boundaries are narrowed, in SI units of the
+    knob (None: a sixtieth of its range); ``width``: searches asked for at once.
+    """
+
+    request: Request
+    knobs: tuple[Knob, ...]
+    steps: int
+    precision: Fraction | None = None
+    width: int = 1
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The answer at one point. ``formula`` is what the drive satisfies, or what has no drive.
+
+    ``drive`` is a drive file's data, ``number`` tells drives apart; ``certificate`` proves for all values
+    that there is none.
+    """
+
+    at: Point
+    verdict: Verdict
+    formula: str
+    reason: str = ""
+    drive: Mapping[str, Any] | None = None
+    number: int | None = None
+    certificate: Mapping[str, Any] | None = None
+
+    @property
+    def found(self) -> bool:
+        return self.verdict is Verdict.WITNESSED
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A value with a drive and the nearest value looked at, on one side, for which none was found.
+
+    ``surely``: the nearest value on that side for which it is said that there is none, if any is.
+    """
+
+    held: Finding
+    missed: Finding
+    surely: Finding | None
+
+
+@dataclass(frozen=True)
+class Explored:
+    """``findings`` on the grid in the order of the product of the knobs' values; boundaries for one knob."""
+
+    findings: tuple[Finding, ...]
+    boundaries: tuple[Boundary, ...]
+    searches: int
+    drives: int
+
+
+def _surely_beyond(held: Finding, missed: Finding, findings: Sequence[Finding]) -> Finding | None:
+    """From ``missed`` on, away from ``held``, the first decided finding, if it comes before a drive."""
+    ahead = findings if missed.at > held.at else findings[::-1]
+    for finding in ahead[ahead.index(missed) :]:
+        if finding.found:
+            return None
+        if finding.verdict is not Verdict.UNKNOWN:
+            return finding
+    return None
+
+
+def look_one_by_one(tasks: Sequence[Task]) -> Iterable[Reply]:
+    """Every search in this process."""
+    return map(look, tasks)
+
+
+def explore(asked: Asked, look_all: LookAll = look_one_by_one, say: Say = lambda text: None) -> Explored:
+    """Settle every point of the grid, then narrow the boundaries where there is one knob.
+
+    ``look_all`` does several searches, in order; ``say`` is told how far it is. Raises ``InputError``,
+    ``UsageError``, ``MissingSolverError``.
+    """
+    exploring = Exploring(asked, look_all)
+    points = list(product(*(knob.values(asked.steps) for knob in asked.knobs)))
+    settled: dict[Point, Finding] = {}
+    while len(settled) < len(points):
+        for point in points:
+            if point not in settled and (finding := exploring.known(point)) is not None:
+                settled[point] = finding
+        left = [point for point in points if point not in settled]
+        for finding in exploring.settle(exploring.spread(left)[: asked.width]):
+            settled[finding.at] = finding
+        say(f"{len(settled)} of {len(points)} values, {exploring.searches} searches")
+    findings = tuple(settled[point] for point in points)
+    boundaries: list[Boundary] = []
+    if len(asked.knobs) == 1:
+        for one, other in pairwise(findings):
+            if one.found != other.found:
+                sides = (one, other) if one.found else (other, one)
+                boundary = exploring.narrow(*sides)
+                if boundary.surely is None:
+                    boundary = replace(boundary, surely=_surely_beyond(*sides, findings))
+                boundaries.append(boundary)
+                say(f"{len(boundaries)} boundaries, {exploring.searches} searches")
+    return Explored(findings, tuple(boundaries), exploring.searches, len(exploring.pool.files))
+
+
+class Exploring:
+    """What is known in the course of an exploration: drives that were found, or that there are none."""
+
+    def __init__(self, asked: Asked, look_all: LookAll = look_one_by_one) -> None:
+        self.asked = asked
+        self.look_all = look_all
+        self.library = load_library(asked.request.specs)
+        self.specification = self.library.select(asked.request.set_name, asked.request.options)
+        self.pool = Pool(self.library)
+        self.searches = 0
+        self.searched: list[Point] = []
+        self.impossibility: Impossibility | None = None
+        formula = read_claim(self.specification, asked.request.what).formula
+        self.lasting = duration_parameters(formula)
+
+    def request(self, point: Point) -> Request:
+        """The question at a point."""
+        return with_point(self.asked.request, self.asked.knobs, point)
+
+    def claim(self, point: Point) -> Claim:
+        """What a drive file has to say at a point, limits included."""
+        text = conjoin(self.asked.request.what, stated(self.asked.knobs, point))
+        return claim_of(self.request(point), text, self.library)
+
+    def known(self, point: Point) -> Finding | None:
+        """The answer by a drive that was found before, or by the proof that there is none."""
+        claim = self.claim(point)
+        if self.impossibility is not None:
+            core = f"proved for all values: {' and '.join(self.impossibility.core)} clash"
+            certificate = self.impossibility.certificate
+            return Finding(point, Verdict.IMPOSSIBLE, claim.text, core, certificate=certificate)
+        shown = self.pool.show(claim)
+        if shown is None:
+            return None
+        return Finding(point, Verdict.WITNESSED, claim.text, drive=shown.data, number=shown.number)
+
+    def settle(self, points: Sequence[Point], natural: bool = True) -> list[Finding]:
+        """The answers at ``points``, each by a search of its own."""
+        tasks = [Task(self.request(point), natural) for point in points]
+        self.searches += len(tasks)
+        self.searched += points
+        findings: list[Finding] = []
+        for point, reply in zip(points, self.look_all(tasks), strict=True):
+            self.pool.add(reply.drives)
+            if not self.pool.files and self.searches == len(tasks) and self.impossibility is None:
+                what = self.asked.request.what
+                self.impossibility = show_impossible(self.specification, what, PROOF_SECONDS)
+            findings.append(self.known(point) or self._missed(point, reply))
+        return findings
+
+    def _missed(self, point: Point, reply: Reply) -> Finding:
+        text = self.claim(point).text
+        if reply.verdict is Verdict.NONE_WITHIN:
+            return Finding(point, Verdict.NONE_WITHIN, text, reply.reason)
+        reason = reply.reason or "the drive that was found is rejected by the judge"
+        return Finding(point, Verdict.UNKNOWN, text, reason)
+
+    def spread(self, points: Sequence[Point]) -> list[Point]:
+        """``points``, ends first, each as far as can be from those that were searched before it."""
+        spans = [knob.high - knob.low for knob in self.asked.knobs]
+
+        def distance(one: Point, other: Point) -> Fraction:
+            return sum((abs(a - b) / span for a, b, span in zip(one, other, spans, strict=True)), Fraction(0))
+
+        left, chosen = list(points), list(self.searched)
+        order: list[Point] = []
+        while left and len(order) < self.asked.width:
+            far = max(left, key=lambda point: min((distance(point, q) for q in chosen), default=Fraction(0)))
+            left.remove(far)
+            chosen.append(far)
+            order.append(far)
+        return order
+
+    def narrow(self, held: Finding, missed: Finding) -> Boundary:
+        """The boundary between two neighbours on the grid: leaps by the judge, then halving by searches."""
+        [knob] = self.asked.knobs
+        precision = self.asked.precision or (knob.high - knob.low) / 60
+        grains = [self.asked.request.dt / k for k in (1, 2, 4)] if knob.name in self.lasting else []
+        surely = missed if missed.verdict is not Verdict.UNKNOWN else None
+        for _ in range(MOST_SEARCHES):
+            held = self.leap(held, missed, precision)
+            if abs(missed.at[0] - held.at[0]) <= precision:
+                break
+            [finding] = self.settle([(between(held.at[0], missed.at[0], grains),)], natural=False)
+            held, missed = (finding, missed) if finding.found else (held, finding)
+            surely = missed if missed.verdict is not Verdict.UNKNOWN else surely
+        return Boundary(held, missed, surely)
+
+    def leap(self, held: Finding, missed: Finding, precision: Fraction) -> Finding:
+        """The value nearest to ``missed``, by halving, at which a drive is judged to do that is known."""
+        low, high = held.at[0], missed.at[0]
+        while abs(high - low) > precision:
+            middle = between(low, high)
+            finding = self.known((middle,))
+            if finding is None:
+                high = middle
+            else:
+                held, low = finding, middle
+        return held
