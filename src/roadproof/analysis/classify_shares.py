@@ -1,0 +1,165 @@
+"""How often each class occurs in recordings, and whether the classes are a partition there too.
+
+A situation is a disturbance trace (SPEC §7), vehicles of it in their roles, and a lane: that of either
+vehicle of the pair at the start of the trace, for three vehicles that of SV. Traces are read to their end
+and no further (``clip``): what does not happen on them does not happen.
+"""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import TypeAlias
+
+from roadproof.analysis.classify import Class, Classes
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import with_values
+from roadproof.monitor.compiled import compile
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+from roadproof.traffic.evaluate import Findings, evaluate_recording
+from roadproof.traffic.questions import PAIR, TRIPLE, Asked, Questions, Role, Settings, ask
+from roadproof.traffic.recording import Recording
+
+Situation: TypeAlias = tuple[str, int, int, int | None, str]
+"""Recording, SV, POV, POV2 or None, lane."""
+PAIRS_OF_ROLES: tuple[tuple[Role, str, str], ...] = (("first", "SV, POV", "POV"), ("second", "POV, SV", "SV"))
+MOST_TOLD = 20
+
+
+@dataclass
+class Shares:
+    """Counts over recordings. By class ``situations`` and ``traces``; ``classified`` by number of vehicles.
+
+    ``all_traces``: traces in which danger arises; ``covered``: those with a class; ``broken``: situations in
+    which classes are not what they are proved to be.
+    """
+
+    recordings: list[str] = field(default_factory=list)
+    all_traces: int = 0
+    covered: int = 0
+    situations: Counter[str] = field(default_factory=Counter)
+    traces: Counter[str] = field(default_factory=Counter)
+    classified: Counter[int] = field(default_factory=Counter)
+    broken: list[str] = field(default_factory=list)
+
+
+def count_shares(
+    classes: Classes,
+    specification: Specification,
+    values: Mapping[str, Fraction],
+    recordings: Iterable[Recording],
+    kinds: Sequence[str] = ("Car",),
+) -> Shares:
+    """Count the classes in ``recordings``; ``specification`` is the set of the classes.
+
+    ``values``: parameters in SI units; ``kinds``: the vehicles that are looked at. Raises ``InputError``.
+    """
+    shares = Shares()
+    settings = Settings(
+        specification.library,
+        specification.options,
+        values,
+        sets=(specification.set_name,),
+        min_danger=(values["minDanger"],),
+        scenarios=(4,),
+        classes=tuple(kinds),
+        convention="clip",
+    )
+    known: dict[int, Questions] = {}
+    for recording in recordings:
+        if recording.rate not in known:
+            known[recording.rate] = questions_of(classes, specification, settings, recording.rate)
+        add_shares(shares, classes, evaluate_recording(recording, known[recording.rate]))
+    return shares
+
+
+def questions_of(classes: Classes, specification: Specification, settings: Settings, rate: int) -> Questions:
+    """Every scenario and class, asked in both roles and for the lanes of both vehicles."""
+    asked: dict[str, Asked] = {}
+    pairs: dict[str, Formula] = {}
+    triples: dict[str, Formula] = {}
+    starts: list[Formula] = []
+
+    def read(text: str) -> Formula:
+        return with_values(read_claim(specification, text).formula, settings.values)
+
+    for group in classes.plan.groups:
+        names = [*(f"scenario_{number}" for number in group.rows), *(one.name for one in classes.of(group))]
+        if group.vehicles == PAIR:
+            for name in names:
+                for role, vehicles, _ in PAIRS_OF_ROLES:
+                    for lane in ("L", "L1"):
+                        asked[f"{name}/{role}/{lane}"] = Asked(name, 0, role, lane)
+                        pairs[f"{name}/{role}/{lane}"] = read(f"{name}({vehicles}, {lane})")
+        elif group.vehicles == TRIPLE:
+            starts += [read(f"disturb_{number}{group.arguments}") for number in group.disturbances]
+            for name in names:
+                asked[name] = Asked(name, 0, "first", "L")
+                triples[name] = read(f"{name}{group.arguments}")
+    return replace(
+        ask(settings, rate),
+        pairs=(compile(pairs),) if pairs else (),
+        triple_start=compile({"start": f.disjunction(*map(_at_start, starts))}) if triples else None,
+        triples=(compile(triples),) if triples else (),
+        asked=asked,
+    )
+
+
+def _at_start(formula: Formula) -> Formula:
+    """What ``formula`` asks of its first instant: its state conjuncts; true where there is none."""
+    return f.conjunction(*(part for part in _conjuncts(formula) if f.is_state(part)))
+
+
+def _conjuncts(formula: Formula) -> Iterator[Formula]:
+    match formula:
+        case f.Named(_, _, body) if not f.is_state(formula):
+            yield from _conjuncts(body)
+        case f.And(every):
+            for part in every:
+                yield from _conjuncts(part)
+        case _:
+            yield formula
+
+
+def add_shares(shares: Shares, classes: Classes, findings: Findings) -> None:
+    """Count one recording, and compare its classes with its scenarios."""
+    scenarios: dict[Situation, set[int]] = defaultdict(set)
+    found: dict[Situation, set[str]] = defaultdict(set)
+    where: dict[Situation, tuple[int, int]] = {}
+    for match in findings.matches:
+        situation = (findings.recording, match.sv, match.pov, match.pov2, match.lane)
+        where[situation] = match.pair
+        if match.set_name.startswith("scenario_"):
+            scenarios[situation].add(int(match.set_name.removeprefix("scenario_")))
+        else:
+            found[situation].add(match.set_name)
+    by_name = {one.name: one for one in classes.all()}
+    shares.recordings.append(findings.recording)
+    shares.all_traces += len(findings.traces)
+    shares.covered += len(set(where.values()))
+    shares.traces.update(name for name, _ in {(n, where[s]) for s, names in found.items() for n in names})
+    for situation in sorted(where, key=str):
+        names = found.get(situation, set())
+        shares.situations.update(names)
+        shares.classified[3 if situation[3] is not None else 2] += 1
+        told = _difference(names, scenarios.get(situation, set()), by_name)
+        if told:
+            shares.broken.append(f"{_say(situation)}: {told}")
+
+
+def _difference(names: set[str], scenarios: set[int], classes: Mapping[str, Class]) -> str:
+    """How classes and scenarios of one situation differ from what is proved; empty where they do not."""
+    if len(names) != 1:
+        return f"scenarios {sorted(scenarios)} and {len(names)} classes {', '.join(sorted(names))}"
+    (name,) = names
+    if set(classes[name].scenarios) != scenarios:
+        return f"scenarios {sorted(scenarios)} in {name}"
+    return ""
+
+
+def _say(situation: Situation) -> str:
+    recording, sv, pov, pov2, lane = situation
+    third = "" if pov2 is None else f", POV2 {pov2}"
+    return f"recording {recording}, SV {sv}, POV {pov}{third}, lane {lane or 'none'}"
