@@ -2,7 +2,7 @@
 
 import argparse
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,7 +23,8 @@ examples:
 A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
 give the very query that is stored, and the solver answers unsat to it. A drive file is accepted when its
 formula holds on its drive, judged exactly in dense time. Exit code 10 where something is rejected, else
-3 where a file is neither.
+3 where a file is neither. Where the index of a folder names specification files in it, such as classes.spec,
+these are put on top of the library, unless they would change what is there.
 """
 
 
@@ -69,7 +70,14 @@ class Finding:
 
 
 def run(args: argparse.Namespace) -> int:
-    jobs = [Job(path, tuple(args.specs), args.solver, args.timeout) for path in _files(args.paths)]
+    given = tuple(args.specs)
+    beside = {folder: names for path in args.paths for folder, names in _specifications(path, given).items()}
+    jobs = [
+        Job(path, (*given, *_around(path, beside)), args.solver, args.timeout) for path in _files(args.paths)
+    ]
+    if args.json != "-":
+        for name in dict.fromkeys(name for names in beside.values() for name in names):
+            print(f"read with {name}", flush=True)
     findings: list[Finding] = []
     for finding in work_in_order(examine, jobs, args.jobs):
         findings.append(finding)
@@ -106,6 +114,45 @@ def _files(paths: Sequence[Path]) -> list[Path]:
         else:
             raise InputError(f"{path} does not exist")
     return files
+
+
+def _specifications(path: Path, given: Sequence[Path]) -> dict[Path, tuple[Path, ...]]:
+    """The specification files that the indices in a folder name, by the folder that they lie in.
+
+    Raises ``InputError`` where one would change the library: evidence must not redefine what it is about.
+    """
+    found: dict[Path, tuple[Path, ...]] = {}
+    for index in sorted(path.rglob("index.json")) if path.is_dir() else ():
+        try:
+            data = json.loads(index.read_text("utf-8"))
+        except (OSError, ValueError, RecursionError):
+            continue
+        names = data.get("specs") if isinstance(data, dict) else None
+        if isinstance(names, list) and names:
+            found[index.parent] = tuple(index.parent / Path(str(name)).name for name in names)
+    for names_there in found.values():
+        _check_adds_only(names_there, given)
+    return found
+
+
+def _check_adds_only(names: Sequence[Path], given: Sequence[Path]) -> None:
+    from roadproof.spec.library import load_library
+
+    below, above = load_library(given), load_library((*given, *names))
+    for kind in ("parameters", "options", "definitions", "sets", "variants"):
+        after: Mapping[object, object] = getattr(above, kind)
+        for name, meaning in getattr(below, kind).items():
+            if after.get(name) != meaning:
+                listed = ", ".join(map(str, names))
+                raise InputError(
+                    f"{listed}: changes '{name}' of the library, so what the evidence says is not what it "
+                    "seems; name the file with --spec if that is meant"
+                )
+
+
+def _around(path: Path, beside: Mapping[Path, tuple[Path, ...]]) -> tuple[Path, ...]:
+    """The specification files of the nearest folder around ``path`` that has some."""
+    return next((beside[folder] for folder in path.parents if folder in beside), ())
 
 
 def examine(job: Job) -> Finding:
