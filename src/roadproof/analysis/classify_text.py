@@ -150,8 +150,8 @@ def claims_of(classes: Classes, empty: Mapping[tuple[str, ...], Sequence[str]]) 
 
     Exclusive: any two classes; where there are several road sectors, any two cells of what happens, and any
     two of where. Covers: a scenario holds exactly where one of its classes does; where there are several road
-    sectors, where one of its cells of what happens and one of its cells of where do, and such a pair of cells
-    holds exactly where its class does.
+    sectors, where one of its cells of what happens and one of its cells of where do. A class is by definition
+    one of each, so this says the same of the classes.
     """
     claims: list[Claim] = []
     for group, cells in zip(classes.plan.groups, classes.what, strict=True):
@@ -174,12 +174,6 @@ def _claims_of(classes: Classes, group: Group, cells: Sequence[Cell]) -> Iterato
     vehicles = f"({', '.join(group.vehicles)})"
     where = {cell: f"where_{classes.place(cell)}" for cell in classes.where}
     yield from _exclusive(list(where.values()), vehicles, f"-{len(group.vehicles)}-vehicles")
-    somewhere = _either([f"{name}{vehicles}" for name in where.values()])
-    for cell in cells:
-        what = f"{name_of('what', cell)}{group.arguments}"
-        those = _either([one.formula for one in classes.of(group) if one.what == cell])
-        text = f"{what} and {somewhere} <-> {those}"
-        yield Claim(f"covers-{name_of('what', cell)}", "covers", text)
     for number, (disturbance, sector) in group.rows.items():
         scenario = f"scenario_{number}{group.arguments}"
         happens = [name_of("what", cell) for cell in cells if disturbance in cell.holds]

@@ -219,7 +219,7 @@ def summary(data: Mapping[str, Any]) -> Iterator[str]:
     count = sum(shares["situations"].values())
     broken = shares["broken"]
     if broken:
-        yield f"CROSSCHECK-FAILED: {len(broken)} of {count} situations are not in the one class that they should"
+        yield f"CROSSCHECK-FAILED: {len(broken)} of {count} situations are not in exactly their own class"
         yield from (f"  {line}" for line in broken[:MOST_TOLD])
     else:
         yield f"{count} situations with a scenario, each in exactly one class, which names its scenarios"
