@@ -6,7 +6,7 @@ and those for one scenario on the scenarios that differ from it in the road sect
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from roadproof.analysis.meeting import Node, applied, vehicles_of
@@ -27,6 +27,9 @@ from roadproof.spec.library import Specification
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, ask
 from roadproof.witness.question import Means, usual_road
+
+# How many drives are tried on other roads for a change inside a road sector.
+MOVED = 5
 
 
 @dataclass(frozen=True)
@@ -111,10 +114,10 @@ def _is_simple(formula: f.Named) -> bool:
 class Learned:
     """What one scenario leaves to those that differ from it in the road sector only.
 
-    ``drives``, and ``vain``: the changes for which drives were looked for in vain, without sectors.
+    By the changed formula, without sectors: drives that told it apart; ``vain``: looked for in vain.
     """
 
-    drives: tuple[Shown, ...] = ()
+    drives: Mapping[Formula, Shown] = field(default_factory=dict)
     vain: frozenset[Formula] = frozenset()
 
 
@@ -125,11 +128,13 @@ def examine(
     return tuple(_Examining(asked, node, learned).run(whole))
 
 
-def learn(asked: Asked, drives: Iterable[Shown], vain: Iterable[str]) -> Learned:
-    """What the findings on one scenario teach about its likes; ``vain``: changed formulas, as text."""
+def learn(asked: Asked, drives: Iterable[tuple[str, Shown]], vain: Iterable[str]) -> Learned:
+    """What the findings on one scenario teach about its likes; changed formulas are given as text."""
     _, specification = asked.load()
-    distinct = {repr(shown.data["vehicles"]): shown for shown in drives}
-    return Learned(tuple(distinct.values()), frozenset(_key(specification, x) for x in vain))
+    return Learned(
+        {_key(specification, changed): shown for changed, shown in drives},
+        frozenset(_key(specification, changed) for changed in vain),
+    )
 
 
 def _in_sector(change: Change) -> bool:
@@ -148,7 +153,6 @@ class _Examining:
         self.node = node
         self.text = applied(node, self.specification, vehicles_of(self.specification, node))
         self.learned = learned
-        self.pool = list(learned.drives)
         self.mine: list[Shown] = []
 
     def run(self, whole: bool) -> Iterator[Finding]:
@@ -163,26 +167,31 @@ class _Examining:
 
     def _collect(self) -> None:
         """Drives of this scenario, and drives for earlier ones put on a road of its sector."""
-        for shown in self.pool:
+        distinct = {repr(shown.data["vehicles"]): shown for shown in self.learned.drives.values()}
+        for shown in distinct.values():
             placed = show_elsewhere(shown, self.text, self.library)
             if placed is not None:
                 self.mine.append(placed)
         if not self.mine:
             found = self._ask(self.text)
             if found is not None:
-                self._keep(found)
+                self.mine.append(found)
 
-    def _keep(self, found: Shown) -> None:
-        self.mine.append(found)
-        self.pool.append(found)
+    def _candidates(self, change: Change) -> Iterator[tuple[Shown, bool]]:
+        """Known drives that may tell a change apart, and whether they are to be tried on other roads too."""
+        yield from ((shown, False) for shown in self.mine)
+        if _in_sector(change):
+            yield from ((shown, True) for shown in self.mine[:MOVED])
+        else:
+            twin = self.learned.drives.get(_key(self.specification, change.changed))
+            yield from [] if twin is None else [(twin, True)]
 
     def _decide(self, change: Change) -> Finding:
         apart = f"{self.text} and not ({change.changed})"
         if change.weakens:
             apart = f"({change.changed}) and not {self.text}"
-        strangers = [x for x in self.pool if x not in self.mine]
-        for shown in (*self.mine, *strangers):
-            told = self._tells_apart(shown, apart, _in_sector(change) or shown in strangers)
+        for shown, elsewhere in self._candidates(change):
+            told = self._tells_apart(shown, apart, elsewhere)
             if told is not None:
                 return Finding(self.node, change, Verdict.REFUTED, apart, None, told.data)
         claim = f"{self.text} <-> ({change.changed})"
@@ -192,7 +201,7 @@ class _Examining:
         vain = not _in_sector(change) and _key(self.specification, change.changed) in self.learned.vain
         found = None if vain else self._ask(apart)
         if found is not None:
-            self._keep(found)
+            self.mine.append(found)
             return Finding(self.node, change, Verdict.REFUTED, apart, None, found.data)
         within = f"no drive was found within {self.asked.timeout:g} s, {self.asked.horizon} s ahead"
         within += ", for the same scenario on another road" if vain else ""

@@ -161,13 +161,14 @@ def _learned(asked: "Asked", verdicts: Sequence[Mapping[str, Any]]) -> "Learned"
     from roadproof.analysis.placing import Shown
     from roadproof.analysis.redundancy import learn
 
-    drives = [(x["claim"], x["drive"]) for x in verdicts if x["drive"] is not None]
-    shown = [
-        Shown(claim, json.loads(Path(x).read_text("utf-8")) if isinstance(x, str) else x)
-        for claim, x in drives
+    told = [x for x in verdicts if x["drive"] is not None]
+    data = [
+        json.loads(Path(x["drive"]).read_text("utf-8")) if isinstance(x["drive"], str) else x["drive"]
+        for x in told
     ]
+    drives = [(x["changed"], Shown(x["claim"], y)) for x, y in zip(told, data, strict=True)]
     vain = [x["changed"] for x in verdicts if x["drive"] is None and not x["redundant"]]
-    return learn(asked, shown, vain)
+    return learn(asked, drives, vain)
 
 
 def _record(number: int, findings: "Sequence[Finding]", journal: "Journal | None") -> list[dict[str, Any]]:
