@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from roadproof.cli.options import (
     chosen_options,
     load_library_of,
     parameter_values,
+    read_seconds,
     write_json,
     write_text,
 )
@@ -57,6 +59,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
     parser.add_argument(
         "--timeout", type=float, default=60.0, metavar="S", help="seconds for one drive (default: 60)"
+    )
+    parser.add_argument(
+        "--horizon", metavar="S", help="seconds of driving searched (default: 6; 9 with --start any)"
     )
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write evidence, CSV, JSON and heat map")
@@ -113,13 +118,20 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, list[Pair]]":
         specification.options,
         tuple(args.specs),
         parameter_values(args, library),
-        timeout=args.timeout,
+        _horizon(args),
+        args.timeout,
     )
     numbers = read_numbers(args.among, specification) if args.among else None
     pairs = pairs_of(asked, numbers)
     if not pairs:
         raise UsageError(f"--among {args.among} leaves no pair: name at least two scenarios")
     return asked, pairs
+
+
+def _horizon(args: argparse.Namespace) -> Fraction:
+    """What happens one after the other takes longer than what happens at once."""
+    usual = "9" if args.start == "any" else "6"
+    return read_seconds("--horizon", args.horizon or usual)
 
 
 def _settle(
@@ -199,7 +211,7 @@ def _print(verdicts: Sequence[Mapping[str, Any]], across: bool, seconds: float) 
         print(f"{len(found):>4} {verdict}" + (f": {few}" if few else ""))
         reasons = dict.fromkeys(x["reason"] for x in found if x["reason"])
         print("".join(f"       {reason}\n" for reason in reasons), end="")
-    print(f"{len(verdicts)} pairs in {seconds:.1f} s")
+    print(f"{len(verdicts)} pair{'s' if len(verdicts) > 1 else ''} in {seconds:.1f} s")
 
 
 def _write(data: Mapping[str, Any], folder: Path, across: bool, pictures: bool) -> None:
