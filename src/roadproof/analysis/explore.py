@@ -12,9 +12,12 @@ from typing import Any, TypeAlias
 
 from roadproof.analysis.explore_knobs import Knob, Point, between, stated, with_point
 from roadproof.analysis.explore_search import (
+    NATURAL_FIRST,
+    PLAIN_FIRST,
     Claim,
     Pool,
     Reply,
+    Stage,
     Task,
     claim_of,
     duration_parameters,
@@ -28,6 +31,7 @@ from roadproof.witness.ask import Request
 from roadproof.witness.impossible import Impossibility, show_impossible
 
 PROOF_SECONDS = 5.0
+QUICK_PROOF = 2.0  # before any search; where a formula can hold, that is mostly seen at once
 MOST_SEARCHES = 10  # for one boundary
 
 LookAll: TypeAlias = Callable[[Sequence[Task]], Iterable[Reply]]
@@ -150,7 +154,8 @@ class Exploring:
         self.pool = Pool(self.library)
         self.searches = 0
         self.searched: list[Point] = []
-        self.impossibility: Impossibility | None = None
+        what = asked.request.what
+        self.impossibility: Impossibility | None = show_impossible(self.specification, what, QUICK_PROOF)
         formula = read_claim(self.specification, asked.request.what).formula
         self.lasting = duration_parameters(formula)
 
@@ -167,7 +172,7 @@ class Exploring:
         """The answer by a drive that was found before, or by the proof that there is none."""
         claim = self.claim(point)
         if self.impossibility is not None:
-            core = f"proved for all values: {' and '.join(self.impossibility.core)} clash"
+            core = f"proved for all values; core: {' and '.join(self.impossibility.core)}"
             certificate = self.impossibility.certificate
             return Finding(point, Verdict.IMPOSSIBLE, claim.text, core, certificate=certificate)
         shown = self.pool.show(claim)
@@ -175,17 +180,14 @@ class Exploring:
             return None
         return Finding(point, Verdict.WITNESSED, claim.text, drive=shown.data, number=shown.number)
 
-    def settle(self, points: Sequence[Point], natural: bool = True) -> list[Finding]:
+    def settle(self, points: Sequence[Point], stages: tuple[Stage, ...] = NATURAL_FIRST) -> list[Finding]:
         """The answers at ``points``, each by a search of its own."""
-        tasks = [Task(self.request(point), natural) for point in points]
+        tasks = [Task(self.request(point), stages) for point in points]
         self.searches += len(tasks)
         self.searched += points
         findings: list[Finding] = []
         for point, reply in zip(points, self.look_all(tasks), strict=True):
             self.pool.add(reply.drives)
-            if not self.pool.files and self.searches == len(tasks) and self.impossibility is None:
-                what = self.asked.request.what
-                self.impossibility = show_impossible(self.specification, what, PROOF_SECONDS)
             findings.append(self.known(point) or self._missed(point, reply))
         return findings
 
@@ -222,7 +224,7 @@ class Exploring:
             held = self.leap(held, missed, precision)
             if abs(missed.at[0] - held.at[0]) <= precision:
                 break
-            [finding] = self.settle([(between(held.at[0], missed.at[0], grains),)], natural=False)
+            [finding] = self.settle([(between(held.at[0], missed.at[0], grains),)], PLAIN_FIRST)
             held, missed = (finding, missed) if finding.found else (held, finding)
             surely = missed if missed.verdict is not Verdict.UNKNOWN else surely
         return Boundary(held, missed, surely)

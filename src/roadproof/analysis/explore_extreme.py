@@ -4,16 +4,29 @@ On one side is a judged drive that reaches its value; on the other the nearest v
 found for, with what is known of it. No optimum is claimed.
 """
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
-from roadproof.analysis.explore import PROOF_SECONDS, Finding, LookAll, Say, look_one_by_one
-from roadproof.analysis.explore_knobs import Knob, Point, between, stated, with_point
-from roadproof.analysis.explore_search import Pool, Reply, Shown, Task, claim_of, made_for
+from roadproof.analysis.explore import PROOF_SECONDS, QUICK_PROOF, Finding, LookAll, Say, look_one_by_one
+from roadproof.analysis.explore_bracket import Bracket
+from roadproof.analysis.explore_knobs import Knob, Point, stated, with_point
+from roadproof.analysis.explore_range import range_of, starting_ranges
+from roadproof.analysis.explore_search import (
+    NATURAL_FIRST,
+    PLAIN_FIRST,
+    Pool,
+    Reply,
+    Shown,
+    Stage,
+    Task,
+    claim_of,
+    made_for,
+)
 from roadproof.analysis.explore_text import compared, conjoin, eventually, expression
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.witness import DriveFile, judge_file
+from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.signals import Courses, DriveSignals
 from roadproof.logic import formula as f
 from roadproof.logic.syntax import Expression
@@ -22,13 +35,17 @@ from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.library import Specification, load_library
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request
+from roadproof.witness.ask import Request, pose
 from roadproof.witness.impossible import show_impossible
+from roadproof.world.road import Road
 
 Sense: TypeAlias = Literal["least", "greatest"]
 MOST_SEARCHES = 24
 GRAIN = Fraction(1, 1000)  # of values at a moment, which are found by halving
 WITHOUT_END = Fraction(10**6)
+
+
+FindAll: TypeAlias = Callable[[Sequence["Sought"]], Iterable["Extreme"]]
 
 
 @dataclass(frozen=True)
@@ -69,13 +86,17 @@ def read_measure(specification: Specification, sense: Sense, text: str, when: st
 
 @dataclass(frozen=True)
 class Sought:
-    """What ``measure`` is sought for: drives of ``request.what`` with ``knobs`` at ``point``."""
+    """What ``measure`` is sought for: drives of ``request.what`` with ``knobs`` at ``point``.
+
+    ``seeds``: drive files' data that may serve here too.
+    """
 
     request: Request
     measure: Measure
     precision: Fraction
     knobs: tuple[Knob, ...] = ()
     point: Point = ()
+    seeds: tuple[Mapping[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -113,54 +134,52 @@ class _Seeking:
         self.request = with_point(sought.request, sought.knobs, sought.point)
         self.library = load_library(self.request.specs)
         self.specification = self.library.select(self.request.set_name, self.request.options)
-        self.pool = Pool(self.library)
         self.searches = 0
 
     def run(self) -> Extreme:
-        reply = self.look(None, natural=True)
-        best = self.best_of(reply)
-        if best is None:
-            return self.extreme(None, self.missed((), self.text(None), reply), None)
-        missed: Finding | None = None
-        surely: Finding | None = None
-        leap = max(self.sought.precision, Fraction(1))
-        zero = self.impossible(Fraction(0)) if best.at[0] * self.measure.sign > 0 else None
-        if zero is not None:
-            missed = surely = zero
-        while self.searches < MOST_SEARCHES:
-            if self.endless(best):
-                return self.extreme(best, None, None, endless=True)
-            if missed is not None and abs(best.at[0] - missed.at[0]) <= self.sought.precision:
-                break
-            value = self.next(best, missed, leap)
+        first = self.best_of(self.sought.seeds)
+        if first is None:
+            proved = self.proved((), self.text(None), QUICK_PROOF)
+            if proved is not None:
+                return Extreme(self.measure, None, proved, proved, 0)
+            reply = self.look(None, NATURAL_FIRST)
+            first = self.best_of(reply.drives)
+            if first is None:
+                return Extreme(self.measure, None, self.missed((), None, reply), None, self.searches)
+        bracket = Bracket(self.measure.sign, self.sought.precision, first, self.range_end())
+        if first.at[0] * self.measure.sign > 0 and (zero := self.impossible(Fraction(0))) is not None:
+            bracket.miss(zero)
+        while self.searches < MOST_SEARCHES and not bracket.narrow and not self.endless(bracket.best):
+            value = bracket.next()
             reply = self.look(value)
-            found = self.best_of(reply)
-            if found is not None and self.better(found, value):
-                leap *= 2
-                best = found
+            found = self.best_of(reply.drives)
+            if found is not None and bracket.reached(found, value):
+                bracket.hold(found)
             else:
-                missed = self.missed((value,), self.text(value), reply)
-                surely = missed if missed.verdict is not Verdict.UNKNOWN else surely
-            self.say(f"{self.measure.sense} so far: {float(best.at[0]):g}, {self.searches} searches")
+                bracket.miss(self.missed((value,), value, reply))
+            best = float(bracket.best.at[0])
+            self.say(f"{self.measure.sense} so far: {best:g}, {self.searches} searches")
+        return self.extreme(bracket)
+
+    def extreme(self, bracket: "Bracket") -> Extreme:
+        best, missed, surely = bracket.best, bracket.missed, bracket.sure
+        if self.endless(best):
+            return Extreme(self.measure, best, None, None, self.searches, endless=True)
         if missed is not None and missed.certificate is None:
             proved = self.impossible(missed.at[0])
             missed, surely = (proved, proved) if proved is not None else (missed, surely)
-        return self.extreme(best, missed, surely)
+        return Extreme(self.measure, best, missed, surely, self.searches)
 
-    def extreme(
-        self, best: Finding | None, missed: Finding | None, surely: Finding | None, endless: bool = False
-    ) -> Extreme:
-        return Extreme(self.measure, best, missed, surely, self.searches, endless)
-
-    def next(self, best: Finding, missed: Finding | None, leap: Fraction) -> Fraction:
-        """The next value to ask for: a leap ahead, or the middle of the bracket."""
-        if missed is not None:
-            return between(best.at[0], missed.at[0])
-        ahead = best.at[0] - self.measure.sign * leap
-        return between(ahead, ahead - self.measure.sign * self.sought.precision)
-
-    def better(self, found: Finding, value: Fraction) -> bool:
-        return (found.at[0] - value) * self.measure.sign <= 0
+    def range_end(self) -> Fraction | None:
+        """The best value that any drive could start with, where that is known."""
+        if self.measure.when:
+            return None
+        question = pose(self.specification, self.request.what, self.request)
+        try:
+            low, high = range_of(self.bound_term(question.road, {}), starting_ranges(question))
+        except (ValueError, KeyError):
+            return None
+        return low if self.measure.sense == "least" else high
 
     def endless(self, best: Finding) -> bool:
         return -best.at[0] * self.measure.sign >= WITHOUT_END
@@ -170,44 +189,39 @@ class _Seeking:
         limits = stated(self.sought.knobs, self.sought.point)
         return conjoin(self.request.what, [*limits, *self.measure.bound(value)])
 
-    def look(self, value: Fraction | None, natural: bool = False) -> Reply:
+    def look(self, value: Fraction | None, stages: tuple[Stage, ...] = PLAIN_FIRST) -> Reply:
         self.searches += 1
         what = conjoin(self.request.what, self.measure.bound(value))
-        [reply] = self.look_all([Task(replace(self.request, what=what), natural)])
+        [reply] = self.look_all([Task(replace(self.request, what=what), stages)])
         return reply
 
-    def missed(self, at: Point, text: str, reply: Reply) -> Finding:
+    def missed(self, at: Point, value: Fraction | None, reply: Reply) -> Finding:
         verdict = reply.verdict if reply.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
         reason = reply.reason or "the drive that was found is rejected by the judge"
-        if not at and (proved := self.proved(at, text)) is not None:
-            return proved
-        return Finding(at, verdict, text, reason)
+        return Finding(at, verdict, self.text(value), reason)
 
     def impossible(self, value: Fraction) -> Finding | None:
         """A proof that no drive, of any kind, reaches ``value``."""
         return self.proved((value,), self.text(value))
 
-    def proved(self, at: Point, text: str) -> Finding | None:
-        shown = show_impossible(self.specification, text, PROOF_SECONDS)
+    def proved(self, at: Point, text: str, seconds: float = PROOF_SECONDS) -> Finding | None:
+        shown = show_impossible(self.specification, text, seconds)
         if shown is None:
             return None
-        reason = f"proved for all time: {' and '.join(shown.core)} clash"
+        reason = f"proved for all time; core: {' and '.join(shown.core)}"
         return Finding(at, Verdict.IMPOSSIBLE, text, reason, certificate=shown.certificate)
 
-    def best_of(self, reply: Reply) -> Finding | None:
-        """The best value that is judged on the drive of a reply."""
-        self.pool.add(reply.drives)
-        if not reply.drives:
-            return None
-        file = self.pool.files[-1]
-        value = self.at_start(file) if not self.measure.when else self.at_moment(file)
-        if value is None:
-            return None
-        shown = self.shown(file, value)
-        if shown is None:
-            return None
-        number = len(self.pool.files)
-        return Finding((value,), Verdict.WITNESSED, self.text(value), drive=shown.data, number=number)
+    def best_of(self, drives: Sequence[Mapping[str, Any]]) -> Finding | None:
+        """The best value that is judged on one of the drives."""
+        found: list[Finding] = []
+        for data in drives:
+            file = from_json(dict(data), "drive")
+            value = self.at_start(file) if not self.measure.when else self.at_moment(file)
+            shown = None if value is None else self.shown(file, value)
+            if value is not None and shown is not None:
+                finding = Finding((value,), Verdict.WITNESSED, self.text(value), drive=shown.data)
+                found.append(finding)
+        return min(found, key=lambda finding: finding.at[0] * self.measure.sign, default=None)
 
     def shown(self, file: DriveFile, value: Fraction) -> Shown | None:
         """The drive as a file that says that ``value`` is reached, if that is judged so."""
@@ -217,11 +231,16 @@ class _Seeking:
 
     def at_start(self, file: DriveFile) -> Fraction | None:
         """The measure at time 0, exactly."""
-        values = {**default_values(self.library), **self.request.values}
-        compare = bind(f.Compare(self.measure.term, "<=", number(0)), file.road, file.lanes, values)
-        assert isinstance(compare, f.Compare)
-        _, course = Courses(DriveSignals(file.drive)).of(compare.left)[0]
+        term = self.bound_term(file.road, file.lanes)
+        _, course = Courses(DriveSignals(file.drive)).of(term)[0]
         return Fraction(course.numerators[0], course.denominator) if course.numerators else Fraction(0)
+
+    def bound_term(self, road: Road, lanes: Mapping[str, str]) -> Term:
+        """The term with values for its parameters."""
+        values = {**default_values(self.library), **self.request.values}
+        compare = bind(f.Compare(self.measure.term, "<=", number(0)), road, lanes, values)
+        assert isinstance(compare, f.Compare)
+        return compare.left
 
     def at_moment(self, file: DriveFile) -> Fraction | None:
         """A multiple of ``GRAIN`` that the measure reaches while ``when`` holds, the next one it does not."""
@@ -256,3 +275,22 @@ class _Seeking:
         if ruling.judgement is None:
             raise InputError(ruling.reason)
         return ruling.accepted
+
+
+def find_extremes(soughts: Sequence[Sought], find_all: FindAll) -> list[Extreme]:
+    """The extremes of one measure at several points, the drives of each tried at all others.
+
+    Where one of them goes further, that extreme is sought once more from there.
+    """
+    found = list(find_all(soughts))
+    drives = [x.best.drive for x in found if x.best is not None and x.best.drive is not None]
+    again: dict[int, Sought] = {}
+    for k, (sought, extreme) in enumerate(zip(soughts, found, strict=True)):
+        if extreme.best is None or extreme.endless:
+            continue
+        others = _Seeking(sought, look_one_by_one, lambda text: None).best_of(drives)
+        if others is not None and (others.at[0] - extreme.best.at[0]) * sought.measure.sign < 0:
+            again[k] = replace(sought, seeds=(others.drive or {},))
+    for k, extreme in zip(again, find_all(list(again.values())), strict=True):
+        found[k] = replace(extreme, searches=extreme.searches + found[k].searches)
+    return found

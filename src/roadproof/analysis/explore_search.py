@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor, gcd
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from roadproof.analysis.placing import as_data
 from roadproof.errors import UsageError
@@ -29,12 +29,18 @@ from roadproof.witness.search import Answer, find_witness, show_none
 MOST_STEPS = 40  # beyond, searches seldom come to an end
 
 
+# Natural drives; whatever the limits of the vehicles allow; that there is none.
+Stage: TypeAlias = Literal["natural", "plain", "none"]
+NATURAL_FIRST: tuple[Stage, ...] = ("natural", "plain", "none")
+PLAIN_FIRST: tuple[Stage, ...] = ("plain", "none", "natural")
+
+
 @dataclass(frozen=True)
 class Task:
-    """A search for a drive for ``request``; ``natural``: natural drives are tried first."""
+    """A search for a drive for ``request``, in stages that each have its time-out."""
 
     request: Request
-    natural: bool
+    stages: tuple[Stage, ...] = NATURAL_FIRST
 
 
 @dataclass(frozen=True)
@@ -51,9 +57,9 @@ class Reply:
 
 
 def look(task: Task) -> Reply:
-    """Search for a drive, natural ones first where asked, and show that there is none where none was found.
+    """Go through the stages of a task until there is an answer.
 
-    Each of these has the time-out of the request. Raises ``UsageError``, ``MissingSolverError``.
+    Raises ``UsageError``, ``MissingSolverError``.
     """
     library = load_library(task.request.specs)
     specification = library.select(task.request.set_name, task.request.options)
@@ -63,13 +69,13 @@ def look(task: Task) -> Reply:
         return _search(replace(task, request=fitting), library)
     drives: list[Mapping[str, Any]] = []
     for stand_in in stand_ins(task.request, formula):
-        drives += _search(replace(task, request=stand_in), library, refute=False).drives
+        drives += _search(Task(stand_in, ("natural", "plain")), library).drives
     finest = float(_finest(task.request))
     reason = f"durations have no common step of {finest:g} s or more; no drive of coarser ones does"
     return Reply(Verdict.UNKNOWN, reason, tuple(drives))
 
 
-def _search(task: Task, library: Library, refute: bool = True) -> Reply:
+def _search(task: Task, library: Library) -> Reply:
     request = task.request
     specification = library.select(request.set_name, request.options)
     halvings = floor(request.dt / _finest(request)).bit_length() - 1
@@ -82,11 +88,11 @@ def _search(task: Task, library: Library, refute: bool = True) -> Reply:
         return Reply(Verdict.WITNESSED, "", (data,))
 
     last = Reply(Verdict.UNKNOWN, "")
-    for natural in (True, False) if task.natural else (False,):
+    for stage in task.stages:
         for horizon in _horizons(request, specification):
-            asked = replace(request, natural=natural, horizon=horizon)
+            asked = replace(request, natural=stage == "natural", horizon=horizon)
             question = pose(specification, request.what, asked)
-            answer = find_witness(question, means)
+            answer = (show_none if stage == "none" else find_witness)(question, means)
             last = reply(question, answer)
             if answer.found is None:
                 break
@@ -94,8 +100,9 @@ def _search(task: Task, library: Library, refute: bool = True) -> Reply:
             if overlap is None or request.collisions:
                 return last
             last = Reply(Verdict.UNKNOWN, f"on the drive that was found, {overlap}")
-    question = pose(specification, request.what, replace(request, natural=False))
-    return reply(question, show_none(question, means)) if refute and not last.drives else last
+        if last.verdict is Verdict.NONE_WITHIN and horizon == request.horizon:
+            return last
+    return replace(last, verdict=Verdict.UNKNOWN)
 
 
 def _horizons(request: Request, specification: Specification) -> tuple[Fraction, ...]:

@@ -94,7 +94,7 @@ def run(args: argparse.Namespace) -> int:
         folder = Path(args.json).with_name(f"{Path(args.json).stem}-evidence")
     _make_ready(folder, count_workers(range(1000), args.jobs))
     if len(jobs) > 1:
-        jobs = [replace(job, processes=1) for job in jobs]
+        jobs = [replace(job, processes=1, asked=replace(job.asked, width=1)) for job in jobs]
     explored: list[dict[str, Any]] = []
     for number, data in enumerate(work_in_order(carry_out, jobs, args.jobs), 1):
         explored.append(with_evidence(data, number, folder))
@@ -174,6 +174,7 @@ def _make_ready(folder: Path | None, processes: int) -> None:
 def carry_out(job: Job) -> dict[str, Any]:
     """Explore one formula; what was found as plain data, evidence inside."""
     from roadproof.analysis.explore import explore
+    from roadproof.analysis.explore_extreme import Sought, find_extremes
     from roadproof.analysis.explore_search import look
 
     begun = time.monotonic()
@@ -200,22 +201,13 @@ def carry_out(job: Job) -> dict[str, Any]:
     else:
         points = [()]
     precision = asked.precision if asked.precision is not None and not asked.knobs else Fraction(1, 10)
-    sought = _sought(job, points, precision)
-    extremes = list(work_in_order(_seek, sought, job.processes)) if len(sought) > 1 else map(_seek, sought)
-    data["extremes"] = [_extreme(one, extreme) for one, extreme in zip(sought, extremes, strict=True)]
+    data["extremes"] = []
+    for measure in job.measures:
+        sought = [Sought(request, measure, precision, asked.knobs, point) for point in points]
+        extremes = find_extremes(sought, lambda some: work_in_order(_seek, some, job.processes))
+        data["extremes"] += [_extreme(one, found) for one, found in zip(sought, extremes, strict=True)]
     data["searches"] += sum(x["searches"] for x in data["extremes"])
     return data | {"seconds": round(time.monotonic() - begun, 1)}
-
-
-def _sought(job: Job, points: Sequence[tuple[Fraction, ...]], precision: Fraction) -> "list[Sought]":
-    from roadproof.analysis.explore_extreme import Sought
-
-    asked = job.asked
-    return [
-        Sought(asked.request, measure, precision, asked.knobs, point)
-        for measure in job.measures
-        for point in points
-    ]
 
 
 def _seek(sought: "Sought") -> "Extreme":

@@ -1,39 +1,51 @@
 """An exploration to look at: a strip or a map as text, the ends of what was found, and pictures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from textwrap import wrap
-from typing import Any
+from typing import Any, TypeAlias
 
 from roadproof.report.figures import as_bytes, make_figure
 from roadproof.report.overlap import COLOURS, SIGNS
 
+# Reasons, each with its number.
+Notes: TypeAlias = dict[str, int]
 _MEANING = {
     "WITNESSED": "a drive, judged at this value",
     "IMPOSSIBLE": "proved for all values that there is none",
-    "NONE-WITHIN": "none within the limits below",
+    "NONE-WITHIN": "none within the limits that are printed",
     "UNKNOWN": "not decided",
 }
 
 
 def as_text(data: Mapping[str, Any]) -> str:
-    """One explored formula for the terminal: its map, the ends, the extremes, and why where it is not #."""
-    scenario = data["scenario"]
-    name = data["formula"] if scenario is None else f"scenario {scenario}"
-    lines = [f"{name}, set {data['set']}"]
+    """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below."""
+    notes: Notes = {}
+    lines = [f"{_name(data)}, set {data['set']}"]
     if data["vary"]:
         lines += _strip(data) if len(data["vary"]) == 1 else _map(data)
-        lines += _legend(data["values"])
+        lines += _legend(data["values"], notes)
     if len(data["vary"]) == 1:
-        lines += _ends(data)
+        lines += _ends(data, notes)
     for extreme in data["extremes"]:
-        lines += _extreme(data, extreme)
-    searches, drives = data["searches"], data["drives"]
-    found = f"{drives} drives, " if data["values"] else ""
-    lines.append(f"  {len(data['values'])} values, " * bool(data["values"]) or "  ")
-    lines[-1] += f"{searches} searches, {found}{data['seconds']} s"
-    return "\n".join(lines)
+        lines += _extreme(data, extreme, notes)
+    for reason, number in notes.items():
+        lines += wrap(reason, 108, initial_indent=f"  [{number}] ", subsequent_indent="      ")
+    counts = [f"{data['searches']} searches"]
+    if data["values"]:
+        counts = [f"{len(data['values'])} values", *counts, f"{data['drives']} drives"]
+    return "\n".join([*lines, f"  {', '.join(counts)} in {data['seconds']} s"])
+
+
+def _name(data: Mapping[str, Any]) -> str:
+    return str(data["formula"]) if data["scenario"] is None else f"scenario {data['scenario']}"
+
+
+def _note(finding: Mapping[str, Any], notes: Notes) -> str:
+    """The verdict with the number of the note that says why."""
+    number = notes.setdefault(finding["reason"], len(notes) + 1)
+    return f"{finding['verdict']} [{number}]"
 
 
 def _strip(data: Mapping[str, Any]) -> list[str]:
@@ -56,18 +68,18 @@ def _map(data: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def _legend(values: Sequence[Mapping[str, Any]]) -> list[str]:
+def _legend(values: Sequence[Mapping[str, Any]], notes: Notes) -> list[str]:
     lines: list[str] = []
     for verdict, sign in SIGNS.items():
         here = [x for x in values if x["verdict"] == verdict]
         if here:
-            lines.append(f"  {sign} {verdict}: {_MEANING[verdict]}, at {len(here)} of {len(values)} values")
-            for reason in dict.fromkeys(x["reason"] for x in here if x["reason"]):
-                lines += wrap(reason, 106, initial_indent="      ", subsequent_indent="      ")
+            why = dict.fromkeys(_note(x, notes).partition(" ")[2] for x in here if x["reason"])
+            line = f"  {sign} {verdict}: {_MEANING[verdict]}, at {len(here)} of {len(values)} values"
+            lines.append(" ".join([line, *why]))
     return lines
 
 
-def _ends(data: Mapping[str, Any]) -> list[str]:
+def _ends(data: Mapping[str, Any], notes: Notes) -> list[str]:
     """The least and the greatest value with a drive, and what is beyond; then gaps between."""
     [knob] = data["vary"]
     held = [x for x in data["values"] if x["verdict"] == "WITNESSED"]
@@ -81,13 +93,12 @@ def _ends(data: Mapping[str, Any]) -> list[str]:
         if place == Fraction(end):
             lines.append(f"{line}, the end of the range")
         else:
-            lines.append(line)
-            lines += _beyond(next(x for x in data["boundaries"] if _at(x["held"]) == place), knob)
+            boundary = next(x for x in data["boundaries"] if _at(x["held"]) == place)
+            lines.append(f"{line}; {_beyond(boundary, knob, notes)}")
     for boundary in data["boundaries"]:
-        if places[0] < _at(boundary["held"]) < places[-1] or _inside(boundary, places):
-            side = f"  a gap inside: a drive at {_value(_at(boundary['held']), knob)}"
-            lines.append(side)
-            lines += _beyond(boundary, knob)
+        if _inside(boundary, places):
+            beside = _value(_at(boundary["held"]), knob)
+            lines.append(f"  a gap beside {beside}; {_beyond(boundary, knob, notes)}")
     return lines
 
 
@@ -95,41 +106,32 @@ def _inside(boundary: Mapping[str, Any], places: Sequence[Fraction]) -> bool:
     return places[0] < _at(boundary["missed"]) < places[-1]
 
 
-def _beyond(bracket: Mapping[str, Any], knob: Mapping[str, Any]) -> list[str]:
+def _beyond(bracket: Mapping[str, Any], knob: Mapping[str, Any], notes: Notes) -> str:
     """What is known of the other side of a bracket."""
     missed, surely = bracket["missed"], bracket["surely"]
-    lines = _missed(missed, knob)
+    text = f"at {_value(_at(missed), knob)} {_note(missed, notes)}"
     if surely is not None and surely["at"] != missed["at"]:
-        lines += _missed(surely, knob)
-    return lines
+        text += f", at {_value(_at(surely), knob)} {_note(surely, notes)}"
+    return text
 
 
-def _missed(missed: Mapping[str, Any], knob: Mapping[str, Any]) -> list[str]:
-    at = f"at {_value(_at(missed), knob)}" if missed["at"] else "at all"
-    text = f"{at}: {missed['verdict']}: {missed['reason']}"
-    return wrap(text, 106, initial_indent="    ", subsequent_indent="      ")
-
-
-def _extreme(data: Mapping[str, Any], extreme: Mapping[str, Any]) -> list[str]:
-    """The best value reached and what is beyond; one line where there is one for each value of a knob."""
+def _extreme(data: Mapping[str, Any], extreme: Mapping[str, Any], notes: Notes) -> list[str]:
+    """The best value reached, and what is beyond."""
     unit = {"unit": extreme["unit"]}
-    when = f" when {extreme['when']}" if extreme["when"] else " at the start"
-    head = f"  {extreme['sense']} {extreme['measure']}{when}"
+    when = f"when {extreme['when']}" if extreme["when"] else "at the start"
+    head = f"  {extreme['sense']} {extreme['measure']} {when}"
     if extreme["point"]:
         [knob] = data["vary"]
-        head += f", {knob['name']}={show(extreme['point'][0])}"
+        head += f", {knob['name']} = {show(extreme['point'][0])}"
     best = extreme["best"]
     if best is None:
-        return [f"{head}: no drive", *_missed(extreme["missed"], unit)]
+        return [f"{head}: no drive: {_note(extreme['missed'], notes)}"]
     if extreme["endless"]:
-        return [f"{head}: no end; the drive that was found goes past {_value(_at(best), unit)}"]
-    line = f"{head}: {_value(_at(best), unit)}, on a judged drive"
+        return [f"{head}: no end; the judged drive goes past {_value(_at(best), unit)}"]
+    line = f"{head}: {_value(_at(best), unit)} on a judged drive"
     if extreme["missed"] is None:
         return [line]
-    if extreme["point"]:
-        missed = extreme["missed"]
-        return [f"{line}; {missed['verdict']} at {_value(_at(missed), unit)}"]
-    return [line, *_beyond(extreme, unit)]
+    return [f"{line}; {_beyond(extreme, unit, notes)}"]
 
 
 def draw_exploration(data: Mapping[str, Any]) -> dict[str, bytes]:
@@ -145,31 +147,36 @@ def draw_exploration(data: Mapping[str, Any]) -> dict[str, bytes]:
 def _draw_strip(data: Mapping[str, Any]) -> dict[str, bytes]:
     [knob] = data["vary"]
     measured = [x for x in data["extremes"] if x["best"] is not None and x["point"]]
-    figure, made = make_figure([2.6, 0.8] if measured else [0.8], width=8.0)
-    axes = made[-1]
-    places = [float(_at(x)) for x in data["values"]]
-    edges = [places[0], *((a + b) / 2 for a, b in pairwise(places)), places[-1]]
+    figure, made = make_figure([2.6, 0.7, 0.7] if measured else [0.7, 0.7], width=8.0)
+    *above, axes, below = made
+    places = [_at(x) for x in data["values"]]
+    edges = [float(x) for x in (places[0], *_edges(places, data["boundaries"]), places[-1])]
     for x, low, high in zip(data["values"], edges, edges[1:], strict=False):
         axes.fill((low, high, high, low), (0, 0, 1, 1), color=COLOURS[x["verdict"]], ec="white", lw=0.8)
-    for place in places:
-        axes.plot((place, place), (0, 0.12), color="#333333", lw=0.8)
+    axes.plot([float(x) for x in places], [0.08] * len(places), color="#333333", marker="|", ms=6, lw=0)
     for boundary in data["boundaries"]:
-        for side, style in (("held", "-"), ("missed", ":")):
-            at = float(_at(boundary[side]))
-            axes.plot((at, at), (0, 1), color="#222222", ls=style, lw=1.4)
-        axes.text(
-            float(_at(boundary["held"])), 1.04, f"{float(_at(boundary['held'])):g}", fontsize=7, ha="center"
-        )
+        held, missed = float(_at(boundary["held"])), float(_at(boundary["missed"]))
+        axes.plot((held, held), (0, 1), color="#222222", lw=1.4)
+        axes.plot((missed, missed), (0, 1), color="#222222", ls=":", lw=1.4)
+        axes.text(held, 1.05, f"{held:g}", fontsize=7, ha="center")
     axes.set_yticks([])
     axes.set_ylim(0, 1)
     axes.set_xlabel(f"{knob['name']}, {_unit(knob)}", fontsize=8)
-    for one in made:
-        one.set_xlim(places[0], places[-1])
+    for one in (*above, axes):
+        one.set_xlim(float(places[0]), float(places[-1]))
         one.tick_params(labelsize=7)
     if measured:
-        _draw_measures(made[0], measured)
-    _finish(figure, axes, data)
+        _draw_measures(above[0], measured)
+    _finish(figure, below, data)
     return as_bytes(figure)
+
+
+def _edges(places: Sequence[Fraction], boundaries: Sequence[Mapping[str, Any]]) -> Iterator[Fraction]:
+    """Where one colour ends: inside the bracket of a boundary, else halfway between two values."""
+    brackets = [(_at(x["held"]), _at(x["missed"])) for x in boundaries]
+    for low, high in pairwise(places):
+        here = [pair for pair in brackets if all(low <= end <= high for end in pair)]
+        yield sum(here[0] if here else (low, high), Fraction(0)) / 2
 
 
 def _draw_measures(axes: Any, measured: Sequence[Mapping[str, Any]]) -> None:
@@ -191,7 +198,8 @@ def _draw_map(data: Mapping[str, Any]) -> dict[str, bytes]:
     across, up = data["vary"]
     columns, rows = _axes(data["values"])
     found = {tuple(x["at"]): x for x in data["values"]}
-    figure, [axes] = make_figure([0.42 * len(rows) + 1.2], width=max(5.0, 0.42 * len(columns) + 2.5))
+    width = max(5.0, 0.42 * len(columns) + 2.5)
+    figure, [axes, below] = make_figure([0.42 * len(rows) + 1.0, 0.7], width)
     for y, row in enumerate(rows):
         for x, column in enumerate(columns):
             cell = found[column, row]
@@ -210,18 +218,18 @@ def _draw_map(data: Mapping[str, Any]) -> dict[str, bytes]:
     axes.set_yticks([k + 0.5 for k in range(len(rows))], [show(r) for r in rows], fontsize=7)
     axes.set_xlabel(f"{across['name']}, {_unit(across)}; numbers in cells tell drives apart", fontsize=8)
     axes.set_ylabel(f"{up['name']}, {_unit(up)}", fontsize=8)
-    _finish(figure, axes, data)
+    _finish(figure, below, data)
     return as_bytes(figure)
 
 
-def _finish(figure: Any, axes: Any, data: Mapping[str, Any]) -> None:
+def _finish(figure: Any, below: Any, data: Mapping[str, Any]) -> None:
+    """Title, and what colours mean."""
     present = {x["verdict"] for x in data["values"]}
     for verdict in (v for v in SIGNS if v in present):
-        axes.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
-    figure.legend(*axes.get_legend_handles_labels(), fontsize=6, loc="outside lower left", frameon=False)
-    scenario = data["scenario"]
-    name = data["formula"] if scenario is None else f"scenario {scenario}"
-    figure.suptitle(f"{name[:100]}, set {data['set']}", fontsize=9)
+        below.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
+    below.legend(fontsize=6, loc="upper left", frameon=False)
+    below.axis("off")
+    figure.suptitle(f"{_name(data)[:100]}, set {data['set']}", fontsize=9)
 
 
 def _axes(values: Sequence[Mapping[str, Any]]) -> tuple[list[str], list[str]]:
