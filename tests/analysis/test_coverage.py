@@ -6,20 +6,34 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.coverage import _Finding, claims_of, missed, replaced_in, two_vehicle_numbers
+from roadproof.analysis.coverage import (
+    claims_of,
+    missed,
+    replaced_in,
+    sectors_of,
+    two_vehicle_numbers,
+    wider_sets,
+)
+from roadproof.analysis.coverage_classes import Classes
+from roadproof.analysis.coverage_trial import Trials
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, judge_drive
 from roadproof.cli.main import main
+from roadproof.errors import UsageError
 from roadproof.evidence.witness import DriveFile, as_json, judge_file
+from roadproof.judge.replay import first_breach
 from roadproof.logic.show import text
 from roadproof.prove.prover import prove
 from roadproof.spec.library import Source, build_library, bundled_library
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.models import load_road
+from roadproof.world.models import load_road, load_vehicle
+from roadproof.world.road import Road
 
 LIBRARY = bundled_library()
 COMPLETE = LIBRARY.select("complete")
+REPLACED = ("aheadOf", "cutIn", "cutOut", "decel", "initialCondition_8")
+STEADY = Piece(None, F(0), F(0))
 
 
 def without(name: str) -> Verdict:
@@ -31,19 +45,36 @@ def without(name: str) -> Verdict:
     return prove(specification, claims_of(specification)[0], 10.0).verdict
 
 
+def caught_without(name: str, drive: Drive, road: Road) -> bool:
+    """Whether ``complete`` catches the drive with one definition as it is in ext."""
+    file = DriveFile(None, "ext", "", F(14), {}, {}, {}, road, drive)
+    return not Trials(Asked(("ext",)), ("complete",)).misses(
+        file, "complete", tuple(n for n in REPLACED if n != name)
+    )
+
+
+def car(s: str, d: str, speed: int, *pieces: Piece) -> Motion:
+    return Motion(F("4.5"), F("1.8"), F(s), F(d), F(speed), F(0), (*pieces, STEADY))
+
+
+def file_of(drive: Drive, set_name: str = "ext", road: str = "main-2") -> DriveFile:
+    formula = missed(two_vehicle_numbers(LIBRARY.select(set_name)))
+    return DriveFile(None, set_name, formula, F(14), {}, {}, {}, load_road(road), drive)
+
+
 def test_what_the_proposed_set_replaces() -> None:
-    assert set(replaced_in(LIBRARY.select("ext"), COMPLETE)) == {
-        "cutIn",
-        "cutOut",
-        "accel",
-        "decel",
-        "aheadOf",
-        "initialCondition_8",
-    }
+    assert sorted(replaced_in(LIBRARY.select("ext"), COMPLETE)) == list(REPLACED)
     assert two_vehicle_numbers(COMPLETE) == tuple(n for n in range(1, 25) if n % 8 != 2)
+    assert sectors_of(COMPLETE)[1] == (9, 11, 12, 13, 14, 15, 16)
 
 
-@pytest.mark.parametrize("name", ["cutIn", "initialCondition_8", "aheadOf"])
+def test_the_sets_on_the_way() -> None:
+    assert wider_sets(LIBRARY, "base", "complete") == ("extA", "ext", "complete")
+    with pytest.raises(UsageError, match="--wider base does not extend --set ext"):
+        wider_sets(LIBRARY, "ext", "base")
+
+
+@pytest.mark.parametrize("name", REPLACED)
 def test_the_proof_fails_without_a_definition(name: str) -> None:
     assert without(name) is not Verdict.PROVED
 
@@ -58,23 +89,45 @@ def test_the_command_proves_the_proposed_set(tmp_path: Path, capsys: pytest.Capt
     assert "4 of 4 accepted" in capsys.readouterr().out
 
 
-def beside() -> DriveFile:
+def beside() -> Drive:
     """POV comes up in the lane beside SV's and drifts towards the marking, without crossing it."""
-    steady = Piece(None, F(0), F(0))
-    drift = (Piece(F(4), F(0), F(0)), Piece(F(1), F(0), F(-1)), Piece(F(1), F(0), F(1)), steady)
-    mine = Motion(F("4.5"), F("1.8"), F(0), F("2.65"), F(25), F(0), (steady,))
-    theirs = Motion(F("4.5"), F("1.8"), F(-40), F("6.4"), F(32), F(0), drift)
-    formula = missed(two_vehicle_numbers(LIBRARY.select("ext")))
-    drive = Drive({"SV": mine, "POV": theirs})
-    return DriveFile(None, "ext", formula, F(6), {}, {}, {}, load_road("main-2"), drive)
+    drift = (Piece(F(4), F(0), F(0)), Piece(F(1), F(0), F(-1)), Piece(F(1), F(0), F(1)))
+    return Drive({"SV": car("0", "2.65", 25), "POV": car("-40", "6.4", 32, *drift)})
+
+
+def away_and_back() -> Drive:
+    """SV and POV leave their lane together and come back, and only then SV comes too near."""
+    swing = (Piece(F("1.5"), F(0), F(1)), Piece(F(3), F(0), F(-1)), Piece(F("1.5"), F(0), F(1)))
+    faster = Piece(F(5), F(1), F(0))
+    return Drive({"SV": car("0", "3.3", 25, *swing, faster), "POV": car("70", "3.3", 25, *swing)})
+
+
+def side_by_side() -> Drive:
+    """Fronts level in one lane, SV with two wheels beside the road; then SV drifts towards POV."""
+    drift = (Piece(F(1), F(0), F(0)), Piece(F(1), F(0), F("0.5")), Piece(F(1), F(0), F("-0.5")))
+    return Drive({"SV": car("0", "0.5", 25, *drift), "POV": car("0", "3.45", 24)})
 
 
 def test_danger_from_beside_the_lane_is_a_gap_that_cut_in_catches() -> None:
-    file = beside()
+    file = file_of(beside())
     assert judge_file(file, LIBRARY).accepted
-    finding = _Finding(Asked(("ext",)), "complete", "main-2", replaced_in(LIBRARY.select("ext"), COMPLETE))
-    assert finding._smallest(file) == (("cutIn",),)
+    assert Trials(Asked(("ext",)), ("complete",)).smallest(file) == (("cutIn",),)
     shown = Shown(file.formula, as_json(file, {}))
     covered = "(some M in lanes: scenario_1@complete(SV,POV,M))"
     assert judge_drive(shown, covered, LIBRARY)
     assert not judge_drive(shown, covered.replace("complete", "ext"), LIBRARY)
+
+
+def test_why_scenarios_miss_danger_from_beside_the_lane() -> None:
+    found = Classes(Asked(("ext",))).of(file_of(beside()))
+    assert "behaviourPOV_1: F[0, minDanger] sameLane(SV, POV, L) in cutIn" in found
+    assert "behaviourPOV_1: not sameLane(POV, SV, L) in cutIn" not in found
+
+
+@pytest.mark.parametrize(("name", "drive"), [("cutOut", away_and_back()), ("aheadOf", side_by_side())])
+def test_drives_that_are_missed_without_a_definition(name: str, drive: Drive) -> None:
+    limits = dict.fromkeys(drive.vehicles, load_vehicle("car"))
+    assert first_breach(drive, limits, None) is None
+    assert not judge_file(file_of(drive, "complete"), LIBRARY).accepted
+    assert judge_file(file_of(drive, "ext"), LIBRARY).accepted
+    assert [n for n in REPLACED if not caught_without(n, drive, load_road("main-2"))] == [name]

@@ -1,6 +1,6 @@
 """A drive that was found once, put on other roads: same motions, other zones, judged again."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -28,17 +28,21 @@ class Shown:
     data: dict[str, Any]
 
 
-def show_elsewhere(shown: Shown, formula: str, library: Library) -> Shown | None:
+def show_elsewhere(
+    shown: Shown, formula: str, library: Library, roads: Sequence[str] | None = None
+) -> Shown | None:
     """The motions of ``shown`` on a road on which they satisfy ``formula``, judged; None where none is.
 
     Tried are the drive's own road and the reference roads with the zones that ``formula`` speaks of,
-    as they are and moved along so that a zone begins or ends under one of the vehicles at time 0.
+    as they are and moved along so that a zone begins or ends under one of the vehicles at time 0;
+    with ``roads`` only these, whatever zones they have.
     """
     file = replace(from_json(shown.data, "drive"), formula=formula, scenario=None)
     query = read_claim(library.select(file.set_name, file.options), formula)
     values = {**default_values(library), **file.values}
     now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
-    for road in _roads(file, zones_of(query.formula)):
+    chosen = _roads(file, zones_of(query.formula)) if roads is None else _named(roads, file.drive)
+    for road in chosen:
         if not set(file.lanes.values()) <= set(road.lanes):
             continue
         if not judge(bind(now, road, file.lanes, values), file.drive).holds:
@@ -86,6 +90,13 @@ def _roads(file: DriveFile, zones: frozenset[str]) -> Iterator[Road]:
             yield road
             if len(has) > 1:
                 yield from _moved_under(road, file.drive)
+
+
+def _named(names: Sequence[str], drive: Drive) -> Iterator[Road]:
+    for name in names:
+        road = load_road(name)
+        yield road
+        yield from _moved_under(road, drive)
 
 
 def _moved_under(road: Road, drive: Drive) -> Iterator[Road]:

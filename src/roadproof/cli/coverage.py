@@ -1,11 +1,14 @@
 """``roadproof coverage``: which disturbances a spec set misses, or a proof that it misses none."""
 
 import argparse
-import json
 import time
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -14,27 +17,33 @@ from roadproof.cli.options import (
     load_library_of,
     parameter_values,
     write_json,
-    write_text,
 )
-from roadproof.cli.working import tell
+from roadproof.cli.working import tell, work, work_in_order
 from roadproof.errors import UsageError
-from roadproof.files import make_folder
 from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
-    from roadproof.analysis.coverage import Covered, Gap, NoGap
+    from roadproof.analysis.coverage import Covered
+    from roadproof.analysis.coverage_classes import Answer, Found, Group, Survey
+    from roadproof.analysis.coverage_needed import Need
+    from roadproof.analysis.overlap import Asked
 
-SUMMARY = "which disturbances a spec set misses, by drives; or a proof that it misses none"
+SUMMARY = "which disturbances a spec set misses, by drives in classes; or a proof that it misses none"
 SCHEMA = "roadproof/coverage/1"
+CHUNKS = 7
 
 _EXAMPLES = """\
 examples:
   roadproof coverage --set complete --out complete    proved to have no gap between two vehicles
-  roadproof coverage --set ext --out gaps             a drive for each class of gaps, judged
-  roadproof coverage --set base --wider ext           what base misses and ext catches, on the way to complete
+  roadproof coverage --set complete --needed          and which of its definitions it needs for that
+  roadproof coverage --set ext --out gaps             the classes of gaps, each with a drive or a proof
+  roadproof coverage --set base --jobs 2              what base misses, and which wider set catches it
 
-A gap: initSafe at the start, danger later, and no two-vehicle scenario for any lane and either role. Gaps
-are sorted by the definitions of the wider set that are the smallest choice to catch them.
+A gap: initSafe at the start, danger later, and no two-vehicle scenario for any lane and either role. Its
+classes say why: scenario 4 would hold but for its component behaviourPOV_4, or for one condition of it.
+Of each class: a judged drive, or a proof that it is empty, or how far it was looked. Behind a drive's
+number: the first wider set that catches it, and the smallest choice of its definitions that does.
+Evidence goes to DIR, `roadproof check DIR` checks it; a run that was broken off goes on where it was.
 Exit code 0 where coverage is proved, 10 where there are gaps, 20 where neither was found.
 """
 
@@ -43,65 +52,72 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_specification_options(parser)
     add_parameter_option(parser)
-    parser.add_argument("--wider", metavar="S", default="complete", help="set to compare (default: complete)")
     parser.add_argument(
-        "--road", dest="roads", metavar="R", action="append", help="may be repeated (default: main-2)"
+        "--wider", metavar="S", help="the set that catches all (default: complete, where it extends the set)"
     )
     parser.add_argument(
-        "--timeout", type=float, default=60.0, metavar="S", help="seconds for one drive (default: 60)"
+        "--road",
+        dest="roads",
+        metavar="R",
+        action="append",
+        help="where to look for drives; may be repeated (default: main-2, then main-3)",
     )
+    parser.add_argument(
+        "--timeout", type=float, default=10.0, metavar="S", help="seconds for one search (default: 10)"
+    )
+    parser.add_argument(
+        "--needed", action="store_true", help="of a set that covers: a drive for each definition it needs"
+    )
+    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     add_json_option(parser)
 
 
-def run(args: argparse.Namespace) -> int:
-    from roadproof.analysis.coverage import Gap, find_gaps, prove_coverage, replaced_in
-    from roadproof.analysis.overlap import Asked
+@dataclass(frozen=True)
+class ClaimJob:
+    asked: "Asked"
+    claim: str
 
+
+@dataclass(frozen=True)
+class CatalogueJob:
+    survey: "Survey"
+    road: str
+    chunk: int
+
+
+@dataclass(frozen=True)
+class GroupJob:
+    survey: "Survey"
+    group: "Group"
+    known: "tuple[Found, ...]"
+
+
+def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
-    if not args.timeout > 0:
-        raise UsageError(f"--timeout {args.timeout} must be greater than 0")
-    library = load_library_of(args)
-    specification = library.select(args.set_name, chosen_options(args))
-    wide = specification.in_set(args.wider)
-    asked = Asked(
-        (args.set_name,),
-        options=specification.options,
-        specs=tuple(args.specs),
-        values=parameter_values(args, library),
-        timeout=args.timeout,
-    )
-    if args.out is not None:
-        make_folder(args.out)
-    covered = prove_coverage(asked)
+    asked, survey = _asked(args)
+    evidence = Evidence(args.out, asked)
+    covered = _prove(asked, args.jobs)
     proved = all(x.verdict is Verdict.PROVED for x in covered)
-    found: list[Gap | NoGap] = []
+    needs: list[Need] = []
     if not proved:
-        if not replaced_in(specification, wide):
-            raise UsageError(
-                f"--wider {args.wider} replaces nothing of --set {args.set_name}: name a wider set"
-            )
-        for road in args.roads or ["main-2"]:
-            for one in find_gaps(asked, args.wider, road):
-                found.append(one)
-                tell(f"road {road}: {len(found)} questions answered")
-                if args.json != "-":
-                    print(_line(one), flush=True)
-    gaps = [x for x in found if isinstance(x, Gap)]
+        _settle(survey, evidence, args.jobs)
+    elif args.needed:
+        from roadproof.analysis.coverage_needed import find_needs
+
+        needs = find_needs(asked)
+    classes, gaps = evidence.entries(survey)
     data = {
         "schema": SCHEMA,
         "set": args.set_name,
-        "wider": args.wider,
+        "wider": list(survey.wider),
         "view": "dense",
         "verdict": "COVERED" if proved else "GAPS" if gaps else str(Verdict.UNKNOWN),
-        "claims": [_claim(x, number, args.out) for number, x in enumerate(covered, 1)],
-        "gaps": [_gap(x, number, args.out) for number, x in enumerate(gaps, 1)],
-        "none_found": [
-            {"road": x.road, "without": list(x.without), "verdict": str(x.verdict), "reason": x.reason}
-            for x in found
-            if not isinstance(x, Gap)
-        ],
+        "claims": evidence.claims(covered),
+        "classes": classes,
+        "gaps": gaps,
+        "needs": evidence.needs(needs),
         "seconds": round(time.monotonic() - begun, 1),
     }
     if args.json:
@@ -109,61 +125,110 @@ def run(args: argparse.Namespace) -> int:
     if args.out is not None:
         write_json(data, str(args.out / "index.json"))
         if not args.no_pictures:
-            _draw(gaps, args.out, args)
+            evidence.draw(args.jobs)
     if args.json != "-":
-        _print(covered, gaps, args, proved)
+        _print(data)
     return ExitCode.AS_EXPECTED if proved else ExitCode.UNEXPECTED if gaps else ExitCode.UNKNOWN
 
 
-def _claim(covered: "Covered", number: int, folder: Path | None) -> dict[str, Any]:
-    certificate = covered.certificate
-    if folder is not None and certificate is not None:
-        path = folder / f"covered-{number}.json"
-        write_text(path, certificate)
-        certificate = str(path)
-    return {
-        "claim": covered.claim,
-        "verdict": str(covered.verdict),
-        "certificate": certificate,
-        "reason": covered.reason,
-    }
+def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
+    from roadproof.analysis.coverage_classes import survey_of
+    from roadproof.analysis.overlap import Asked
+    from roadproof.world.models import load_road
 
-
-def _gap(gap: "Gap", number: int, folder: Path | None) -> dict[str, Any]:
-    drive: object = dict(gap.drive)
-    if folder is not None:
-        path = folder / f"gap-{number}.json"
-        write_text(path, json.dumps(gap.drive, indent=2, ensure_ascii=False) + "\n")
-        drive = str(path)
-    caught = [list(names) for names in gap.caught_by]
-    return {"road": gap.road, "without": list(gap.without), "caught_by": caught, "drive": drive}
-
-
-def _draw(gaps: "list[Gap]", folder: Path, args: argparse.Namespace) -> None:
-    from roadproof.files import write_whole
-    from roadproof.report.drive import draw_drive
-
+    if not args.timeout > 0:
+        raise UsageError(f"--timeout {args.timeout} must be greater than 0")
     library = load_library_of(args)
-    for number, gap in enumerate(gaps, 1):
-        for kind, content in draw_drive(gap.drive, library).items():
-            write_whole(folder / f"gap-{number}.{kind}", content)
+    specification = library.select(args.set_name, chosen_options(args))
+    asked = Asked(
+        (args.set_name,),
+        options=specification.options,
+        specs=tuple(args.specs),
+        values=parameter_values(args, library),
+        timeout=args.timeout,
+    )
+    roads = args.roads or ["main-2", "main-3"]
+    for road in roads:
+        load_road(road)
+    elsewhere = [road for road in ("merge", "depart") if road not in roads]
+    if args.wider is not None:
+        library.select(args.wider)
+        return asked, survey_of(asked, args.wider, roads, elsewhere)
+    wide = "complete" if args.set_name != "complete" else ""
+    try:
+        return asked, survey_of(asked, wide, roads, elsewhere)
+    except UsageError:
+        return asked, survey_of(asked, "", roads, elsewhere)
 
 
-def _line(one: "Gap | NoGap") -> str:
-    from roadproof.analysis.coverage import Gap
+def _prove(asked: "Asked", processes: int | None) -> "list[Covered]":
+    from roadproof.analysis.coverage import claims_of
 
-    left_out = ", ".join(one.without)
-    if isinstance(one, Gap):
-        caught = " or ".join(" with ".join(names) for names in one.caught_by)
-        return f"road {one.road}: a drive that needs {left_out}; smallest to catch it: {caught or 'nothing'}"
-    return f"road {one.road}: no drive was found that needs {left_out}: {one.reason}"
+    jobs = [ClaimJob(asked, claim) for claim in claims_of(asked.load()[1])]
+    with closing(work_in_order(prove_one, jobs, processes)) as answers:
+        return list(answers)
 
 
-def _print(covered: "list[Covered]", gaps: "list[Gap]", args: argparse.Namespace, proved: bool) -> None:
-    if proved:
-        for one in covered:
-            print(f"proved: {one.claim}")
-        print(f"set {args.set_name} misses no danger that arises from safety between two vehicles")
+def prove_one(job: ClaimJob) -> "Covered":
+    """The answer to one claim of coverage."""
+    from roadproof.analysis.coverage import prove_claim
+
+    return prove_claim(job.asked, job.claim)
+
+
+def _settle(survey: "Survey", evidence: Evidence, processes: int | None) -> None:
+    """Answers for all groups of classes go to ``evidence``; what it holds already is not asked again."""
+    from roadproof.analysis.coverage_classes import groups_of
+
+    groups = groups_of(survey)
+    left = [group for group in groups if not evidence.has(group)]
+    if not left:
         return
-    classes = {gap.caught_by for gap in gaps}
-    print(f"set {args.set_name}: {len(gaps)} gaps in {len(classes)} classes, each with a judged drive")
+    catalogue = [CatalogueJob(survey, road, k) for road in survey.roads for k in range(CHUNKS)]
+    known: list[Found] = []
+    with closing(work_in_order(look_up, catalogue, processes)) as chunks:
+        for number, found in enumerate(chunks, 1):
+            known += found
+            tell(f"catalogue: {number} of {len(catalogue)} parts, {len(known)} gaps")
+    jobs = [GroupJob(survey, group, _concerning(group, known)) for group in left]
+    with closing(work(settle, jobs, processes)) as results:
+        for group, answers in results:
+            evidence.keep(group, answers)
+            tell(f"{sum(map(evidence.has, groups))} of {len(groups)} components")
+    tell(f"{len(groups)} of {len(groups)} components", last=True)
+
+
+def _concerning(group: "Group", known: "Sequence[Found]") -> "tuple[Found, ...]":
+    keys = {part.key for part in group.parts if part is not None}
+    return tuple(x for x in known if not keys or keys & set(x.classes))
+
+
+def look_up(job: CatalogueJob) -> "list[Found]":
+    """The gaps in one part of the catalogue."""
+    from roadproof.analysis.coverage_settling import find_in_catalogue
+
+    return find_in_catalogue(job.survey, job.road, job.chunk, CHUNKS)
+
+
+def settle(job: GroupJob) -> "tuple[Group, list[Answer]]":
+    """The answers for one group of classes."""
+    from roadproof.analysis.coverage_settling import settle_group
+
+    return job.group, settle_group(job.survey, job.group, job.known)
+
+
+def _print(data: dict[str, Any]) -> None:
+    from roadproof.report.coverage import as_table, summary
+
+    name = data["set"]
+    if data["verdict"] == "COVERED":
+        for claim in data["claims"]:
+            print(f"proved: {claim['claim']}")
+        for need in data["needs"]:
+            found = {"WITNESSED": f"needed, by a drive on {need['road']}", "PROVED": "not needed, by proof"}
+            print(f"{need['definition']}: {found.get(need['verdict'], 'neither shown needed nor spare')}")
+        print(f"set {name} misses no danger that arises from safety between two vehicles")
+        return
+    print(as_table(data["classes"], data["gaps"]))
+    print(f"set {name}:", "\n".join(summary(data["classes"], data["gaps"])))
+    print(f"{len(data['gaps'])} gaps in {data['seconds']:.1f} s")

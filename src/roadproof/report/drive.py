@@ -23,8 +23,11 @@ MOST_STRIPS = 24
 GRAIN = Fraction(1, 10)
 
 
-def draw_drive(data: Mapping[str, Any], library: Library) -> dict[str, bytes]:
-    """The picture of a drive file as ``{"png": …, "svg": …}``. Raises ``InputError`` without matplotlib."""
+def draw_drive(data: Mapping[str, Any], library: Library, title: str = "") -> dict[str, bytes]:
+    """The picture of a drive file as ``{"png": …, "svg": …}``; the title is its formula where none is given.
+
+    Raises ``InputError`` without matplotlib.
+    """
     file = from_json(dict(data), "drive")
     strips = list(_strips(file, library))[:MOST_STRIPS]
     heights = [0.75] * SNAPSHOTS + [1.5, 1.7, 0.2 + 0.16 * len(strips)]
@@ -39,7 +42,8 @@ def draw_drive(data: Mapping[str, Any], library: Library) -> dict[str, bytes]:
     _draw_strips(axes[SNAPSHOTS + 2], strips, float(file.horizon))
     for one in axes:
         one.tick_params(labelsize=7)
-    figure.suptitle(f"{file.formula}, set {file.set_name}, road {file.road.name}", fontsize=9)
+    title = title or f"{file.formula}, set {file.set_name}"
+    figure.suptitle(f"{title}, road {file.road.name}", fontsize=9)
     return as_bytes(figure)
 
 

@@ -1,0 +1,131 @@
+"""A catalogue of simple drives of two vehicles: who moves across the road how, and when danger comes.
+
+It is tried before any solver is asked, since many gaps are found in it, in a form that is easy to read.
+Nothing rests on it: every drive is judged.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.road import Road
+from roadproof.world.vehicle import Vehicle
+
+HORIZON = Fraction(14)
+MOVE = Fraction(4)  # seconds for one move across
+CLOSE = Fraction(1, 20)  # metres from a marking
+CRUISE = Fraction(25)
+ZERO = Fraction(0)
+
+
+@dataclass(frozen=True)
+class Across:
+    """Metres to the left in one move each, one after the other, from ``start`` s on.
+
+    ``place``: where in its lane the vehicle starts: -1 at the right marking, 0 in the middle, 1 at the left.
+    """
+
+    place: int
+    moves: tuple[Fraction, ...] = ()
+    start: Fraction = Fraction(1)
+
+
+@dataclass(frozen=True)
+class Along:
+    """How SV comes near POV, which starts ``gap`` m ahead of it, front to front.
+
+    ``faster``: by how many m/s SV is faster at the start; ``speeds_up`` and ``slows_down``: from when on
+    (s) SV gains, or POV loses, speed for 2 s.
+    """
+
+    gap: Fraction
+    faster: Fraction = ZERO
+    speeds_up: Fraction | None = None
+    slows_down: Fraction | None = None
+
+
+def catalogue(road: Road, vehicle: Vehicle) -> Iterator[Drive]:
+    """All drives of the catalogue on a road of parallel lanes.
+
+    One of the vehicles does not move across, or both move alike. Where there are more than two lanes, only
+    drives on which both move, with a lane between them at the start.
+    """
+    lanes = sorted({lanelet.d for lanelet in road.lanelets})
+    across = list(_across(lanes, vehicle))
+    between = lanes[1][1] - lanes[1][0] if len(lanes) > 2 else None
+    for mine, theirs, along in product(across, across, _alongs()):
+        moves = mine[1].moves, theirs[1].moves
+        alike = len(moves[0]) == len(moves[1]) and mine[1].start == theirs[1].start
+        if all(moves) and not alike:
+            continue
+        if between is not None and not (all(moves) and abs(mine[0] - theirs[0]) > between + vehicle.width):
+            continue
+        yield Drive(
+            {
+                "SV": _motion(vehicle, mine, ZERO, CRUISE + along.faster, along.speeds_up, Fraction(2)),
+                "POV": _motion(vehicle, theirs, along.gap, CRUISE, along.slows_down, Fraction(-3)),
+            }
+        )
+
+
+def _alongs() -> Iterator[Along]:
+    for gap in (0, 3):
+        yield Along(Fraction(gap))
+    yield Along(Fraction(85), Fraction(5))  # danger soon
+    yield Along(Fraction(125), Fraction(5))  # danger after 9 s
+    yield Along(Fraction(-50), Fraction(5))  # SV ahead, and faster
+    yield Along(Fraction(58), speeds_up=Fraction(2))
+    yield Along(Fraction(58), slows_down=Fraction(2))
+    yield Along(Fraction(58), speeds_up=Fraction(9))
+    yield Along(Fraction(0), Fraction(-5))
+    yield Along(Fraction(24), Fraction(-5), speeds_up=Fraction(2))  # danger, though POV stays faster
+
+
+def _across(
+    lanes: Sequence[tuple[Fraction, Fraction]], vehicle: Vehicle
+) -> Iterator[tuple[Fraction, Across]]:
+    """Ways across the road that stay on it, each with where its left edge starts."""
+    width = lanes[0][1] - lanes[0][0]
+    lane_change, drift = width, (width - vehicle.width) / 2 - CLOSE
+    ways = [Across(place) for place in (-1, 0, 1)]
+    for side in (1, -1):
+        ways.append(Across(0, (side * drift,)))
+        ways.append(Across(-side, (side * drift / 2,)))
+        ways.append(Across(0, (side * lane_change,)))
+        ways.append(Across(0, (side * lane_change,), Fraction(8)))
+        ways.append(Across(0, (side * lane_change, -side * lane_change)))
+        ways.append(Across(0, (side * drift, -side * drift, side * lane_change)))
+    for (right, left), way in product(lanes, ways):
+        free = (left - right - vehicle.width) / 2 - CLOSE
+        start = (right + left + vehicle.width) / 2 + way.place * free
+        edges = [start, *(start + sum(way.moves[: k + 1]) for k in range(len(way.moves)))]
+        if all(lanes[0][0] <= d - vehicle.width and d <= lanes[-1][1] for d in edges):
+            yield start, way
+
+
+def _motion(
+    vehicle: Vehicle,
+    across: tuple[Fraction, Across],
+    s: Fraction,
+    speed: Fraction,
+    changes: Fraction | None,
+    by: Fraction,
+) -> Motion:
+    """A motion that changes its speed for 2 s from ``changes`` on, by ``by`` m/s each second."""
+    d, way = across
+    half = MOVE / 2
+    lateral: list[tuple[Fraction, Fraction, Fraction]] = []
+    for k, distance in enumerate(way.moves):
+        begin = way.start + k * MOVE
+        a = distance / half**2
+        lateral += [(begin, begin + half, a), (begin + half, begin + MOVE, -a)]
+    longitudinal = [] if changes is None else [(changes, changes + 2, by)]
+    knots = sorted({ZERO, *(t for x in (*lateral, *longitudinal) for t in x[:2])})
+    pieces = []
+    for begin, end in zip(knots, [*knots[1:], None], strict=True):
+        a_lon = sum((a for low, high, a in longitudinal if low <= begin < high), ZERO)
+        a_lat = sum((a for low, high, a in lateral if low <= begin < high), ZERO)
+        pieces.append(Piece(None if end is None else end - begin, a_lon, a_lat))
+    return Motion(vehicle.length, vehicle.width, s, d, speed, ZERO, tuple(pieces))

@@ -1,0 +1,117 @@
+"""Whether a set that covers everything needs each definition that it replaces."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from roadproof.analysis.coverage import (
+    PROOF_SECONDS,
+    STARTS,
+    claims_of,
+    missed,
+    replaced_in,
+    two_vehicle_numbers,
+)
+from roadproof.analysis.coverage_catalogue import HORIZON, ZERO, catalogue
+from roadproof.analysis.coverage_trial import TRIAL, Trials
+from roadproof.analysis.overlap import Asked
+from roadproof.analysis.placing import as_data
+from roadproof.evidence.witness import DriveFile, judge_file
+from roadproof.judge.exact import judge
+from roadproof.judge.replay import first_breach, first_overlap
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
+from roadproof.prove.prover import prove
+from roadproof.spec.bind import bind
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Source, Specification, build_library
+from roadproof.verdict import Verdict
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_road, load_vehicle
+from roadproof.world.road import Lanelet, Road, pairs
+
+
+@dataclass(frozen=True)
+class Need:
+    """WITNESSED: ``drive`` is missed without the definition, as it is in ``parent``, and caught with it.
+
+    PROVED: the set covers everything without it, too. UNKNOWN: neither was found. ``formula`` says what is
+    missed with all definitions written out, as no shipped set is the one without the definition.
+    """
+
+    definition: str
+    parent: str
+    verdict: Verdict
+    road: str = ""
+    formula: str = ""
+    drive: Mapping[str, Any] | None = None
+
+
+# Two cars fit side by side in its lane, as they do not on the reference roads.
+WIDE = Road(
+    "one lane of 5 m",
+    (Lanelet("m1", "main-1", "main", "main", (None, None), (ZERO, Fraction(5))),),
+    pairs([]),
+)
+
+
+def find_needs(asked: Asked) -> list[Need]:
+    """One answer for each definition that the first set of ``asked`` replaces in the set that it extends."""
+    library, specification = asked.load()
+    wide = asked.sets[0]
+    parent = library.sets[wide].parent
+    trials = Trials(replace(asked, sets=(parent,)), (wide,))
+    names = replaced_in(trials.specification, specification)
+    written = {name: trials.written(wide, [n for n in names if n != name]) for name in names}
+    needs: dict[str, Need] = {}
+    for road in (load_road("main-2"), WIDE):
+        for drive in _dangerous(trials, road):
+            for name in names:
+                kept = tuple(n for n in names if n != name)
+                if name not in needs and trials.misses(_file(asked, parent, trials, road, drive), wide, kept):
+                    needs[name] = _need(asked, trials, name, written[name], road, drive)
+            if len(needs) == len(names):
+                break
+    return [needs.get(name) or _spare(asked, trials, name, written[name]) for name in names]
+
+
+def _dangerous(trials: Trials, road: Road) -> Iterator[Drive]:
+    """The drives of the catalogue on which danger arises, within the limits of the vehicles."""
+    car = load_vehicle("car")
+    begins = bind(read_claim(trials.specification, STARTS).formula, road, {}, trials.values)
+    for drive in catalogue(road, car):
+        if not judge(begins, drive).holds or first_overlap(drive, HORIZON) is not None:
+            continue
+        if first_breach(drive, dict.fromkeys(drive.vehicles, car), None) is None:
+            yield drive
+
+
+def _file(asked: Asked, set_name: str, trials: Trials, road: Road, drive: Drive) -> DriveFile:
+    options = trials.specification.options
+    return DriveFile(None, set_name, "", HORIZON, {}, trials.values, options, road, drive)
+
+
+def _need(asked: Asked, trials: Trials, name: str, written: str, road: Road, drive: Drive) -> Need:
+    """The drive as evidence about the set ``written``, judged as a reader would."""
+    specification = _select(asked, trials, written)
+    query = read_claim(specification, missed(two_vehicle_numbers(specification)))
+    formula = text(as_syntax(query.formula, expand=True))
+    file = replace(_file(asked, asked.sets[0], trials, road, drive), formula=formula)
+    ruling = judge_file(file, trials.library)
+    assert ruling.accepted, ruling.reason
+    data = as_data(file, ruling)
+    return Need(name, trials.asked.sets[0], Verdict.WITNESSED, road.name, formula, data)
+
+
+def _spare(asked: Asked, trials: Trials, name: str, written: str) -> Need:
+    specification = _select(asked, trials, written)
+    claims = claims_of(specification)
+    proved = all(prove(specification, c, PROOF_SECONDS).verdict is Verdict.PROVED for c in claims)
+    verdict = Verdict.PROVED if proved else Verdict.UNKNOWN
+    return Need(name, trials.asked.sets[0], verdict)
+
+
+def _select(asked: Asked, trials: Trials, written: str) -> Specification:
+    library = build_library([Source("trial.spec", written)], trials.library)
+    return library.select(TRIAL, asked.options)

@@ -1,0 +1,236 @@
+"""A drive or a proof for every class of gaps: from the catalogue, from the prover, from a search."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import islice, product
+from typing import Any
+
+from roadproof.analysis.coverage import STARTS, caught, missed, sectors_of, some_scenario
+from roadproof.analysis.coverage_catalogue import HORIZON, catalogue
+from roadproof.analysis.coverage_classes import (
+    Answer,
+    Classes,
+    Found,
+    Gap,
+    Group,
+    Survey,
+    exchanged,
+    near_miss,
+)
+from roadproof.analysis.coverage_minimal import simplest
+from roadproof.analysis.coverage_parts import Part, parts_of
+from roadproof.analysis.coverage_trial import Trials
+from roadproof.analysis.overlap import likes_of
+from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.evidence.certificate import to_json
+from roadproof.evidence.witness import DriveFile, from_json, judge_file
+from roadproof.judge.exact import judge
+from roadproof.judge.replay import first_breach, first_overlap
+from roadproof.logic.formula import transform
+from roadproof.prove.prover import prove
+from roadproof.spec.bind import bind, default_values
+from roadproof.spec.elaborate import read_claim
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Request, ask
+from roadproof.witness.question import Means
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_road, load_vehicle
+
+FIRST_PROOF = 2.0
+LONG_PROOF = 30.0
+
+
+def find_in_catalogue(survey: Survey, road_name: str, start: int, step: int) -> list[Found]:
+    """The gaps among every ``step``-th drive of the catalogue; of those alike the ones with least effort."""
+    road, car = load_road(road_name), load_vehicle("car")
+    classes, trials = Classes(survey.asked), Trials(survey.asked, survey.wider)
+    begins = bind(read_claim(trials.specification, STARTS).formula, road, {}, trials.values)
+    gap = read_claim(trials.specification, missed(trials.numbers_on(road))).formula
+    gap = transform(bind(gap, road, {}, trials.values), lambda part: part)
+    best: dict[tuple[str, tuple[str, ...]], Found] = {}
+    for drive in islice(catalogue(road, car), start, None, step):
+        if not judge(begins, drive).holds or not judge(gap, drive).holds:
+            continue
+        if first_overlap(drive, HORIZON) or first_breach(drive, dict.fromkeys(drive.vehicles, car), None):
+            continue
+        options = trials.specification.options
+        file = DriveFile(None, survey.asked.sets[0], "", HORIZON, {}, trials.values, options, road, drive)
+        found = Found(file, trials.first(file), classes.of(file))
+        key = (found.first, found.classes)
+        if key not in best or found.effort < best[key].effort:
+            best[key] = found
+    return list(best.values())
+
+
+def settle_group(survey: Survey, group: Group, known: Sequence[Found] = ()) -> list[Answer]:
+    """The answers for the classes of a group, in the order of its parts; ``known``: gaps to begin with."""
+    key = repr((survey.asked, survey.wider))
+    if key not in _prepared:
+        _prepared.clear()
+        _prepared[key] = _Prepared(survey)
+    return _Settling(survey, group, known, _prepared[key]).run()
+
+
+class _Prepared:
+    """What is read from the library for a survey."""
+
+    def __init__(self, survey: Survey) -> None:
+        self.library, self.specification = survey.asked.load()
+        self.sectors = sectors_of(self.specification)
+        self.likes = likes_of(self.specification)
+        self.values = {**default_values(self.library), **survey.asked.values}
+        self.classes = Classes(survey.asked)
+        self.trials = Trials(survey.asked, survey.wider)
+
+
+_prepared: dict[str, _Prepared] = {}  # once a process, since it takes a second
+
+
+class _Settling:
+    def __init__(self, survey: Survey, group: Group, known: Sequence[Found], ready: _Prepared) -> None:
+        self.survey = survey
+        self.asked = survey.asked
+        self.group = group
+        self.known = list(known)
+        self.library, self.specification = ready.library, ready.specification
+        self.sectors, self.likes = ready.sectors, ready.likes
+        self.values, self.classes, self.trials = ready.values, ready.classes, ready.trials
+        self.numbers = tuple(n for sector in self.sectors for n in sector)
+
+    def run(self) -> list[Answer]:
+        """Conditions first: a gap for one is one for its component, too."""
+        conditions = [self._settle(part) for part in self.group.conditions]
+        return [self._settle(self.group.component, self.survey.wider), *conditions]
+
+    def _settle(self, part: Part | None, wider: Sequence[str] = ()) -> Answer:
+        """A gap for the class, or a proof; with ``wider``, a gap for each set that may be the first."""
+        if not self._of(part):
+            proved = self._prove(part, FIRST_PROOF)
+            if proved is not None:
+                return proved
+            reason = self._look(part, "")
+            if reason:
+                return self._prove(part, LONG_PROOF) or Answer(part, Verdict.UNKNOWN, reason=reason)
+        for first in wider:
+            if all(found.first != first for found in self._of(part)):
+                self._look(part, first)
+        best: dict[str, Found] = {}
+        for found in sorted(self._of(part), key=lambda found: found.effort):
+            best.setdefault(found.first, found)
+        if not wider:
+            best = dict(list(best.items())[:1])
+        order = [*self.survey.wider, ""]
+        chosen = sorted(best.values(), key=lambda found: order.index(found.first))
+        return Answer(part, Verdict.WITNESSED, tuple(self._gap(part, found) for found in chosen))
+
+    def _of(self, part: Part | None) -> list[Found]:
+        """The known gaps of the class."""
+        return [found for found in self.known if self.classes.has(part, found.classes)]
+
+    def _prove(self, part: Part | None, seconds: float) -> Answer | None:
+        """That the class of ``part`` is empty, in every road sector."""
+        claims = self._all_are_near() if part is None else self._are_no_gaps(part)
+        if prove(self.specification, claims[0], seconds).certificate is None:
+            return None
+        claim = " and ".join(claims)
+        result = prove(self.specification, claim, max(LONG_PROOF, seconds) * len(claims), "gap")
+        if result.verdict not in (Verdict.PROVED, Verdict.VACUOUS) or result.certificate is None:
+            return None
+        return Answer(part, Verdict.IMPOSSIBLE, (), claim, to_json(result.certificate))
+
+    def _are_no_gaps(self, part: Part) -> list[str]:
+        """That near misses of ``part`` are no gaps, a claim for each road sector."""
+        return [
+            f"({counterpart.without} and F danger(SV,POV) -> {some_scenario(sector)})"
+            for counterpart, sector in self._counterparts(part)
+        ]
+
+    def _all_are_near(self) -> list[str]:
+        """That a gap is a near miss but for a single condition, a claim for each road sector."""
+        claims = []
+        for sector in self.sectors:
+            parts = [p for number in sector for p in parts_of(self.specification, number) if p.finest]
+            near = " or ".join(f"({x})" for p in parts for x in (p.without, exchanged(p.without)))
+            start = f"roadSector_{sector[0]}(SV,POV) and atLane(SV,L) and {STARTS}"
+            claims.append(f"({start} -> {some_scenario(sector)} or {near})")
+        return claims
+
+    def _counterparts(self, part: Part) -> Iterator[tuple[Part, tuple[int, ...]]]:
+        """The same part of the same disturbance in every road sector, with the sector's scenarios."""
+        place = parts_of(self.specification, part.scenario).index(part)
+        for sector in self.sectors:
+            for number in sector:
+                if self.likes[number] == self.likes[part.scenario]:
+                    yield parts_of(self.specification, number)[place], sector
+
+    def _look(self, part: Part | None, first: str) -> str:
+        """Look for a gap on the roads in turn; why none was found, or empty."""
+        reasons = []
+        for name in self.survey.roads:
+            numbers = self.trials.numbers_on(load_road(name))
+            formula = self._formula(part, numbers, first)
+            request = Request(
+                formula,
+                self.asked.sets[0],
+                self.asked.options,
+                self.asked.specs,
+                self.values,
+                name,
+                horizon=self.asked.horizon,
+                means=Means("smooth", time_limit=self.asked.timeout, explain=False),
+            )
+            outcome = ask(request)
+            if outcome.drives:
+                file = simplest(from_json(dict(outcome.drives[0]), "drive"), self.library)
+                self.known.append(Found(file, self.trials.first(file), self.classes.of(file)))
+                return ""
+            reasons.append(f"{outcome.reason} on {name}")
+        return f"{'; '.join(reasons)}; {self.asked.timeout:g} s each, {self.asked.horizon} s of driving"
+
+    def _formula(self, part: Part | None, numbers: Sequence[int], first: str = "") -> str:
+        """What a gap of the class satisfies; with ``first`` one that this set is the first to catch."""
+        written = [missed(numbers)]
+        if part is None:
+            written += [f"not {near_miss(p)}" for p in self.classes.parts if p.finest]
+        else:
+            written.append(part.without)
+        if first:
+            before = self.survey.wider[: self.survey.wider.index(first)]
+            written += [caught(numbers, first), *(f"not {caught(numbers, name)}" for name in before)]
+        return " and ".join(written)
+
+    def _gap(self, part: Part | None, found: Found) -> Gap:
+        """The drive as evidence for the class, judged on the scenarios of all road sectors."""
+        formula = self._formula(part, self.numbers)
+        file = replace(self._turned(part, found.file), formula=formula, scenario=None)
+        ruling = judge_file(file, self.library)
+        assert ruling.accepted, ruling.reason
+        data = as_data(file, ruling)
+        smallest = self.trials.smallest(file)
+        whole = part is None or not part.condition
+        elsewhere = dict(self._elsewhere(part, Shown(formula, data))) if whole else {}
+        return Gap(file.road.name, formula, data, found.first, smallest, found.classes, elsewhere)
+
+    def _turned(self, part: Part | None, file: DriveFile) -> DriveFile:
+        """The file with the roles and the lane for which the scenario of ``part`` is missed by it alone."""
+        if part is None:
+            return replace(file, lanes={})
+        query = read_claim(self.specification, part.without).formula
+        mine, theirs = file.drive.vehicles["SV"], file.drive.vehicles["POV"]
+        exchanged = Drive({"SV": theirs, "POV": mine})
+        for drive, lane in product((file.drive, exchanged), file.road.lanes):
+            bound = bind(query, file.road, {"L": lane}, self.values)
+            if judge(bound, drive).holds:
+                return replace(file, drive=drive, lanes={"L": lane})
+        raise AssertionError(f"the drive is no near miss of {part.key}")
+
+    def _elsewhere(self, part: Part | None, shown: Shown) -> Iterator[tuple[str, dict[str, Any]]]:
+        """The same motions on other roads, where a counterpart is missed as nearly."""
+        counterparts = [None] if part is None else [p for p, _ in self._counterparts(part)][::-1]
+        for road in self.survey.elsewhere:
+            for counterpart in counterparts:
+                formula = self._formula(counterpart, self.numbers)
+                placed = show_elsewhere(shown, formula, self.library, (road,))
+                if placed is not None:
+                    yield road, placed.data
+                    break
