@@ -1,0 +1,400 @@
+"""Classes: against truth tables, against the monitor on random and simulated traces, and with faults."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from monitor.cases import random_traffic
+from roadproof.analysis.classify import Classes, plan_of, what_axis, where_axis
+from roadproof.analysis.classify_cells import Axis, Cell, Outline, outline, refine, text_of
+from roadproof.analysis.classify_drives import patched, with_zones
+from roadproof.analysis.classify_shares import count_shares
+from roadproof.analysis.classify_text import claims_of, ranges, with_classes, write_classes
+from roadproof.cli.main import main
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.witness import judge_file, load_drive
+from roadproof.logic.rewrite import with_values, without_names
+from roadproof.monitor import compile
+from roadproof.prove.prover import prove
+from roadproof.spec.bind import default_values
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Source, Specification, build_library, bundled_library, load_library
+from roadproof.traffic.simulate import Traffic
+from roadproof.traffic.synthetic import simulate
+from roadproof.verdict import Verdict
+from roadproof.world.models import load_road
+
+BASE = bundled_library().select("base")
+OVERLAPPING = {(1, 5), (3, 6), (4, 8), (4, 6, 8), (6, 8)}
+
+
+@cache
+def outlines(numbers: tuple[int, ...]) -> list[Outline]:
+    """The outline of each group of scenarios of base, and of their road sectors where there are several."""
+    plan = plan_of(BASE, numbers)
+    axes = [what_axis(plan, group, BASE) for group in plan.groups]
+    axes += [where_axis(plan, ("SV", "POV"))] if plan.has_places else []
+    return [outline(axis, BASE, 1.0) for axis in axes]
+
+
+@cache
+def classes_of(numbers: tuple[int, ...]) -> Classes:
+    """Classes whose cells deny every scenario that can hold beside theirs, with nothing left out."""
+    plan = plan_of(BASE, numbers)
+    axes = [what_axis(plan, group, BASE) for group in plan.groups]
+    axes += [where_axis(plan, ("SV", "POV"))] if plan.has_places else []
+    cells = [
+        tuple(Cell(holds, holds, tuple(axis.rows[n] for n in others)) for holds, others in made.cells)
+        for axis, made in zip(axes, outlines(numbers), strict=True)
+    ]
+    count = len(plan.groups)
+    return Classes(plan, tuple(cells[:count]), cells[-1] if plan.has_places else ())
+
+
+@pytest.fixture(scope="module")
+def main_road() -> Classes:
+    return classes_of((1, 2, 3, 4, 5, 6, 7, 8))
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the command writes for scenarios 4 and 8."""
+    out = tmp_path_factory.mktemp("classes")
+    line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "1"]
+    assert main([*line, "--out", str(out)]) == 0
+    return out
+
+
+# --- cells --------------------------------------------------------------------------------------
+
+ATOMS = ("v_lon(SV) > 0", "v_lon(POV) > 0", "a_lon(SV) > 0")
+FORMULAS = st.recursive(
+    st.sampled_from(ATOMS),
+    lambda inner: st.one_of(
+        inner.map(lambda x: f"not ({x})"),
+        st.tuples(inner, st.sampled_from(["and", "or"]), inner).map(lambda x: f"({x[0]} {x[1]} {x[2]})"),
+    ),
+    max_leaves=4,
+)
+
+
+def rows_that_hold(axis: Axis, values: tuple[bool, ...]) -> tuple[int, ...]:
+    return tuple(n for n, row in axis.rows.items() if truth(row, values))
+
+
+def truth(text: str, values: tuple[bool, ...]) -> bool:
+    for atom, value in zip(ATOMS, values, strict=True):
+        text = text.replace(atom, str(value))
+    return bool(eval(text))
+
+
+@settings(max_examples=12, deadline=None, derandomize=True)
+@given(st.lists(FORMULAS, min_size=1, max_size=4))
+def test_cells_are_those_of_the_truth_table(rows: list[str]) -> None:
+    axis = Axis((), dict(enumerate(rows, 1)), {})
+    found = outline(axis, BASE, 5.0)
+    table = {values: rows_that_hold(axis, values) for values in product((True, False), repeat=len(ATOMS))}
+    assert {holds for holds, _ in found.cells} == set(table.values()) - {()}
+    cells = [refine(axis, BASE, holds, others) for holds, others in found.cells]
+    for values, holds in table.items():
+        assert [cell.holds for cell in cells if truth(text_of(axis, cell), values)] == (
+            [holds] if holds else []
+        )
+    for claim in found.empty:
+        assert all(truth(claim, values) for values in table)
+
+
+def test_the_cells_of_base(main_road: Classes) -> None:
+    """Scenarios 4 and 6 without 8 do not occur; every other choice that may hold together is a cell."""
+    pairs, triples = main_road.what
+    assert {cell.holds for cell in pairs} == {(n,) for n in (1, 3, 4, 5, 6, 7, 8)} | OVERLAPPING
+    assert [cell.holds for cell in triples] == [(2,)]
+    (claim,) = outlines((1, 2, 3, 4, 5, 6, 7, 8))[0].empty
+    assert claim == "not (scenario_4(SV, POV, L) and scenario_6(SV, POV, L) and not scenario_8(SV, POV, L))"
+
+
+def test_rows_that_follow_are_not_said_and_not_denied() -> None:
+    rows = {1: "G v_lon(SV) > 0", 2: "v_lon(SV) > 0", 3: "(v_lon(SV) > 0 and a_lon(SV) > 0)"}
+    axis = Axis((), rows, {3: ("a_lon(SV) > 0",)})
+    found = outline(axis, BASE, 5.0)
+    assert [holds for holds, _ in found.cells] == [(1, 2), (1, 2, 3), (2,), (2, 3)]
+    assert (
+        "not (G v_lon(SV) > 0 and not v_lon(SV) > 0 and not (v_lon(SV) > 0 and a_lon(SV) > 0))" in found.empty
+    )
+    cells = {holds: refine(axis, BASE, holds, others) for holds, others in found.cells}
+    assert cells[1, 2] == Cell((1, 2), (1,), ("a_lon(SV) > 0",))
+    assert cells[1, 2, 3] == Cell((1, 2, 3), (1, 3), ())
+    assert cells[2,].said == (2,)
+    assert cells[2, 3] == Cell((2, 3), (3,), ("G v_lon(SV) > 0",))
+
+
+# --- claims -------------------------------------------------------------------------------------
+
+
+def test_the_command_writes_what_is_checked_again(written: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    index = json.loads((written / "index.json").read_text())
+    assert (index["schema"], index["scenarios"]) == ("roadproof/classify/1", [4, 8])
+    assert {x["name"]: tuple(x["scenarios"]) for x in index["classes"]} == {
+        "class_4": (4,),
+        "class_4_8": (4, 8),
+        "class_8": (8,),
+    }
+    assert {x["verdict"] for x in index["classes"]} == {"WITNESSED"}
+    assert [x["verdict"] for x in index["claims"]] == ["PROVED"] * (3 + 2)
+    assert main(["check", str(written), "--jobs", "1"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said == [f"read with {written / 'classes.spec'}", "8 of 8 accepted by z3 and the exact judge"]
+
+
+def test_the_text_is_read_by_the_other_commands(written: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    read = ["--spec", str(written / "classes.spec"), "--set", "classes"]
+    assert main(["show", "class_4_8", *read]) == 0
+    assert "exactly 4 and 8" in capsys.readouterr().out
+    drive = str(written / "drives/class_4_8.json")
+    assert main(["monitor", "class_4_8(SV,POV,L)", drive, *read]) == 0
+    assert main(["monitor", "class_4(SV,POV,L)", drive, *read]) == 10
+    claims = str(written / "claims.txt")
+    assert main(["prove", *read, "--claims", claims, "--jobs", "1", "--no-drive"]) == 0
+
+
+def test_a_class_holds_on_its_own_drive_only(written: Path) -> None:
+    library = load_library([written / "classes.spec"])
+    files = {path.stem: load_drive(path) for path in (written / "drives").glob("*.json")}
+    assert len(files) == 3
+    for name, file in files.items():
+        assert file.formula == f"{name}(SV, POV, L)"
+        holding = [
+            x for x in files if judge_file(replace(file, formula=f"{x}(SV, POV, L)"), library).accepted
+        ]
+        assert holding == [name]
+
+
+def test_another_run_leaves_nothing_of_the_first(tmp_path: Path) -> None:
+    line = ["classify", "--no-shares", "--no-pictures", "--jobs", "1", "--out", str(tmp_path)]
+    (tmp_path / "mine.json").write_text("{}")
+    assert main([*line, "--among", "7"]) == 0
+    assert main([*line, "--among", "4"]) == 0
+    assert sorted(x.name for x in tmp_path.rglob("*.json")) == [
+        "class_4.json",
+        "covers-scenario-04.json",
+        "index.json",
+        "mine.json",
+    ]
+
+
+def claims_that_fail(text: str, classes: Classes) -> dict[str, Verdict]:
+    specification = with_classes(text, BASE)
+    verdicts = {x.name: prove(specification, x.text, 20.0).verdict for x in claims_of(classes, {})}
+    return {name: verdict for name, verdict in verdicts.items() if verdict is not Verdict.PROVED}
+
+
+def test_faults_in_the_text_are_refuted() -> None:
+    classes = classes_of((4, 8))
+    text = write_classes(classes, BASE)
+    assert claims_that_fail(text, classes) == {}
+    without_denial = text.replace(" and not scenario_8(SV, POV, L)", "", 1)
+    assert without_denial != text
+    assert claims_that_fail(without_denial, classes) == {"exclusive-class_4-class_4_8": Verdict.REFUTED}
+    lost = text.replace(":= scenario_4(SV, POV, L) and scenario_8(SV, POV, L)", ":= false")
+    assert lost != text
+    assert claims_that_fail(lost, classes) == {
+        "covers-scenario-04": Verdict.REFUTED,
+        "covers-scenario-08": Verdict.REFUTED,
+    }
+    too_much = text.replace(":= scenario_4(SV, POV, L) and not", ":= not")
+    assert too_much != text
+    assert claims_that_fail(too_much, classes)["covers-scenario-04"] is Verdict.REFUTED
+
+
+def test_a_class_that_is_left_out_is_missed() -> None:
+    classes = classes_of((4, 8))
+    fewer = replace(classes, what=(classes.what[0][:-1],))
+    text = write_classes(fewer, BASE)
+    assert claims_that_fail(text, fewer) == {"covers-scenario-08": Verdict.REFUTED}
+
+
+# --- what happens, and where --------------------------------------------------------------------
+
+
+def test_classes_of_all_scenarios_are_products() -> None:
+    classes = classes_of(tuple(range(1, 25)))
+    pairs, triples = (classes.of(group) for group in classes.plan.groups)
+    assert (len(pairs), len(triples)) == (12 * 7, 7)
+    assert len({one.scenarios for one in pairs}) == len(pairs)
+    by_name = {one.name: one.scenarios for one in (*pairs, *triples)}
+    assert by_name["class_4_8_main"] == (4, 8)
+    assert by_name["class_4_8_main_departure"] == (4, 8, 20, 24)
+    assert by_name["class_2_merge"] == (10,)
+    specification = with_classes(write_classes(classes, BASE), BASE)
+    for one in (pairs[0], pairs[40], triples[3]):
+        assert one.where is not None
+        vehicles = ", ".join(one.vehicles)
+        what = "_".join(["what", *map(str, one.what.holds)])
+        cells = f"{what}({vehicles}, L) and where_{classes.place(one.where)}({vehicles})"
+        same = (read_claim(specification, text).formula for text in (one.formula, cells))
+        assert len({without_names(formula) for formula in same}) == 1
+
+
+def test_zones_may_change_under_vehicles() -> None:
+    road = load_road("main-2")
+    new = with_zones(road, (Fraction(-5), Fraction(5)), ("merge", "main", "depart"))
+    assert [(x.id, x.zone, x.s) for x in new.lanelets[:3]] == [
+        ("m1-1", "merge", (None, Fraction(-5))),
+        ("m1-2", "main", (Fraction(-5), Fraction(5))),
+        ("m1-3", "depart", (Fraction(5), None)),
+    ]
+    assert {x.d for x in new.lanelets} == {x.d for x in road.lanelets}
+    assert new.lanes == road.lanes
+
+
+def test_a_drive_is_put_in_every_place(written: Path) -> None:
+    file = load_drive(written / "drives/class_4.json")
+    library = bundled_library()
+    found = set()
+    for road in patched(file.road, file.drive):
+        held = [
+            judge_file(replace(file, road=road, set_name="base", formula=f"scenario_{n}(SV,POV,L)"), library)
+            for n in (4, 12, 20)
+        ]
+        found.add(tuple(ruling.accepted for ruling in held))
+        if len(found) == 7:
+            break
+    assert found == set(product((True, False), repeat=3)) - {(False, False, False)}
+
+
+# --- monitors -----------------------------------------------------------------------------------
+
+
+def partition_faults(classes: Classes, specification: Specification, swapped: bool) -> tuple[int, int]:
+    """On random traces: how many have a scenario, and how many are not in exactly the class of theirs."""
+    values = {
+        **default_values(specification.library),
+        "minSafe": Fraction(2, 25),
+        "minDanger": Fraction(2, 25),
+    }
+    group = classes.plan.groups[0]
+    arguments = "(POV, SV, L)" if swapped else "(SV, POV, L)"
+    names = [*(f"scenario_{n}" for n in group.rows), *(one.name for one in classes.of(group))]
+    formulas = {
+        name: with_values(read_claim(specification, f"{name}{arguments}").formula, values) for name in names
+    }
+    batch = random_traffic(list(formulas.values()), traces=4000, longest=20, seed=3, noise=4.0)
+    answers = {
+        name: answer.true for name, answer in compile(formulas).evaluate(batch, "clip").answers.items()
+    }
+    covered = faults = 0
+    for k in range(batch.traces):
+        scenarios = tuple(n for n in group.rows if answers[f"scenario_{n}"][k])
+        found = [one.scenarios for one in classes.of(group) if answers[one.name][k]]
+        covered += bool(scenarios)
+        faults += found != ([scenarios] if scenarios else [])
+    return covered, faults
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_random_traces_lie_in_exactly_one_class(main_road: Classes, swapped: bool) -> None:
+    text = write_classes(main_road, BASE)
+    covered, faults = partition_faults(main_road, with_classes(text, BASE), swapped)
+    assert covered > 50
+    assert faults == 0
+    if not swapped:
+        wrong = text.replace(" and not scenario_8(SV, POV, L)", "")
+        assert partition_faults(main_road, with_classes(wrong, BASE), swapped)[1] > 0
+
+
+def test_random_traces_agree_with_the_short_texts(written: Path) -> None:
+    text, short = (written / "classes.spec").read_text(), classes_of((4, 8))
+    assert "behaviourSV" in text
+    assert partition_faults(short, with_classes(text, BASE), False)[1] == 0
+
+
+def test_simulated_traffic_lies_in_exactly_one_class(main_road: Classes) -> None:
+    recording = simulate(Traffic(seconds=60, lanes=2), seed=1)
+    values = default_values(bundled_library())
+    text = write_classes(main_road, BASE)
+    shares = count_shares(main_road, with_classes(text, BASE), values, [recording])
+    assert shares.broken == []
+    assert sum(shares.situations.values()) == sum(shares.classified.values()) > 5
+    assert 0 < shares.covered <= shares.all_traces
+    assert max(shares.traces.values()) <= shares.covered
+    wrong = text.replace(
+        ":= scenario_3(SV, POV, L) and not scenario_6(SV, POV, L)", ":= scenario_1(SV, POV, L)"
+    )
+    assert wrong != text
+    assert count_shares(main_road, with_classes(wrong, BASE), values, [recording]).broken
+
+
+# --- mistakes -----------------------------------------------------------------------------------
+
+
+def test_rows_that_are_not_those_of_every_sector() -> None:
+    with pytest.raises(UsageError, match="1-8, 9-16 or 1-24"):
+        plan_of(BASE, (1, 4, 9))
+
+
+def test_sets_and_names_that_are_taken() -> None:
+    classes = classes_of((4, 8))
+    text = write_classes(classes, BASE)
+    with pytest.raises(UsageError, match="there is a set 'classes' already"):
+        plan_of(with_classes(text, BASE), (4, 8))
+    taken = build_library([Source("mine", "def class_4(a: vehicle) := v_lon(a) > 0")], bundled_library())
+    with pytest.raises(InputError, match="rename it"):
+        write_classes(classes, taken.select("base"))
+    shapeless = "def scenario_25(SV, POV: vehicle, L: lane) := danger(SV, POV)"
+    library = build_library([Source("mine", shapeless)], bundled_library())
+    with pytest.raises(InputError, match="roadSector_25"):
+        plan_of(library.select("base"), (4, 25))
+
+
+def test_a_scenario_of_ones_own_is_divided_too() -> None:
+    mine = (
+        'def scenario_25(SV, POV: vehicle, L: lane) "mine"\n'
+        "  := initSafe(SV, POV) and roadSector_25(SV, POV) and disturb_25(SV, POV, L)\n"
+        "def roadSector_25(SV: vehicle, POV: vehicles) := mainRoad(SV, POV)\n"
+        "def disturb_25(SV, POV: vehicle, L: lane) := laneKeep(SV, L) U danger(SV, POV)\n"
+    )
+    specification = build_library([Source("mine", mine)], bundled_library()).select("base")
+    plan = plan_of(specification, (4, 25))
+    found = outline(what_axis(plan, plan.groups[0], specification), specification, 1.0)
+    assert found.cells == (((4, 25), ()), ((25,), (4,)))
+
+
+def test_ranges() -> None:
+    assert ranges([1, 2, 3, 5]) == "1-3, 5"
+
+
+def test_a_specification_beside_evidence_may_only_add(
+    written: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "index.json").write_text(json.dumps({"specs": ["classes.spec"]}))
+    drive = (written / "drives/class_4.json").read_text()
+    (tmp_path / "drive.json").write_text(drive)
+    text = (written / "classes.spec").read_text()
+    (tmp_path / "classes.spec").write_text(text)
+    assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
+    (tmp_path / "classes.spec").write_text(f"{text}\ndef danger(a, b: vehicle) := true\n")
+    assert main(["check", str(tmp_path), "--jobs", "1"]) == 3
+    assert "changes 'danger' of the library" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "said"),
+    [
+        (["--among", "4,9"], 2, "each road sector"),
+        (["--among", "99"], 3, "no scenario '99'"),
+        (["--timeout", "0"], 2, "greater than 0"),
+        (["--on", "/nowhere", "--no-shares"], 2, "leave out one of the two"),
+        (["--on", "/nowhere"], 3, "/nowhere"),
+        (["--set", "bas"], 3, "did you mean 'base'"),
+    ],
+)
+def test_mistakes(line: list[str], code: int, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["classify", *line]) == code
+    assert said in capsys.readouterr().err
