@@ -1,0 +1,317 @@
+"""Exploring: boundaries that are known by reasoning, every drive judged again at its own value, mutants."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction as F
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadproof.analysis import explore as exploring
+from roadproof.analysis import explore_search
+from roadproof.analysis.explore import Asked, Explored, Finding, explore
+from roadproof.analysis.explore_bracket import Bracket
+from roadproof.analysis.explore_extreme import (
+    Extreme,
+    Sense,
+    Sought,
+    find_extreme,
+    find_extremes,
+    read_measure,
+)
+from roadproof.analysis.explore_knobs import Knob, between
+from roadproof.analysis.explore_range import range_of, starting_ranges
+from roadproof.analysis.explore_search import (
+    MOST_STEPS,
+    Claim,
+    common_step,
+    durations,
+    fit_grid,
+    made_for,
+    stand_ins,
+)
+from roadproof.cli.main import main
+from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file
+from roadproof.spec.bind import default_values
+from roadproof.spec.elaborate import read_claim, read_term
+from roadproof.spec.library import bundled_library
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Request, pose
+from roadproof.witness.question import Means
+
+LIBRARY = bundled_library()
+BASE = LIBRARY.select("base")
+# A car gains at most 3 m/s², so this takes two seconds.
+FASTER = "v_lon(SV) <= 20 m/s and F[0, minSafe] v_lon(SV) >= 26 m/s"
+POSITIVE = st.fractions(F(1, 100), F(50), max_denominator=100)
+
+
+def request(what: str, **values: F) -> Request:
+    means = Means(time_limit=6.0, explain=False)
+    return Request(what, values={**default_values(LIBRARY), **values}, means=means)
+
+
+def complaints(explored: Explored, name: str) -> list[str]:
+    """What is wrong with the evidence: each drive file must say its value and be judged to hold there."""
+    wrong: list[str] = []
+    ends = [x for boundary in explored.boundaries for x in (boundary.held, boundary.missed)]
+    for finding in (*explored.findings, *ends):
+        if finding.found:
+            assert finding.drive is not None
+            file = from_json(dict(finding.drive), "drive")
+            if file.values.get(name) != finding.at[0]:
+                wrong.append(f"{name}={finding.at[0]}, but the file says {file.values.get(name)}")
+            if not judge_file(file, LIBRARY).accepted:
+                wrong.append(f"{name}={finding.at[0]}: rejected")
+    return wrong
+
+
+def least_time(found: bool, finding: Finding) -> bool:
+    return finding.at[0] >= 2 if found else finding.at[0] < 2
+
+
+def test_a_boundary_in_time_is_where_reasoning_puts_it() -> None:
+    explored = explore(Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 6))
+    assert [x.found for x in explored.findings] == [False, False, True, True, True, True]
+    [boundary] = explored.boundaries
+    assert 2 <= boundary.held.at[0] <= F(21, 10)
+    assert boundary.surely is not None
+    assert F(17, 10) < boundary.surely.at[0] < 2
+    for finding in (*explored.findings, boundary.missed):
+        if finding.verdict is not Verdict.UNKNOWN:
+            assert least_time(finding.found, finding)
+    assert complaints(explored, "minSafe") == []
+    assert explored.drives <= explored.searches < 12
+
+
+def test_a_boundary_in_a_limit_is_where_reasoning_puts_it() -> None:
+    what = "v_lon(SV) <= 20 m/s and F[0, 3 s] v_lon(SV) >= 26 m/s"
+    knob = Knob("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
+    explored = explore(Asked(request(what), (knob,), 3))
+    [boundary] = explored.boundaries
+    assert 2 <= boundary.held.at[0] <= F(21, 10)
+    assert boundary.missed.at[0] < 2
+    assert boundary.held.drive is not None
+    file = from_json(dict(boundary.held.drive), "drive")
+    assert "G a_lon(SV) <= " in file.formula
+    assert judge_file(file, LIBRARY).accepted
+    assert "a_lon.max" in boundary.missed.reason
+    faster = replace(file, formula=file.formula.replace("a_lon(SV) <= ", "a_lon(SV) <= -"))
+    assert not judge_file(faster, LIBRARY).accepted
+
+
+def test_one_drive_serves_many_values() -> None:
+    what = "scenario_4(SV,POV,L)"
+    explored = explore(Asked(request(what), (Knob("minDanger", "s", F(0), F(3)),), 11))
+    assert all(x.found for x in explored.findings)
+    assert explored.searches <= 3
+    assert complaints(explored, "minDanger") == []
+
+
+def test_what_is_proved_impossible_takes_no_search() -> None:
+    what = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
+    explored = explore(Asked(request(what), (Knob("minDanger", "s", F(0), F(3)),), 4))
+    assert {x.verdict for x in explored.findings} == {Verdict.IMPOSSIBLE}
+    assert all(x.certificate for x in explored.findings)
+    assert explored.searches == 0
+
+
+def test_a_drive_that_keeps_its_old_value_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    def forgetful(file: DriveFile, claim: Claim) -> DriveFile:
+        return replace(file, formula=claim.text)
+
+    monkeypatch.setattr(explore_search, "made_for", forgetful)
+    asked = Asked(request(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
+    assert complaints(explore(asked), "minSafe")
+
+
+def test_a_drive_that_is_not_judged_again_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Trusting(exploring.Pool):
+        def show(self, claim: Claim) -> explore_search.Shown | None:
+            if not self.files:
+                return None
+            file = made_for(self.files[0], claim)
+            return explore_search.Shown(1, as_json(file, {}))
+
+    monkeypatch.setattr(exploring, "Pool", Trusting)
+    asked = Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3)
+    assert complaints(explore(asked), "minSafe")
+
+
+def test_a_leap_that_takes_the_next_value_for_granted_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
+    def hasty(self: object, held: Finding, missed: Finding, precision: F) -> Finding:
+        return replace(held, at=(between(held.at[0], missed.at[0]),))
+
+    monkeypatch.setattr(exploring.Exploring, "leap", hasty)
+    explored = explore(Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3))
+    assert complaints(explored, "minSafe")
+
+
+def extreme_of(what: str, sense: Sense, term: str, when: str = "") -> tuple[Extreme, Finding, DriveFile]:
+    """The extreme, its best value, and the drive file that shows it."""
+    found = find_extreme(Sought(request(what), read_measure(BASE, sense, term, when), F(1, 10)))
+    assert found.best is not None
+    assert found.best.drive is not None
+    file = from_json(dict(found.best.drive), "drive")
+    assert judge_file(file, LIBRARY).accepted
+    return found, found.best, file
+
+
+def test_an_extreme_at_the_start_is_where_reasoning_puts_it() -> None:
+    found, best, file = extreme_of("F[0, 2.4 s] v_lon(SV) >= 30 m/s", "least", "v_lon(SV)")
+    exact = 30 - 3 * F("2.4")
+    assert exact <= best.at[0] <= exact + F(1, 5)
+    assert found.surely is not None
+    assert exact - F(1, 2) < found.surely.at[0] < exact
+    assert file.drive.vehicles["SV"].v_lon == best.at[0]
+
+
+def test_an_extreme_at_a_moment_is_where_reasoning_puts_it() -> None:
+    what = "v_lon(SV) <= 20 m/s and G a_lon(SV) <= 0 m/s^2"
+    found, best, _ = extreme_of(what, "greatest", "v_lon(SV)", "a_lon(SV) <= 0 m/s^2")
+    assert F("19.9") <= best.at[0] <= 20
+    assert found.missed is not None
+    assert found.missed.at[0] > 20
+
+
+def test_an_infimum_is_bracketed_by_a_proof() -> None:
+    found, best, _ = extreme_of("v_lon(SV) > v_lon(POV)", "least", "v_lon(SV) - v_lon(POV)")
+    assert 0 < best.at[0] <= F(1, 5)
+    assert found.missed is not None
+    assert (found.missed.at, found.missed.verdict) == ((0,), Verdict.IMPOSSIBLE)
+    assert found.missed.certificate
+
+
+def test_a_measure_without_end_is_said_to_have_none() -> None:
+    found, _, _ = extreme_of("v_lon(SV) >= 30 m/s", "greatest", "s(SV)", "v_lon(SV) >= 20 m/s")
+    assert found.endless
+    assert found.missed is None
+
+
+def test_the_drive_of_one_value_is_tried_at_the_others() -> None:
+    knob = Knob("minSafe", "s", F(1), F(6))
+    measure = read_measure(BASE, "least", "v_lon(SV)")
+    asked = request("F[0, minSafe] v_lon(SV) >= 30 m/s")
+    soughts = [Sought(asked, measure, F(1), (knob,), (F(x),)) for x in (4, 3)]
+    poor = find_extreme(replace(soughts[0], point=(F(1),)))
+
+    def find(some: Sequence[Sought]) -> list[Extreme]:
+        return [poor if x.point == (4,) and not x.seeds else find_extreme(x) for x in some]
+
+    one, other = find_extremes(soughts, find)
+    assert poor.best is not None
+    assert one.best is not None
+    assert other.best is not None
+    assert one.best.at[0] <= other.best.at[0] < poor.best.at[0]
+
+
+@given(POSITIVE, POSITIVE, st.lists(POSITIVE, max_size=3))
+def test_between_is_strictly_between(low: F, width: F, grains: list[F]) -> None:
+    assert low < between(low, low + width, grains) < low + width
+    assert between(low, low + width, grains) == between(low + width, low, grains)
+
+
+@given(POSITIVE, POSITIVE)
+def test_both_are_multiples_of_the_common_step(a: F, b: F) -> None:
+    step = common_step(a, b)
+    assert (a / step).denominator == (b / step).denominator == 1
+    assert common_step(F(0), b) == b
+
+
+@given(st.fractions(F(0), F(6), max_denominator=40), st.fractions(F(0), F(6), max_denominator=40))
+def test_grids_fit_the_durations(safe: F, danger: F) -> None:
+    asked = request("scenario_4(SV,POV,L)", minSafe=safe, minDanger=danger)
+    formula = read_claim(BASE, asked.what).formula
+    fitting = fit_grid(asked, formula)
+    for one in [fitting] if fitting is not None else stand_ins(asked, formula):
+        assert one.dt <= asked.dt
+        assert one.horizon >= asked.horizon
+        assert one.horizon / one.dt <= MOST_STEPS + 1
+        for duration in (*durations(formula, one.values), one.horizon):
+            assert (duration / one.dt).denominator == 1
+    if fitting is not None:
+        assert fitting.values == asked.values
+
+
+def test_the_range_of_a_term_holds_its_values() -> None:
+    question = pose(BASE, "scenario_4(SV,POV,L)", request("scenario_4(SV,POV,L)"))
+    ranges = starting_ranges(question)
+    term, dimension = read_term(BASE, "v_lon(SV) - v_lon(POV)")
+    assert range_of(term, ranges) == (-25, 25)
+    assert dimension == (1, -1)
+    assert range_of(read_term(BASE, "max(0, a_lon(SV))^2 / 2")[0], ranges) == (0, F(9, 2))
+    assert range_of(read_term(BASE, "(a_lon(SV))^2")[0], ranges) == (0, 36)
+
+
+def test_a_doubt_is_looked_past_before_it_is_the_end() -> None:
+    def at(value: int, verdict: Verdict) -> Finding:
+        return Finding((F(value),), verdict, "")
+
+    bracket = Bracket(-1, F(1), at(10, Verdict.WITNESSED), F(30))
+    assert bracket.next() == 30
+    bracket.miss(at(30, Verdict.NONE_WITHIN))
+    assert 10 < bracket.next() < 30
+    bracket.miss(at(20, Verdict.UNKNOWN))
+    assert 20 < bracket.next() < 30
+    bracket.miss(at(25, Verdict.UNKNOWN))
+    assert 10 < bracket.next() < 20
+    bracket.hold(at(22, Verdict.WITNESSED))
+    assert bracket.missed is not None
+    assert bracket.missed.at == (25,)
+
+
+def run(*words: str) -> int:
+    return main(["explore", *words, "--jobs", "1"])
+
+
+def test_the_command_writes_evidence_that_is_accepted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    words = ("--vary", "minSafe=1:3", "--steps", "2", "--least", "v_lon(SV)", "--precision", "1/2")
+    assert run(FASTER, *words, "--out", str(out)) == 0
+    printed = capsys.readouterr().out
+    assert "minSafe  1 -# 3 s" in printed
+    assert main(["check", str(out), "--jobs", "1"]) == 0
+    data = json.loads((out / "index.json").read_text())
+    [explored] = data["explored"]
+    assert data["schema"] == "roadproof/explore/1"
+    assert [x["at"] for x in explored["values"]] == [["1"], ["3"]]
+    assert [x["point"] for x in explored["extremes"]] == [["3"]]
+    [reached] = [F(x["best"]["at"][0]) for x in explored["extremes"]]
+    assert 17 <= reached <= F("17.2")
+    assert list(out.glob("formula-01-base.png"))
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "complaint"),
+    [
+        (("4",), 2, "say what to explore"),
+        (("4", "--vary", "minSafe"), 2, "write --vary NAME=LOW:HIGH"),
+        (("4", "--vary", "minSafe=3:0"), 2, "the range is empty"),
+        (("4", "--vary", "minSafe=-1:3"), 2, "the library demands minSafe >= 0"),
+        (("4", "--vary", "minSafee=0:3"), 2, "did you mean 'minSafe'"),
+        (("4", "--vary", "minSafe=0 m:3"), 3, "which m does not measure"),
+        (("F v_lon(SV) > 20 m/s", "--vary", "minSafe=0:3"), 2, "does not depend on minSafe"),
+        (("4", "--vary", "POV.a_lon.min=-6:1"), 2, "leaves out 0"),
+        (("4", "--vary", "POV.v_lon.min=-6:1"), 2, "never reverses"),
+        (("4", "--vary", "POV2.a_lon.min=-6:-1"), 2, "the formula speaks of POV, SV"),
+        (("4", "--vary", "POV.a.min=-6:-1"), 2, "VEHICLE.LIMIT.min"),
+        (("4", "--vary", "minSafe=0:3", "--param", "minSafe=1"), 2, "leave one out"),
+        (("4", "--vary", "minSafe=0:3", "--steps", "1"), 2, "--steps 1"),
+        (("4", "--vary", "minSafe=0:3", "--precision", "0"), 2, "greater than 0"),
+        (("4", "--when", "true", "--vary", "minSafe=0:3"), 2, "add --least TERM"),
+        (("4", "--least", "v_lon(SV"), 3, "column 9"),
+        (("4", "--least", "v_lon(SV) < 3 m/s"), 3, "this is a formula"),
+        (("4", "--least", "minSafe"), 2, "no drive changes this"),
+        (("F[0, 0.013 s] v_lon(SV) > 20 m/s", "--least", "v_lon(SV)"), 2, "no common step"),
+    ],
+)
+def test_mistakes(
+    words: tuple[str, ...], code: int, complaint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(*words) == code
+    assert complaint in capsys.readouterr().err
