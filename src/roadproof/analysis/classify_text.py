@@ -24,10 +24,11 @@ class Claim:
     text: str
 
 
-def write_classes(classes: Classes, specification: Specification) -> str:
+def write_classes(classes: Classes, specification: Specification, below: Sequence[str] = ()) -> str:
     """The text of a specification file; its definitions are new, and are to be read with set ``classes``.
 
-    Raises ``InputError`` where the library has one of the names already.
+    ``below``: names of the specification files that it needs under it. Raises ``InputError`` where the
+    library has one of the names already.
     """
     made = list(_definitions(classes, specification))
     for name, _ in made:
@@ -37,7 +38,7 @@ def write_classes(classes: Classes, specification: Specification) -> str:
             )
     base = specification.set_name
     lines = [
-        *_head(classes, specification),
+        *_head(classes, specification, below),
         "",
         f'set {SET_NAME} extends {base} "classes of {base}" {{}}',
         "",
@@ -51,7 +52,8 @@ def with_classes(text: str, specification: Specification) -> Specification:
     return library.select(SET_NAME, specification.options)
 
 
-def _head(classes: Classes, specification: Specification) -> Iterator[str]:
+def _head(classes: Classes, specification: Specification, below: Sequence[str]) -> Iterator[str]:
+    files = " ".join(f"--spec {name}" for name in (*below, FILE_NAME))
     options = "".join(
         f" --option {name}={value}"
         for name, value in specification.options.items()
@@ -60,7 +62,7 @@ def _head(classes: Classes, specification: Specification) -> Iterator[str]:
     numbers = sorted(number for group in classes.plan.groups for number in group.rows)
     told = [
         f"{len(classes.all())} classes of scenarios {ranges(numbers)} of set {specification.set_name}.",
-        f"Read with --spec {FILE_NAME} --set {SET_NAME}{options}; in other sets the names mean other things.",
+        f"Read with {files} --set {SET_NAME}{options}; in other sets the names mean other things.",
         "A class says of one trace, its vehicles and a lane L which of these scenarios hold, and that no "
         "others between the same vehicles do. Classes of the same vehicles exclude each other, and a "
         "scenario is the union of its classes.",

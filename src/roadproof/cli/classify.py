@@ -110,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
     folder = evidence_folder(args.out, args.json)
     source, recordings = _recordings(args)
     classes, empty = _divide(asked, plan, args.jobs)
-    text = write_classes(classes, specification)
+    text = write_classes(classes, specification, [path.name for path in asked.specs])
     shares = None
     if not args.no_shares:
         tell(f"shares on {source}")

@@ -215,7 +215,7 @@ def summary(data: Mapping[str, Any]) -> Iterator[str]:
         return
     uncovered = shares["traces"] - shares["covered"]
     part = f" ({100 * uncovered / shares['traces']:.1f} %)" if shares["traces"] else ""
-    yield f"on {shares['source']}: {shares['traces']} traces, {uncovered}{part} in no scenario"
+    yield f"on {shares['source']}: {shares['traces']} traces, {uncovered}{part} in none of these scenarios"
     count = sum(shares["situations"].values())
     broken = shares["broken"]
     if broken:
