@@ -14,15 +14,9 @@ from roadproof.analysis import explore as exploring
 from roadproof.analysis import explore_search
 from roadproof.analysis.explore import Asked, Explored, Finding, explore
 from roadproof.analysis.explore_bracket import Bracket
-from roadproof.analysis.explore_extreme import (
-    Extreme,
-    Sense,
-    Sought,
-    find_extreme,
-    find_extremes,
-    read_measure,
-)
+from roadproof.analysis.explore_extreme import Extreme, Sought, find_extreme, find_extremes
 from roadproof.analysis.explore_knobs import Knob, between
+from roadproof.analysis.explore_measure import Sense, read_measure
 from roadproof.analysis.explore_range import range_of, starting_ranges
 from roadproof.analysis.explore_search import (
     MOST_STEPS,
@@ -130,7 +124,7 @@ def test_a_drive_that_keeps_its_old_value_is_caught(monkeypatch: pytest.MonkeyPa
 
 def test_a_drive_that_is_not_judged_again_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     class Trusting(exploring.Pool):
-        def show(self, claim: Claim) -> explore_search.Shown | None:
+        def show(self, claim: Claim, since: int = 0) -> explore_search.Shown | None:
             if not self.files:
                 return None
             file = made_for(self.files[0], claim)

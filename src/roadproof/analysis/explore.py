@@ -121,10 +121,12 @@ def explore(asked: Asked, look_all: LookAll = look_one_by_one, say: Say = lambda
     exploring = Exploring(asked, look_all)
     points = list(product(*(knob.values(asked.steps) for knob in asked.knobs)))
     settled: dict[Point, Finding] = {}
+    judged = 0
     while len(settled) < len(points):
         for point in points:
-            if point not in settled and (finding := exploring.known(point)) is not None:
+            if point not in settled and (finding := exploring.known(point, judged)) is not None:
                 settled[point] = finding
+        judged = len(exploring.pool.files)
         left = [point for point in points if point not in settled]
         for finding in exploring.settle(exploring.spread(left)[: asked.width]):
             settled[finding.at] = finding
@@ -154,6 +156,7 @@ class Exploring:
         self.pool = Pool(self.library)
         self.searches = 0
         self.searched: list[Point] = []
+        self.claims: dict[Point, Claim] = {}
         what = asked.request.what
         self.impossibility: Impossibility | None = show_impossible(self.specification, what, QUICK_PROOF)
         formula = read_claim(self.specification, asked.request.what).formula
@@ -165,17 +168,22 @@ class Exploring:
 
     def claim(self, point: Point) -> Claim:
         """What a drive file has to say at a point, limits included."""
-        text = conjoin(self.asked.request.what, stated(self.asked.knobs, point))
-        return claim_of(self.request(point), text, self.library)
+        if point not in self.claims:
+            text = conjoin(self.asked.request.what, stated(self.asked.knobs, point))
+            self.claims[point] = claim_of(self.request(point), text, self.library)
+        return self.claims[point]
 
-    def known(self, point: Point) -> Finding | None:
-        """The answer by a drive that was found before, or by the proof that there is none."""
+    def known(self, point: Point, since: int = 0) -> Finding | None:
+        """The answer by the proof that there is none, or by a drive that was found before.
+
+        ``since``: so many of the drives are known not to do.
+        """
         claim = self.claim(point)
         if self.impossibility is not None:
             core = f"proved for all values; core: {' and '.join(self.impossibility.core)}"
             certificate = self.impossibility.certificate
             return Finding(point, Verdict.IMPOSSIBLE, claim.text, core, certificate=certificate)
-        shown = self.pool.show(claim)
+        shown = self.pool.show(claim, since)
         if shown is None:
             return None
         return Finding(point, Verdict.WITNESSED, claim.text, drive=shown.data, number=shown.number)

@@ -7,11 +7,12 @@ found for, with what is known of it. No optimum is claimed.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 from roadproof.analysis.explore import PROOF_SECONDS, QUICK_PROOF, Finding, LookAll, Say, look_one_by_one
 from roadproof.analysis.explore_bracket import Bracket
 from roadproof.analysis.explore_knobs import Knob, Point, stated, with_point
+from roadproof.analysis.explore_measure import Measure
 from roadproof.analysis.explore_range import range_of, starting_ranges
 from roadproof.analysis.explore_search import (
     NATURAL_FIRST,
@@ -24,64 +25,25 @@ from roadproof.analysis.explore_search import (
     claim_of,
     made_for,
 )
-from roadproof.analysis.explore_text import compared, conjoin, eventually, expression
-from roadproof.errors import InputError, UsageError
+from roadproof.analysis.explore_text import conjoin
+from roadproof.errors import InputError
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.signals import Courses, DriveSignals
 from roadproof.logic import formula as f
-from roadproof.logic.syntax import Expression
-from roadproof.logic.terms import Dimension, Inverse, Signal, Term, leaves, number
+from roadproof.logic.terms import Term, number
 from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim, read_term
-from roadproof.spec.library import Specification, load_library
+from roadproof.spec.library import load_library
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, pose
 from roadproof.witness.impossible import show_impossible
 from roadproof.world.road import Road
 
-Sense: TypeAlias = Literal["least", "greatest"]
 MOST_SEARCHES = 24
 GRAIN = Fraction(1, 1000)  # of values at a moment, which are found by halving
 WITHOUT_END = Fraction(10**6)
 
 
 FindAll: TypeAlias = Callable[[Sequence["Sought"]], Iterable["Extreme"]]
-
-
-@dataclass(frozen=True)
-class Measure:
-    """The ``sense`` value of ``text``, at time 0 or at some moment at which ``when`` holds."""
-
-    sense: Sense
-    text: str
-    term: Term
-    dimension: Dimension
-    when: str = ""
-
-    @property
-    def sign(self) -> int:
-        """What turns a better value into a smaller one."""
-        return 1 if self.sense == "least" else -1
-
-    def bound(self, value: Fraction | None) -> list[Expression]:
-        """That the measure is ``value`` or better (None: that there is a moment for it), as parts."""
-        op: Literal["<=", ">="] = "<=" if self.sense == "least" else ">="
-        here = [] if value is None else [compared(expression(self.text), op, value, self.dimension)]
-        if not self.when:
-            return here
-        return [eventually([expression(self.when), *here])]
-
-
-def read_measure(specification: Specification, sense: Sense, text: str, when: str = "") -> Measure:
-    """A measure from what the user wrote. Raises ``TextError``, ``UsageError`` for what no drive changes."""
-    term, dimension = read_term(specification, text, f"--{sense}")
-    if isinstance(term, Inverse):
-        raise UsageError(f"--{sense} '{text}': 1/x may be infinite; ask for the other extreme of x")
-    if not any(isinstance(leaf, Signal) for leaf in leaves(term)):
-        raise UsageError(f"--{sense} '{text}': no drive changes this; name a signal, such as v_lon(SV)")
-    if when:
-        read_claim(specification, when, "--when")
-    return Measure(sense, text, term, dimension, when)
 
 
 @dataclass(frozen=True)

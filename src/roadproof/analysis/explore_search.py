@@ -209,9 +209,12 @@ class Pool:
             self.files.append(from_json(dict(data), "drive"))
             self._last = len(self.files) - 1
 
-    def show(self, claim: Claim) -> Shown | None:
-        """A drive on which the claim holds, judged as a file; the last that did is tried first."""
-        order = sorted(range(len(self.files)), key=lambda k: (k != self._last, -k))
+    def show(self, claim: Claim, since: int = 0) -> Shown | None:
+        """A drive on which the claim holds, judged as a file; the last that did is tried first.
+
+        ``since``: the first so many drives are left out.
+        """
+        order = sorted(range(since, len(self.files)), key=lambda k: (k != self._last, -k))
         for k in order:
             file = made_for(self.files[k], claim)
             ruling = judge_file(file, self.library)

@@ -18,7 +18,8 @@ from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
     from roadproof.analysis.explore import Asked, Finding
-    from roadproof.analysis.explore_extreme import Extreme, Measure, Sought
+    from roadproof.analysis.explore_extreme import Extreme, Sought
+    from roadproof.analysis.explore_measure import Measure
     from roadproof.analysis.explore_search import Reply, Task
     from roadproof.spec.library import Library
     from roadproof.witness.ask import Request
@@ -136,9 +137,10 @@ def _jobs(args: argparse.Namespace, library: "Library") -> list[Job]:
 
 def _job(args: argparse.Namespace, what: str, request: "Request", library: "Library") -> Job:
     from roadproof.analysis.explore import Asked
-    from roadproof.analysis.explore_extreme import read_measure
+    from roadproof.analysis.explore_measure import read_measure
     from roadproof.spec.elaborate import read_claim
     from roadproof.witness.ask import as_formula
+    from roadproof.witness.impossible import split_given
 
     specification = library.select(request.set_name, request.options)
     scenario, text = as_formula(specification, what)
@@ -149,10 +151,11 @@ def _job(args: argparse.Namespace, what: str, request: "Request", library: "Libr
         if knob.name in given:
             raise UsageError(f"{knob.name} is given by --param and varied by --vary: leave one out")
     measures: list[Measure] = []
+    when, names = args.when or "", split_given(text)[0]
     if args.least:
-        measures.append(read_measure(specification, "least", args.least, args.when or ""))
+        measures.append(read_measure(specification, "least", args.least, when, names))
     if args.greatest:
-        measures.append(read_measure(specification, "greatest", args.greatest, args.when or ""))
+        measures.append(read_measure(specification, "greatest", args.greatest, when, names))
     width = count_workers(range(1000), args.jobs)
     steps = read_steps(args.steps, len(knobs))
     asked = Asked(request, tuple(knobs), steps, read_precision(args.precision), width)

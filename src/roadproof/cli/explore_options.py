@@ -45,7 +45,9 @@ def _knob(text: str, request: "Request", query: "Query", library: "Library") -> 
 
 def _parameter(text: str, name: str, low: str, high: str, query: "Query", library: "Library") -> "Knob":
     from roadproof.analysis.explore_knobs import Knob
+    from roadproof.analysis.explore_text import unit_text
     from roadproof.logic.rewrite import parameters_of
+    from roadproof.spec.elaborate import UNITS
     from roadproof.spec.library import unknown
 
     if name not in library.parameters:
@@ -64,7 +66,7 @@ def _parameter(text: str, name: str, low: str, high: str, query: "Query", librar
             f"--vary {text}: the range leaves the declared bound; the library demands {name} "
             f"{declared.bound} 0"
         )
-    return Knob(name, declared.unit, ends[0], ends[1])
+    return Knob(name, unit_text(UNITS[declared.unit][1]), ends[0], ends[1])
 
 
 def _limit(text: str, name: str, low: str, high: str, request: "Request", query: "Query") -> "Knob":

@@ -8,7 +8,9 @@ from typing import Any
 
 from roadproof.evidence.certificate import to_json
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
+from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.prove.prover import prove
@@ -32,17 +34,27 @@ class Impossibility:
 def show_impossible(specification: Specification, formula: str, timeout: float) -> Impossibility | None:
     """A proof in dense, unbounded time that ``formula`` never holds at 0, or None. ``timeout`` in s."""
     deadline = time.monotonic() + timeout
-    whole = prove(specification, f"not ({formula})", timeout)
+    given, body = split_given(formula)
+    whole = prove(specification, f"{given}not ({body})", timeout)
     if whole.verdict not in (Verdict.PROVED, Verdict.VACUOUS) or whole.certificate is None:
         return None
     core, minimal = _core(specification, formula, deadline)
     return Impossibility(core, minimal, json.loads(to_json(whole.certificate)))
 
 
+def split_given(claim: str) -> tuple[str, str]:
+    """What a claim declares in front, as text to be put in front of others, and the formula behind it."""
+    parsed = parse_claim(claim)
+    if not parsed.given:
+        return "", claim
+    return text(syntax.Claim(parsed.given, syntax.Literal_(True))).removesuffix("true"), text(parsed.body)
+
+
 def _core(specification: Specification, formula: str, deadline: float) -> tuple[tuple[str, ...], bool]:
     """Leave out one part after the other where the rest still clashes."""
     kept = [text(as_syntax(part, expand=False)) for part in parts(read_claim(specification, formula).formula)]
     kept = list(dict.fromkeys(kept))
+    given, _ = split_given(formula)
     for part in tuple(kept):
         rest = [p for p in kept if p != part]
         left = deadline - time.monotonic()
@@ -50,7 +62,7 @@ def _core(specification: Specification, formula: str, deadline: float) -> tuple[
             return tuple(kept), False
         if not rest:
             continue
-        claim = f"not ({' and '.join(f'({p})' for p in rest)})"
+        claim = f"{given}not ({' and '.join(f'({p})' for p in rest)})"
         if prove(specification, claim, min(left, 1.5)).verdict in (Verdict.PROVED, Verdict.VACUOUS):
             kept = rest
     return tuple(kept), True
