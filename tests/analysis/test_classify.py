@@ -29,6 +29,7 @@ from roadproof.spec.library import Source, Specification, build_library, bundled
 from roadproof.traffic.simulate import Traffic
 from roadproof.traffic.synthetic import simulate
 from roadproof.verdict import Verdict
+from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 
 BASE = bundled_library().select("base")
@@ -267,6 +268,22 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
         if len(found) == 7:
             break
     assert found == set(product((True, False), repeat=3)) - {(False, False, False)}
+
+
+def test_vehicles_side_by_side_may_be_in_three_zones() -> None:
+    motion = Motion(
+        Fraction(4),
+        Fraction(2),
+        Fraction(0),
+        Fraction(2),
+        Fraction(20),
+        Fraction(0),
+        (Piece(None, Fraction(0), Fraction(0)),),
+    )
+    drive = Drive({"SV": motion, "POV": replace(motion, d=Fraction(6))})
+    roads = list(patched(load_road("main-2"), drive))
+    assert any({x.zone for x in road.lanelets} == {"main", "merge", "depart"} for road in roads)
+    assert all(road.lanes == ("main-1", "main-2") for road in roads)
 
 
 # --- monitors -----------------------------------------------------------------------------------

@@ -69,7 +69,8 @@ class _Searching:
         outcome = ask(self._request(one))
         if not outcome.drives:
             self.failures += 1
-            return Example(one.name, outcome.verdict, outcome.reason, None)
+            limits = f"road {outcome.road}, {self.asked.timeout:g} s of search"
+            return Example(one.name, outcome.verdict, f"{outcome.reason} ({limits})", None)
         self.found.append(Shown(one.formula, dict(outcome.drives[0])))
         return Example(one.name, Verdict.WITNESSED, "", outcome.drives[0])
 
@@ -110,9 +111,14 @@ class _Searching:
 
 
 def patched(road: Road, drive: Drive) -> Iterator[Road]:
-    """``road`` with new zones that begin and end across it under the vehicles at time 0; lanes are kept."""
-    for share in (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4)):
-        ends = sorted({motion.s - share * motion.length for motion in drive.vehicles.values()})
+    """``road`` with new zones that begin and end across it under the vehicles at time 0; lanes are kept.
+
+    Tried are ends under the same part of every vehicle, then any two ends: vehicles may be side by side.
+    """
+    shares = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4))
+    choices = [sorted({motion.s - x * motion.length for motion in drive.vehicles.values()}) for x in shares]
+    choices.append(sorted({end for ends in choices for end in ends}))
+    for ends in choices:
         for count in (0, 1, 2):
             for cuts in combinations(ends, count):
                 for zones in product(get_args(Zone), repeat=count + 1):
