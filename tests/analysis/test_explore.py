@@ -21,9 +21,12 @@ from roadproof.analysis.explore_range import range_of, starting_ranges
 from roadproof.analysis.explore_search import (
     MOST_STEPS,
     Claim,
+    Reply,
+    Task,
     common_step,
     durations,
     fit_grid,
+    look,
     made_for,
     stand_ins,
 )
@@ -255,6 +258,25 @@ def test_a_doubt_is_looked_past_before_it_is_the_end() -> None:
     bracket.hold(at(22, Verdict.WITNESSED))
     assert bracket.missed is not None
     assert bracket.missed.at == (25,)
+    bracket.hold(at(31, Verdict.WITNESSED))
+    assert (bracket.missed, bracket.narrow) == (None, False)
+    assert bracket.next() > 31
+
+
+def test_a_drive_found_later_is_judged_where_none_was_found_before() -> None:
+    first: list[Task] = []
+
+    def look_all(tasks: Sequence[Task]) -> list[Reply]:
+        """The first search misses what is there."""
+        if not first:
+            first.extend(tasks)
+            return [Reply(Verdict.NONE_WITHIN, "not looked")]
+        return [look(task) for task in tasks]
+
+    asked = Asked(request(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
+    explored = explore(asked, look_all)
+    assert all(finding.found for finding in explored.findings)
+    assert explored.boundaries == ()
 
 
 def run(*words: str) -> int:

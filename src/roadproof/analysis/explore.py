@@ -33,6 +33,7 @@ from roadproof.witness.impossible import Impossibility, show_impossible
 PROOF_SECONDS = 5.0
 QUICK_PROOF = 2.0  # before any search; where a formula can hold, that is mostly seen at once
 MOST_SEARCHES = 10  # for one boundary
+MOST_ROUNDS = 3  # of narrowing, where drives found for one boundary move another
 
 LookAll: TypeAlias = Callable[[Sequence[Task]], Iterable[Reply]]
 Say: TypeAlias = Callable[[str], None]
@@ -131,18 +132,29 @@ def explore(asked: Asked, look_all: LookAll = look_one_by_one, say: Say = lambda
         for finding in exploring.settle(exploring.spread(left)[: asked.width]):
             settled[finding.at] = finding
         say(f"{len(settled)} of {len(points)} values, {exploring.searches} searches")
-    findings = tuple(settled[point] for point in points)
     boundaries: list[Boundary] = []
-    if len(asked.knobs) == 1:
-        for one, other in pairwise(findings):
-            if one.found != other.found:
-                sides = (one, other) if one.found else (other, one)
-                boundary = exploring.narrow(*sides)
-                if boundary.surely is None:
-                    boundary = replace(boundary, surely=_surely_beyond(*sides, findings))
-                boundaries.append(boundary)
-                say(f"{len(boundaries)} boundaries, {exploring.searches} searches")
+    for _ in range(MOST_ROUNDS):
+        exploring.judge_missed(settled)
+        findings = tuple(settled[point] for point in points)
+        boundaries = _boundaries(exploring, findings, say) if len(asked.knobs) == 1 else []
+        if not exploring.judge_missed(settled):
+            break
     return Explored(findings, tuple(boundaries), exploring.searches, len(exploring.pool.files))
+
+
+def _boundaries(exploring: "Exploring", findings: Sequence[Finding], say: Say) -> list[Boundary]:
+    """The boundaries between neighbours of which one has a drive, narrowed."""
+    boundaries: list[Boundary] = []
+    for one, other in pairwise(findings):
+        if one.found == other.found:
+            continue
+        held, missed = (one, other) if one.found else (other, one)
+        boundary = exploring.narrow(held, missed)
+        if boundary is not None:
+            surely = boundary.surely or _surely_beyond(held, missed, findings)
+            boundaries.append(replace(boundary, surely=surely))
+        say(f"{len(boundaries)} boundaries, {exploring.searches} searches")
+    return boundaries
 
 
 class Exploring:
@@ -222,20 +234,42 @@ class Exploring:
             order.append(far)
         return order
 
-    def narrow(self, held: Finding, missed: Finding) -> Boundary:
-        """The boundary between two neighbours on the grid: leaps by the judge, then halving by searches."""
+    def judge_missed(self, settled: dict[Point, Finding]) -> bool:
+        """Judge all drives where none was found when it was looked for; whether that changes anything."""
+        better = False
+        for point, finding in settled.items():
+            now = None if finding.found else self.known(point)
+            if now is not None and now.found:
+                settled[point] = now
+                better = True
+        return better
+
+    def narrow(self, held: Finding, missed: Finding) -> Boundary | None:
+        """The boundary between two neighbours on the grid: leaps by the judge, then halving by searches.
+
+        None where a drive that is found on the way does at ``missed`` too.
+        """
         [knob] = self.asked.knobs
         precision = self.asked.precision or (knob.high - knob.low) / 60
         grains = [self.asked.request.dt / k for k in (1, 2, 4)] if knob.name in self.lasting else []
-        surely = missed if missed.verdict is not Verdict.UNKNOWN else None
+        misses = [missed]
         for _ in range(MOST_SEARCHES):
-            held = self.leap(held, missed, precision)
-            if abs(missed.at[0] - held.at[0]) <= precision:
+            while misses and (finding := self.known(misses[-1].at)) is not None and finding.found:
+                held = finding
+                misses.pop()
+            if not misses:
+                return None
+            held = self.leap(held, misses[-1], precision)
+            if abs(misses[-1].at[0] - held.at[0]) <= precision:
                 break
-            [finding] = self.settle([(between(held.at[0], missed.at[0], grains),)], PLAIN_FIRST)
-            held, missed = (finding, missed) if finding.found else (held, finding)
-            surely = missed if missed.verdict is not Verdict.UNKNOWN else surely
-        return Boundary(held, missed, surely)
+            middle = between(held.at[0], misses[-1].at[0], grains)
+            [finding] = self.settle([(middle,)], PLAIN_FIRST)
+            if finding.found:
+                held = finding
+            else:
+                misses.append(finding)
+        sure = [finding for finding in misses if finding.verdict is not Verdict.UNKNOWN]
+        return Boundary(held, misses[-1], sure[-1] if sure else None)
 
     def leap(self, held: Finding, missed: Finding, precision: Fraction) -> Finding:
         """The value nearest to ``missed``, by halving, at which a drive is judged to do that is known."""

@@ -48,6 +48,8 @@ class Bracket:
         self.leap *= 2
         self.patience = PATIENCE
         self.doubts = [x for x in self.doubts if self.distance(x.at[0]) > 0]
+        if self.sure is not None and self.distance(self.sure.at[0]) <= 0:
+            self.sure = None  # there was none on that grid, but there is one on a finer one
 
     def miss(self, missed: Finding) -> None:
         if missed.verdict is Verdict.UNKNOWN or self.doubts:
