@@ -1,6 +1,7 @@
 """Classes: against truth tables, against the monitor on random and simulated traces, and with faults."""
 
 import json
+from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -15,7 +16,7 @@ from monitor.cases import random_traffic
 from roadproof.analysis.classify import Classes, plan_of, what_axis, where_axis
 from roadproof.analysis.classify_cells import Axis, Cell, Outline, outline, refine, text_of
 from roadproof.analysis.classify_drives import patched, with_zones
-from roadproof.analysis.classify_shares import count_shares
+from roadproof.analysis.classify_shares import Shares, count_shares
 from roadproof.analysis.classify_text import claims_of, ranges, with_classes, write_classes
 from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError
@@ -188,6 +189,28 @@ def test_another_run_leaves_nothing_of_the_first(tmp_path: Path) -> None:
         "index.json",
         "mine.json",
     ]
+
+
+def test_a_doubt_is_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
+    """A class without a drive stays, and a claim that was not proved is not forgotten."""
+    line = ["classify", "--among", "5", "--no-shares", "--timeout", "0.05", "--jobs", "1", "--json", "-"]
+    assert main(line) == 20
+    data = json.loads(capsys.readouterr().out)
+    ((one,), (claim,)) = data["classes"], data["claims"]
+    assert (one["name"], one["verdict"], one["drive"]) == ("class_5", "UNKNOWN", None)
+    assert "0.05 s of search" in one["reason"]
+    assert (claim["verdict"], claim["certificate"]) == ("UNKNOWN", None)
+
+
+def test_classes_that_recordings_contradict(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = Shares(["01"], 3, 2, classified=Counter({2: 2}), broken=["recording 01: two classes"])
+    monkeypatch.setattr("roadproof.cli.classify.count_on", lambda *arguments: told)
+    assert main(["classify", "--among", "7", "--jobs", "1"]) == 30
+    said = capsys.readouterr().out
+    assert "3 traces, 1 (33.3 %) in none of these scenarios" in said
+    assert "CROSSCHECK-FAILED: 1 of 2 situations" in said
 
 
 def claims_that_fail(text: str, classes: Classes) -> dict[str, Verdict]:

@@ -200,7 +200,8 @@ def summary(data: Mapping[str, Any]) -> Iterator[str]:
     """What is proved, what was found, and whether recordings agree."""
     yield ""
     verdicts = Counter(x["verdict"] for x in data["classes"])
-    yield f"{len(data['classes'])} classes: " + ", ".join(f"{n} {v}" for v, n in verdicts.items())
+    count = len(data["classes"])
+    yield f"{count} class{'es' * (count != 1)}: " + ", ".join(f"{n} {v}" for v, n in verdicts.items())
     for x in data["claims"]:
         if x["verdict"] not in ("PROVED", "VACUOUS"):
             yield f"  {x['verdict']}: {x['claim']}: {x['reason']}"
@@ -216,10 +217,10 @@ def summary(data: Mapping[str, Any]) -> Iterator[str]:
     uncovered = shares["traces"] - shares["covered"]
     part = f" ({100 * uncovered / shares['traces']:.1f} %)" if shares["traces"] else ""
     yield f"on {shares['source']}: {shares['traces']} traces, {uncovered}{part} in none of these scenarios"
-    count = sum(shares["situations"].values())
+    number = sum(shares["situations"].values())
     broken = shares["broken"]
     if broken:
-        yield f"CROSSCHECK-FAILED: {len(broken)} of {count} situations are not in exactly their own class"
+        yield f"CROSSCHECK-FAILED: {len(broken)} of {number} situations are not in exactly their own class"
         yield from (f"  {line}" for line in broken[:MOST_TOLD])
     else:
-        yield f"{count} situations with a scenario, each in exactly one class, which names its scenarios"
+        yield f"{number} situations with a scenario, each in exactly one class, which names its scenarios"
