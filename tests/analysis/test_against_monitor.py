@@ -1,4 +1,7 @@
-"""What is proved to be impossible never occurs in simulated traffic, as the monitor sees it."""
+"""What is proved to be impossible never occurs in simulated traffic, as the monitor sees it.
+
+Gaps of coverage, too: no class that is proved empty occurs, and no disturbance that ``complete`` misses.
+"""
 
 import csv
 from collections import defaultdict
@@ -7,7 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.analysis.coverage import sectors_of, some_scenario
+from roadproof.analysis.coverage_classes import Classes
+from roadproof.analysis.coverage_traffic import disturbances_in
 from roadproof.analysis.meeting import Meeting, Node, conjunctions
+from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
 from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
@@ -19,12 +26,18 @@ Occurrences = dict[str, set[tuple[int, int]]]
 
 
 @pytest.fixture(scope="module")
-def together(tmp_path_factory: pytest.TempPathFactory) -> Occurrences:
-    """By set, the pairs of scenarios that match at one start, with one lane and the same roles."""
-    folder = tmp_path_factory.mktemp("traffic")
-    recordings, out = folder / "recordings", folder / "out"
-    line = ["simulate", "--out", str(recordings), "--seconds", "40", "--lanes", "2", "--seed", "1"]
+def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with simulated traffic."""
+    folder = tmp_path_factory.mktemp("traffic") / "recordings"
+    line = ["simulate", "--out", str(folder), "--seconds", "40", "--lanes", "2", "--seed", "1"]
     assert main([*line, "--plant", "1,3-8", "--jobs", "1"]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def together(recordings: Path) -> Occurrences:
+    """By set, the pairs of scenarios that match at one start, with one lane and the same roles."""
+    out = recordings.parent / "out"
     command = ["evaluate", str(recordings), "--out", str(out), "--no-pictures", "--no-detectors"]
     assert main([*command, "--jobs", "1"]) == 0
     return occurrences(out / "matches.csv")
@@ -60,3 +73,33 @@ def test_no_pair_that_occurs_is_proved_impossible(together: Occurrences, set_nam
 
 def test_pairs_of_base_that_occur_are_among_the_five(together: Occurrences) -> None:
     assert together["base"] <= {(1, 5), (3, 6), (4, 6), (4, 8), (6, 8)}
+
+
+def test_no_class_of_gaps_that_occurs_is_proved_empty(recordings: Path) -> None:
+    asked = Asked(("base",))
+    gaps = [trace for trace in disturbances_in(asked, recordings) if trace.missed]
+    assert gaps
+    seen = {key for trace in gaps for key in trace.classes}
+    specification = asked.load()[1]
+    scenarios = some_scenario(sectors_of(specification)[0])
+    empty = [
+        part.key
+        for part in Classes(asked).parts
+        if part.key in seen and part.finest
+        if prove(specification, f"{part.without} and F danger(SV,POV) -> {scenarios}", 0.5).certificate
+    ]
+    assert empty == []
+
+
+def test_every_gap_in_traffic_is_in_a_class(recordings: Path) -> None:
+    """Of a gap of ext a single condition is to blame, which is proved, too."""
+    gaps = [trace for trace in disturbances_in(Asked(("ext",)), recordings) if trace.missed]
+    assert gaps
+    finest = Classes(Asked(("ext",))).finest
+    assert all(finest & set(trace.classes) for trace in gaps)
+
+
+def test_the_proposed_set_misses_no_disturbance_in_traffic(recordings: Path) -> None:
+    found = list(disturbances_in(Asked(("complete",)), recordings))
+    assert len(found) > 10
+    assert not any(trace.missed for trace in found)

@@ -24,7 +24,8 @@ ZERO = Fraction(0)
 class Across:
     """Metres to the left in one move each, one after the other, from ``start`` s on.
 
-    ``place``: where in its lane the vehicle starts: -1 at the right marking, 0 in the middle, 1 at the left.
+    ``place``: where in its lane the vehicle starts: -1 at the right marking, 0 in the middle, 1 at the left,
+    2 across the left one.
     """
 
     place: int
@@ -71,8 +72,8 @@ def catalogue(road: Road, vehicle: Vehicle) -> Iterator[Drive]:
 
 
 def _alongs() -> Iterator[Along]:
-    for gap in (0, 3):
-        yield Along(Fraction(gap))
+    yield Along(Fraction(0))
+    yield Along(Fraction(3), Fraction(1))
     yield Along(Fraction(85), Fraction(5))  # danger soon
     yield Along(Fraction(125), Fraction(5))  # danger after 9 s
     yield Along(Fraction(-50), Fraction(5))  # SV ahead, and faster
@@ -89,17 +90,17 @@ def _across(
     """Ways across the road that stay on it, each with where its left edge starts."""
     width = lanes[0][1] - lanes[0][0]
     lane_change, drift = width, (width - vehicle.width) / 2 - CLOSE
-    ways = [Across(place) for place in (-1, 0, 1)]
+    ways = [Across(place) for place in (-1, 0, 1, 2)]
     for side in (1, -1):
         ways.append(Across(0, (side * drift,)))
-        ways.append(Across(-side, (side * drift / 2,)))
+        ways.append(Across(-side, (side * drift * 7 / 10,)))
         ways.append(Across(0, (side * lane_change,)))
         ways.append(Across(0, (side * lane_change,), Fraction(8)))
         ways.append(Across(0, (side * lane_change, -side * lane_change)))
         ways.append(Across(0, (side * drift, -side * drift, side * lane_change)))
     for (right, left), way in product(lanes, ways):
         free = (left - right - vehicle.width) / 2 - CLOSE
-        start = (right + left + vehicle.width) / 2 + way.place * free
+        start = left + CLOSE if way.place == 2 else (right + left + vehicle.width) / 2 + way.place * free
         edges = [start, *(start + sum(way.moves[: k + 1]) for k in range(len(way.moves)))]
         if all(lanes[0][0] <= d - vehicle.width and d <= lanes[-1][1] for d in edges):
             yield start, way

@@ -83,8 +83,9 @@ class Gap:
 class Answer:
     """What came out for one class; ``part`` None is the class for which no single condition is to blame.
 
-    WITNESSED with gaps that differ in the wider set that catches them first; IMPOSSIBLE with a
-    certificate (a file's text) of ``claim``; UNKNOWN with a reason.
+    WITNESSED with gaps that differ in the wider set that catches them first, ``none_for`` being the sets
+    for which none was found; IMPOSSIBLE with a certificate (a file's text) of ``claim``; UNKNOWN with a
+    reason.
     """
 
     part: Part | None
@@ -93,6 +94,7 @@ class Answer:
     claim: str = ""
     certificate: str | None = None
     reason: str = ""
+    none_for: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

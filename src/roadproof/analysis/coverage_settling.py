@@ -121,7 +121,8 @@ class _Settling:
             best = dict(list(best.items())[:1])
         order = [*self.survey.wider, ""]
         chosen = sorted(best.values(), key=lambda found: order.index(found.first))
-        return Answer(part, Verdict.WITNESSED, tuple(self._gap(part, found) for found in chosen))
+        gaps = tuple(self._gap(part, found) for found in chosen)
+        return Answer(part, Verdict.WITNESSED, gaps, none_for=tuple(x for x in wider if x not in best))
 
     def _of(self, part: Part | None) -> list[Found]:
         """The known gaps of the class."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.coverage_files import Evidence
+from roadproof.cli.coverage_traffic import count_in_traffic
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -38,6 +39,7 @@ examples:
   roadproof coverage --set complete --needed          and which of its definitions it needs for that
   roadproof coverage --set ext --out gaps             the classes of gaps, each with a drive or a proof
   roadproof coverage --set base --jobs 2              what base misses, and which wider set catches it
+  roadproof coverage --set ext --on recordings        and how often each class occurs in traffic
 
 A gap: initSafe at the start, danger later, and no two-vehicle scenario for any lane and either role. Its
 classes say why: scenario 4 would hold but for its component behaviourPOV_4, or for one condition of it.
@@ -67,6 +69,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--needed", action="store_true", help="of a set that covers: a drive for each definition it needs"
+    )
+    parser.add_argument(
+        "--on", type=Path, metavar="DIR", help="count the classes in recordings, as roadproof simulate makes"
     )
     parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives and pictures")
@@ -108,16 +113,25 @@ def run(args: argparse.Namespace) -> int:
 
         needs = find_needs(asked)
     classes, gaps = evidence.entries(survey)
+    traffic = None if args.on is None else count_in_traffic(asked, args.on, classes)
+    broken = _broken(proved, classes, traffic)
     data = {
         "schema": SCHEMA,
         "set": args.set_name,
         "wider": list(survey.wider),
         "view": "dense",
-        "verdict": "COVERED" if proved else "GAPS" if gaps else str(Verdict.UNKNOWN),
+        "verdict": str(Verdict.CROSSCHECK_FAILED)
+        if broken
+        else "COVERED"
+        if proved
+        else "GAPS"
+        if gaps
+        else str(Verdict.UNKNOWN),
         "claims": evidence.claims(covered),
         "classes": classes,
         "gaps": gaps,
         "needs": evidence.needs(needs),
+        "traffic": traffic,
         "seconds": round(time.monotonic() - begun, 1),
     }
     if args.json:
@@ -128,7 +142,18 @@ def run(args: argparse.Namespace) -> int:
             evidence.draw(args.jobs)
     if args.json != "-":
         _print(data)
+    if broken:
+        return ExitCode.CROSSCHECK_FAILED
     return ExitCode.AS_EXPECTED if proved else ExitCode.UNEXPECTED if gaps else ExitCode.UNKNOWN
+
+
+def _broken(proved: bool, classes: list[dict[str, Any]], traffic: dict[str, Any] | None) -> bool:
+    """Whether traffic shows what is proved not to be."""
+    if traffic is None:
+        return False
+    return any(x["verdict"] == str(Verdict.CROSSCHECK_FAILED) for x in classes) or (
+        proved and bool(traffic["missed"])
+    )
 
 
 def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
@@ -221,14 +246,20 @@ def _print(data: dict[str, Any]) -> None:
     from roadproof.report.coverage import as_table, summary
 
     name = data["set"]
-    if data["verdict"] == "COVERED":
-        for claim in data["claims"]:
+    if data["classes"]:
+        print(as_table(data["classes"], data["gaps"]))
+        print(f"set {name}:", "\n".join(summary(data["classes"], data["gaps"])))
+        print(f"{len(data['gaps'])} gaps in {data['seconds']:.1f} s")
+    for claim in data["claims"]:
+        if not data["classes"]:
             print(f"proved: {claim['claim']}")
-        for need in data["needs"]:
-            found = {"WITNESSED": f"needed, by a drive on {need['road']}", "PROVED": "not needed, by proof"}
-            print(f"{need['definition']}: {found.get(need['verdict'], 'neither shown needed nor spare')}")
+    for need in data["needs"]:
+        found = {"WITNESSED": f"needed, by a drive on {need['road']}", "PROVED": "not needed, by proof"}
+        print(f"{need['definition']}: {found.get(need['verdict'], 'neither shown needed nor spare')}")
+    if data["traffic"] is not None:
+        traffic = data["traffic"]
+        print(f"of {traffic['disturbances']} disturbances in traffic {len(traffic['missed'])} are missed")
+    if data["verdict"] == "COVERED":
         print(f"set {name} misses no danger that arises from safety between two vehicles")
-        return
-    print(as_table(data["classes"], data["gaps"]))
-    print(f"set {name}:", "\n".join(summary(data["classes"], data["gaps"])))
-    print(f"{len(data['gaps'])} gaps in {data['seconds']:.1f} s")
+    if data["verdict"] == str(Verdict.CROSSCHECK_FAILED):
+        print("traffic shows what is proved not to be, which is our fault: please report it")

@@ -132,6 +132,7 @@ class Evidence:
             "claim": answer.claim,
             "certificate": self._text(f"empty-{stem}.json", answer.certificate),
             "reason": answer.reason,
+            "none_for": list(answer.none_for),
         }
 
     def _drive(self, name: str, drive: Mapping[str, Any]) -> object:

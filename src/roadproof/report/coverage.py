@@ -29,9 +29,15 @@ def _line(what: str, entry: Entry, gaps: Sequence[Entry]) -> str:
 
 
 def _evidence(entry: Entry, gaps: Sequence[Entry]) -> str:
-    if not entry["gaps"]:
-        return str(entry["reason"])
-    return "; ".join(f"drive {number} ({_catching(gaps[number - 1])})" for number in entry["gaps"])
+    said = [f"drive {number} ({_catching(gaps[number - 1])})" for number in entry["gaps"]]
+    said += [entry["reason"]] if entry["reason"] else []
+    said += [f"{entry['in_traffic']} in traffic"] if entry.get("in_traffic") else []
+    said += (
+        [f"no drive found that {' or '.join(entry['none_for'])} is first to catch"]
+        if entry["none_for"]
+        else []
+    )
+    return "; ".join(said)
 
 
 def _catching(gap: Entry) -> str:
