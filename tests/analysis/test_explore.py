@@ -108,6 +108,18 @@ def test_one_drive_serves_many_values() -> None:
     assert complaints(explored, "minDanger") == []
 
 
+def test_values_off_every_grid_are_served_by_drives_of_coarser_ones() -> None:
+    what = "v_lon(SV) <= 20 m/s and F[0, minSafe] v_lon(SV) >= 26 m/s and F[0, 2.4 s] v_lon(SV) >= 27 m/s"
+    knob = Knob("minSafe", "s", F("2.011"), F("2.413"))
+    asked = Asked(request(what), (knob,), 2)
+    assert fit_grid(request(what, minSafe=F("2.413")), read_claim(BASE, what).formula) is None
+    explored = explore(asked)
+    assert [x.verdict for x in explored.findings] == [Verdict.WITNESSED] * 2
+    assert complaints(explored, "minSafe") == []
+    tight = replace(asked, knobs=(Knob("minSafe", "s", F("1.911"), F("1.913")),), precision=F(1))
+    assert {x.verdict for x in explore(tight).findings} == {Verdict.UNKNOWN}
+
+
 def test_what_is_proved_impossible_takes_no_search() -> None:
     what = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
     explored = explore(Asked(request(what), (Knob("minDanger", "s", F(0), F(3)),), 4))
