@@ -36,6 +36,8 @@ from roadproof.witness.question import Means
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle
 
+# Danger is the same in either order, but that is not taken for granted: a near miss may have other roles.
+DANGER = "(F danger(SV,POV) or F danger(POV,SV))"
 FIRST_PROOF = 2.0
 LONG_PROOF = 30.0
 
@@ -108,12 +110,12 @@ class _Settling:
             proved = self._prove(part, FIRST_PROOF)
             if proved is not None:
                 return proved
-            reason = self._look(part, "")
+            reason = self._look(part, "", self.survey.roads, self.asked.timeout)
             if reason:
                 return self._prove(part, LONG_PROOF) or Answer(part, Verdict.UNKNOWN, reason=reason)
         for first in wider:
             if all(found.first != first for found in self._of(part)):
-                self._look(part, first)
+                self._look(part, first, self.survey.roads[:1], self.asked.timeout / 2)
         best: dict[str, Found] = {}
         for found in sorted(self._of(part), key=lambda found: found.effort):
             best.setdefault(found.first, found)
@@ -142,7 +144,7 @@ class _Settling:
     def _are_no_gaps(self, part: Part) -> list[str]:
         """That near misses of ``part`` are no gaps, a claim for each road sector."""
         return [
-            f"({counterpart.without} and F danger(SV,POV) -> {some_scenario(sector)})"
+            f"({counterpart.without} and {DANGER} -> {some_scenario(sector)})"
             for counterpart, sector in self._counterparts(part)
         ]
 
@@ -164,10 +166,10 @@ class _Settling:
                 if self.likes[number] == self.likes[part.scenario]:
                     yield parts_of(self.specification, number)[place], sector
 
-    def _look(self, part: Part | None, first: str) -> str:
-        """Look for a gap on the roads in turn; why none was found, or empty."""
+    def _look(self, part: Part | None, first: str, roads: Sequence[str], seconds: float) -> str:
+        """Look for a gap on the roads in turn, each for so long; why none was found, or empty."""
         reasons = []
-        for name in self.survey.roads:
+        for name in roads:
             numbers = self.trials.numbers_on(load_road(name))
             formula = self._formula(part, numbers, first)
             request = Request(
@@ -178,7 +180,7 @@ class _Settling:
                 self.values,
                 name,
                 horizon=self.asked.horizon,
-                means=Means("smooth", time_limit=self.asked.timeout, explain=False),
+                means=Means("smooth", time_limit=seconds, explain=False),
             )
             outcome = ask(request)
             if outcome.drives:
@@ -186,7 +188,7 @@ class _Settling:
                 self.known.append(Found(file, self.trials.first(file), self.classes.of(file)))
                 return ""
             reasons.append(f"{outcome.reason} on {name}")
-        return f"{'; '.join(reasons)}; {self.asked.timeout:g} s each, {self.asked.horizon} s of driving"
+        return f"{'; '.join(reasons)}; {seconds:g} s each, {self.asked.horizon} s of driving"
 
     def _formula(self, part: Part | None, numbers: Sequence[int], first: str = "") -> str:
         """What a gap of the class satisfies; with ``first`` one that this set is the first to catch."""
@@ -228,7 +230,8 @@ class _Settling:
     def _elsewhere(self, part: Part | None, shown: Shown) -> Iterator[tuple[str, dict[str, Any]]]:
         """The same motions on other roads, where a counterpart is missed as nearly."""
         counterparts = [None] if part is None else [p for p, _ in self._counterparts(part)][::-1]
-        for road in self.survey.elsewhere:
+        home = shown.data["road"]["name"]
+        for road in (name for name in self.survey.elsewhere if name != home):
             for counterpart in counterparts:
                 formula = self._formula(counterpart, self.numbers)
                 placed = show_elsewhere(shown, formula, self.library, (road,))

@@ -65,7 +65,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="where to look for drives; may be repeated (default: main-2, then main-3)",
     )
     parser.add_argument(
-        "--timeout", type=float, default=10.0, metavar="S", help="seconds for one search (default: 10)"
+        "--timeout",
+        type=float,
+        default=10.0,
+        metavar="S",
+        help="seconds for one search, half of it for one more that another set catches (default: 10)",
     )
     parser.add_argument(
         "--needed", action="store_true", help="of a set that covers: a drive for each definition it needs"
@@ -175,7 +179,7 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
     roads = args.roads or ["main-2", "main-3"]
     for road in roads:
         load_road(road)
-    elsewhere = [road for road in ("merge", "depart") if road not in roads]
+    elsewhere = ("main-3", "merge", "depart")
     if args.wider is not None:
         library.select(args.wider)
         return asked, survey_of(asked, args.wider, roads, elsewhere)
