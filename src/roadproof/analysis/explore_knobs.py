@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from roadproof.analysis.explore_text import always, compared, expression
 from roadproof.logic.syntax import Expression
-from roadproof.spec.elaborate import UNITS
+from roadproof.spec.quantity import UNITS
 from roadproof.witness.ask import Request
 
 # A value for each knob, in order, in SI units.

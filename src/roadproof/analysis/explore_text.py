@@ -8,7 +8,7 @@ from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text
 from roadproof.logic.syntax import BinaryOperator, Expression
 from roadproof.logic.terms import Dimension
-from roadproof.spec.elaborate import UNITS
+from roadproof.spec.quantity import UNITS
 
 _UNIT_OF = {dimension: unit for unit, (factor, dimension) in UNITS.items() if factor == 1}
 

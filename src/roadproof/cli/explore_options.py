@@ -47,8 +47,8 @@ def _parameter(text: str, name: str, low: str, high: str, query: "Query", librar
     from roadproof.analysis.explore_knobs import Knob
     from roadproof.analysis.explore_text import unit_text
     from roadproof.logic.rewrite import parameters_of
-    from roadproof.spec.elaborate import UNITS
     from roadproof.spec.library import unknown
+    from roadproof.spec.quantity import UNITS
 
     if name not in library.parameters:
         hint = "; a limit of a vehicle is written as POV.a_lon.min=-6:-1"

@@ -8,8 +8,8 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.spec.elaborate import UNITS
 from roadproof.spec.library import Library, unknown
+from roadproof.spec.quantity import UNITS
 from roadproof.world.road import Lanelet, Road
 
 

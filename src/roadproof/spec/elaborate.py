@@ -20,19 +20,10 @@ from roadproof.logic.rewrite import vehicles_of
 from roadproof.logic.syntax import Binding, Bounds, Definition, Expression
 from roadproof.logic.terms import Dimension
 from roadproof.spec.library import BUILT_IN, Specification, source_of, unknown
+from roadproof.spec.quantity import SECONDS, UNITS, Quantity, product_dimension, same_dimension, unit_name
 
 DEEPEST_FORMULA = 100
-UNITS: Mapping[str, tuple[Fraction, Dimension]] = {
-    "s": (Fraction(1), (0, 1)),
-    "ms": (Fraction(1, 1000), (0, 1)),
-    "m": (Fraction(1), (1, 0)),
-    "m/s": (Fraction(1), (1, -1)),
-    "km/h": (Fraction(5, 18), (1, -1)),
-    "m/s^2": (Fraction(1), (1, -2)),
-    "unitless": (Fraction(1), (0, 0)),
-}
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")
-SECONDS: Dimension = (0, 1)
 _VEHICLE = re.compile(r"SV|POV[0-9]?")
 _LANE = re.compile(r"L[0-9]?")
 
@@ -48,14 +39,6 @@ class Ref:
 @dataclass(frozen=True)
 class Vehicles:
     names: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A term with its dimension; ``dimension`` None fits every dimension (the literal 0)."""
-
-    term: t.Term
-    dimension: Dimension | None
 
 
 Value: TypeAlias = Ref | Vehicles | Quantity
@@ -407,19 +390,19 @@ class _Elaborator:
             return join(self.formula(expression.left, scope), self.formula(expression.right, scope))
         left, right = self.term(expression.left, scope), self.term(expression.right, scope)
         if op in ("<", "<=", ">", ">=", "=", "!="):
-            _same_dimension(left, right, "compared", at)
+            same_dimension(left, right, "compared", at)
             return _comparison(op, left.term, right.term)
         for side in (left, right):
             if isinstance(side.term, t.Inverse):
                 raise TextError("inverse(…) may only stand alone on one side of a comparison", at)
         if op == "+" or op == "-":
-            dimension = _same_dimension(left, right, "added", at)
+            dimension = same_dimension(left, right, "added", at)
             join_terms = t.Sum((left.term, right.term)) if op == "+" else t.subtract(left.term, right.term)
             return Quantity(join_terms, dimension)
         if op == "*":
-            return Quantity(t.Product((left.term, right.term)), _times(left, right, 1))
+            return Quantity(t.Product((left.term, right.term)), product_dimension(left, right, 1))
         if op == "/":
-            return Quantity(self._divide(left.term, right.term, at), _times(left, right, -1))
+            return Quantity(self._divide(left.term, right.term, at), product_dimension(left, right, -1))
         exponent = t.constant_value(right.term)
         assert exponent is not None, "the grammar admits only a number as exponent"
         power = int(exponent)
@@ -547,7 +530,7 @@ class _Elaborator:
             inner = self.term(first, scope)
             if name == "abs":
                 return Quantity(t.Maximum((inner.term, t.negate(inner.term))), inner.dimension)
-            return Quantity(t.Inverse(inner.term), _times(Quantity(inner.term, (0, 0)), inner, -1))
+            return Quantity(t.Inverse(inner.term), product_dimension(Quantity(inner.term, (0, 0)), inner, -1))
         vehicle_name = self.reference(first, "vehicle", scope).name
         for size, dimension in t.SIZE_DIMENSIONS.items():
             if name == size:
@@ -562,7 +545,7 @@ class _Elaborator:
             raise TextError(f"'{name}' needs at least one argument", call.at)
         quantities = [self.term(a, scope) for a in call.arguments]
         for other in quantities[1:]:
-            _same_dimension(quantities[0], other, "compared", call.at)
+            same_dimension(quantities[0], other, "compared", call.at)
         if any(isinstance(q.term, t.Inverse) for q in quantities):
             raise TextError("inverse(…) may only stand alone on one side of a comparison", call.at)
         dimension = next((q.dimension for q in quantities if q.dimension is not None), None)
@@ -591,38 +574,6 @@ def _names(bound: Scope) -> tuple[str, ...]:
             case Quantity():
                 names.append("…")
     return tuple(names)
-
-
-def _same_dimension(left: Quantity, right: Quantity, what: str, at: Position) -> Dimension | None:
-    if left.dimension is None or right.dimension is None or left.dimension == right.dimension:
-        return right.dimension if left.dimension is None else left.dimension
-    plain = t.constant_value(right.term) is not None or t.constant_value(left.term) is not None
-    missing = plain and (0, 0) in (left.dimension, right.dimension)
-    other = left.dimension if right.dimension == (0, 0) else right.dimension
-    raise TextError(
-        f"{unit_name(left.dimension)} and {unit_name(right.dimension)} cannot be {what}",
-        at,
-        f"The number has no unit: write it with {unit_name(other)}." if missing else "",
-    )
-
-
-def unit_name(dimension: Dimension | None) -> str:
-    """A dimension as a unit: (1, -2) is m/s^2."""
-    if dimension is None or dimension == (0, 0):
-        return "no unit"
-    for unit, (factor, known) in UNITS.items():
-        if known == dimension and factor == 1:
-            return unit
-    return f"m^{dimension[0]}*s^{dimension[1]}"
-
-
-def _times(left: Quantity, right: Quantity, sign: int) -> Dimension | None:
-    if left.dimension is None or right.dimension is None:
-        return None
-    return (
-        left.dimension[0] + sign * right.dimension[0],
-        left.dimension[1] + sign * right.dimension[1],
-    )
 
 
 def _comparison(op: str, left: t.Term, right: t.Term) -> Formula:
