@@ -42,7 +42,7 @@ def without(name: str) -> Verdict:
     body = "\n".join(text(COMPLETE.definitions[n]) for n in kept)
     library = build_library([Source("trial", f"set trial extends ext {{\n{body}\n}}")], LIBRARY)
     specification = library.select("trial")
-    return prove(specification, claims_of(specification)[0], 10.0).verdict
+    return prove(specification, claims_of(specification)[0], 3.0).verdict
 
 
 def caught_without(name: str, drive: Drive, road: Road) -> bool:

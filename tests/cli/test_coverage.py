@@ -1,0 +1,86 @@
+"""``roadproof coverage``: evidence in files, runs that go on, pictures, and mistakes."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from roadproof.analysis import coverage_classes, coverage_settling
+from roadproof.analysis.coverage_classes import Found, Group, Survey, groups_of
+from roadproof.cli.main import main
+from roadproof.verdict import ExitCode
+
+WANTED = {"behaviourPOV_4": 0, "initialCondition_8": 1}
+"""Components that are asked for here, each with how many of its conditions: the rest takes minutes."""
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Few classes and a part of the catalogue; what comes is the roads that were looked up in it."""
+    roads: list[str] = []
+    every, look_up = groups_of, coverage_settling.find_in_catalogue
+
+    def some_groups(survey: Survey) -> list[Group]:
+        found = [x for x in every(survey) if x.name in WANTED]
+        return [Group(x.component, x.conditions[: WANTED[x.name]]) for x in found]
+
+    def some_drives(survey: Survey, road: str, start: int, step: int) -> list[Found]:
+        roads.append(road)
+        return look_up(survey, road, 0, 97) if start == 0 and road == "main-2" else []
+
+    monkeypatch.setattr(coverage_classes, "groups_of", some_groups)
+    monkeypatch.setattr(coverage_settling, "find_in_catalogue", some_drives)
+    return roads
+
+
+def run(out: Path, *more: str) -> int:
+    command = ["coverage", "--set", "ext", "--jobs", "1", "--timeout", "0.2", "--out", str(out), *more]
+    return main(command)
+
+
+def test_evidence_in_files_and_going_on(
+    few: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert run(out, "--road", "main-2") == ExitCode.UNEXPECTED
+    printed = capsys.readouterr().out
+    assert "scenario 4, behaviourPOV_4: POV ahead is slower" in printed
+    assert "complete: cutIn" in printed
+    data = json.loads((out / "index.json").read_text())
+    assert (data["schema"], data["verdict"], data["wider"]) == ("roadproof/coverage/1", "GAPS", ["complete"])
+    by_key = {(x["component"], x["condition"]): x for x in data["classes"]}
+    assert by_key["initialCondition_8", "sameLane(SV, POV, L)"]["verdict"] == "IMPOSSIBLE"
+    first = by_key["behaviourPOV_4", ""]
+    assert first["verdict"] == "WITNESSED"
+    assert all(gap["drive"].endswith(".json") for gap in data["gaps"])
+    assert data["gaps"][first["gaps"][0] - 1]["elsewhere"].keys() >= {"main-3", "merge", "depart"}
+    assert len(list(out.glob("gap-*.png"))) == len(data["gaps"])
+    assert main(["check", str(out), "--jobs", "1"]) == 0
+    few.clear()
+    assert run(out, "--road", "main-2", "--no-pictures") == ExitCode.UNEXPECTED
+    again = json.loads((out / "index.json").read_text())
+    assert [x["certificate"] for x in again["classes"]] == [x["certificate"] for x in data["classes"]]
+    assert "behaviourPOV_4" in (out / "answers.jsonl").read_text()
+
+
+def test_a_folder_with_other_answers_is_left_alone(
+    few: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "answers.jsonl").write_text('{"question": "another"}\n')
+    assert run(tmp_path) == ExitCode.USAGE
+    assert "holds the answers to another question" in capsys.readouterr().err
+    assert [x.name for x in tmp_path.iterdir()] == ["answers.jsonl"]
+
+
+@pytest.mark.parametrize(
+    ("more", "code", "message"),
+    [
+        (["--wider", "base"], ExitCode.USAGE, "--wider base does not extend --set ext"),
+        (["--wider", "none"], ExitCode.BAD_INPUT, "there is no spec set 'none'"),
+        (["--timeout", "0"], ExitCode.USAGE, "--timeout 0.0 must be greater than 0"),
+        (["--road", "moon"], ExitCode.BAD_INPUT, "there is no road 'moon'"),
+    ],
+)
+def test_mistakes(more: list[str], code: int, message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["coverage", "--set", "ext", *more]) == code
+    assert message in capsys.readouterr().err
