@@ -5,7 +5,7 @@ from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from itertools import product
+from itertools import combinations, product
 from pathlib import Path
 
 import pytest
@@ -39,11 +39,9 @@ OVERLAPPING = {(1, 5), (3, 6), (4, 8), (4, 6, 8), (6, 8)}
 
 @cache
 def outlines(numbers: tuple[int, ...]) -> list[Outline]:
-    """The outline of each group of scenarios of base, and of their road sectors where there are several."""
+    """The outline of each group of scenarios of base; they are of one road sector."""
     plan = plan_of(BASE, numbers)
-    axes = [what_axis(plan, group, BASE) for group in plan.groups]
-    axes += [where_axis(plan, ("SV", "POV"))] if plan.has_places else []
-    return [outline(axis, BASE, 1.0) for axis in axes]
+    return [outline(what_axis(plan, group, BASE), BASE, 1.0) for group in plan.groups]
 
 
 @cache
@@ -51,13 +49,11 @@ def classes_of(numbers: tuple[int, ...]) -> Classes:
     """Classes whose cells deny every scenario that can hold beside theirs, with nothing left out."""
     plan = plan_of(BASE, numbers)
     axes = [what_axis(plan, group, BASE) for group in plan.groups]
-    axes += [where_axis(plan, ("SV", "POV"))] if plan.has_places else []
     cells = [
         tuple(Cell(holds, holds, tuple(axis.rows[n] for n in others)) for holds, others in made.cells)
         for axis, made in zip(axes, outlines(numbers), strict=True)
     ]
-    count = len(plan.groups)
-    return Classes(plan, tuple(cells[:count]), cells[-1] if plan.has_places else ())
+    return Classes(plan, tuple(cells), ())
 
 
 @pytest.fixture(scope="module")
@@ -247,8 +243,23 @@ def test_a_class_that_is_left_out_is_missed() -> None:
 # --- what happens, and where --------------------------------------------------------------------
 
 
-def test_classes_of_all_scenarios_are_products() -> None:
-    classes = classes_of(tuple(range(1, 25)))
+def test_classes_of_all_scenarios_are_products(main_road: Classes) -> None:
+    """With the cells of the main road, and all choices of road sectors; no proof is needed for that."""
+    plan = plan_of(BASE, tuple(range(1, 25)))
+    axes = [what_axis(plan, group, BASE) for group in plan.groups]
+    what = tuple(
+        tuple(
+            Cell(c.holds, c.holds, tuple(x for n, x in axis.rows.items() if n not in c.holds)) for c in cells
+        )
+        for axis, cells in zip(axes, main_road.what, strict=True)
+    )
+    sectors = where_axis(plan, ("SV", "POV")).rows
+    where = tuple(
+        Cell(holds, holds, tuple(sectors[n] for n in sectors if n not in holds))
+        for count in (1, 2, 3)
+        for holds in combinations(sectors, count)
+    )
+    classes = Classes(plan, what, where)
     pairs, triples = (classes.of(group) for group in classes.plan.groups)
     assert (len(pairs), len(triples)) == (12 * 7, 7)
     assert len({one.scenarios for one in pairs}) == len(pairs)
@@ -264,6 +275,27 @@ def test_classes_of_all_scenarios_are_products() -> None:
         cells = f"{what}({vehicles}, L) and where_{classes.place(one.where)}({vehicles})"
         same = (read_claim(specification, text).formula for text in (one.formula, cells))
         assert len({without_names(formula) for formula in same}) == 1
+
+
+def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
+    plan = plan_of(BASE, (4, 12, 20))
+    (group,) = plan.groups
+    happens = outline(what_axis(plan, group, BASE), BASE, 1.0)
+    axis = where_axis(plan, group.vehicles)
+    places = tuple(refine(axis, BASE, *cell) for cell in outline(axis, BASE, 1.0).cells)
+    classes = Classes(plan, ((Cell((4,), (4,), ()),),), places)
+    assert [holds for holds, _ in happens.cells] == [(4,)]
+    assert len(classes.all()) == len(places) == 7
+    text = write_classes(classes, BASE)
+    assert len(claims_of(classes, {})) == 21 + 3
+    assert claims_that_fail(text, classes) == {}
+    wrong = text.replace(
+        ":= roadSector_4(SV, POV) and not roadSector_12(SV, POV)", ":= roadSector_4(SV, POV)"
+    )
+    assert wrong != text
+    assert claims_that_fail(wrong, classes) == {
+        "exclusive-where_main-where_main_merge-2-vehicles": Verdict.REFUTED
+    }
 
 
 def test_zones_may_change_under_vehicles() -> None:
