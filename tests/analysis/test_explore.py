@@ -326,6 +326,12 @@ def test_the_command_writes_evidence_that_is_accepted(
         (("F v_lon(SV) > 20 m/s", "--vary", "minSafe=0:3"), 2, "does not depend on minSafe"),
         (("4", "--vary", "POV.a_lon.min=-6:1"), 2, "leaves out 0"),
         (("4", "--vary", "POV.v_lon.min=-6:1"), 2, "never reverses"),
+        (
+            ("4", "--vary", "SV.a_lon.min=-6:0", "--vary", "SV.a_lon.max=0:3"),
+            2,
+            "at SV.a_lon.min=0, SV.a_lon",
+        ),
+        (("4", "--vary", "SV.a_lon.min=-6:-1", "--vary", "vehicle.a_lon.min=-6:-1"), 2, "both are a_lon.min"),
         (("4", "--vary", "POV2.a_lon.min=-6:-1"), 2, "the formula speaks of POV, SV"),
         (("4", "--vary", "POV.a.min=-6:-1"), 2, "VEHICLE.LIMIT.min"),
         (("4", "--vary", "minSafe=0:3", "--param", "minSafe=1"), 2, "leave one out"),

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import product
 from typing import TYPE_CHECKING
 
 from roadproof.cli.options import read_value
@@ -25,6 +26,7 @@ def read_knobs(texts: Sequence[str], request: "Request", query: "Query", library
     knobs = [_knob(text, request, query, library) for text in texts]
     if len({knob.name for knob in knobs}) < len(knobs):
         raise UsageError(f"--vary {knobs[0].name} is given twice: vary two different things")
+    _check_limits(knobs, request, query)
     return knobs
 
 
@@ -71,8 +73,7 @@ def _parameter(text: str, name: str, low: str, high: str, query: "Query", librar
 
 def _limit(text: str, name: str, low: str, high: str, request: "Request", query: "Query") -> "Knob":
     from roadproof.analysis.explore_knobs import Knob
-    from roadproof.world.models import load_vehicle
-    from roadproof.world.vehicle import LIMITS, with_limits
+    from roadproof.world.vehicle import LIMITS
 
     read = _LIMIT.fullmatch(name)
     if read is None or read[2] not in LIMITS:
@@ -87,15 +88,31 @@ def _limit(text: str, name: str, low: str, high: str, request: "Request", query:
     unit, limit = LIMITS[read[2]], f"{read[2]}.{read[3]}"
     ends = [read_value("--vary", name, end, unit) for end in (low, high)]
     vehicles = query.vehicles if read[1] == EVERY_VEHICLE else (read[1],)
-    usual = request.vehicles.get("", "car")
-    for vehicle in vehicles:
-        model = load_vehicle(request.vehicles.get(vehicle, usual))
-        for end in ends:
-            try:
-                with_limits(model, {limit: end})
-            except UsageError as error:
-                raise UsageError(f"--vary {text}: {vehicle} ({model.name}): {error}") from None
     return Knob(name, unit, ends[0], ends[1], tuple(vehicles), limit)
+
+
+def _check_limits(knobs: "Sequence[Knob]", request: "Request", query: "Query") -> None:
+    """Raise ``UsageError`` where limits at some point make no vehicle; the corners are the worst of them."""
+    from roadproof.world.models import load_vehicle
+    from roadproof.world.vehicle import with_limits
+
+    usual = request.vehicles.get("", "car")
+    for vehicle in query.vehicles:
+        mine = [knob for knob in knobs if vehicle in knob.vehicles]
+        if not mine:
+            continue
+        if len({knob.limit for knob in mine}) < len(mine):
+            raise UsageError(
+                f"--vary {mine[0].name} and {mine[1].name}: both are {mine[0].limit} of {vehicle}"
+            )
+        model = load_vehicle(request.vehicles.get(vehicle, usual))
+        for corner in product(*((knob.low, knob.high) for knob in mine)):
+            limits = {knob.limit: value for knob, value in zip(mine, corner, strict=True)}
+            try:
+                with_limits(model, limits)
+            except UsageError as error:
+                at = ", ".join(f"{knob.name}={float(v):g}" for knob, v in zip(mine, corner, strict=True))
+                raise UsageError(f"--vary: at {at}, {vehicle} ({model.name}): {error}") from None
 
 
 def read_steps(steps: int | None, knobs: int) -> int:
