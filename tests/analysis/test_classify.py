@@ -188,14 +188,14 @@ def test_another_run_leaves_nothing_of_the_first(tmp_path: Path) -> None:
 
 
 def test_a_doubt_is_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
-    """A class without a drive stays, and a claim that was not proved is not forgotten."""
+    """A class without a drive stays, and no verdict is without evidence."""
     line = ["classify", "--among", "5", "--no-shares", "--timeout", "0.05", "--jobs", "1", "--json", "-"]
     assert main(line) == 20
     data = json.loads(capsys.readouterr().out)
     ((one,), (claim,)) = data["classes"], data["claims"]
     assert (one["name"], one["verdict"], one["drive"]) == ("class_5", "UNKNOWN", None)
     assert "0.05 s of search" in one["reason"]
-    assert (claim["verdict"], claim["certificate"]) == ("UNKNOWN", None)
+    assert (claim["verdict"] == "PROVED") == (claim["certificate"] is not None)
 
 
 def test_classes_that_recordings_contradict(
