@@ -442,18 +442,27 @@ def test_ranges() -> None:
     assert ranges([1, 2, 3, 5]) == "1-3, 5"
 
 
+@pytest.mark.parametrize(
+    "more",
+    [
+        "def danger(a, b: vehicle) := true",
+        "when lateral_sign = rss { def danger(a, b: vehicle) := true }",
+        "option new = one | two\nwhen new = one { def danger(a, b: vehicle) := true }",
+        "set base { def danger(a, b: vehicle) := true }",
+        "param minDanger = 0 s where minDanger >= 0",
+    ],
+)
 def test_a_specification_beside_evidence_may_only_add(
-    written: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    written: Path, tmp_path: Path, more: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "index.json").write_text(json.dumps({"specs": ["classes.spec"]}))
-    drive = (written / "drives/class_4.json").read_text()
-    (tmp_path / "drive.json").write_text(drive)
+    (tmp_path / "drive.json").write_text((written / "drives/class_4.json").read_text())
     text = (written / "classes.spec").read_text()
     (tmp_path / "classes.spec").write_text(text)
     assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
-    (tmp_path / "classes.spec").write_text(f"{text}\ndef danger(a, b: vehicle) := true\n")
+    (tmp_path / "classes.spec").write_text(f"{text}\n{more}\n")
     assert main(["check", str(tmp_path), "--jobs", "1"]) == 3
-    assert "changes 'danger' of the library" in capsys.readouterr().err
+    assert "of the library, so what the evidence says is not what it seems" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -139,15 +139,19 @@ def _check_adds_only(names: Sequence[Path], given: Sequence[Path]) -> None:
     from roadproof.spec.library import load_library
 
     below, above = load_library(given), load_library((*given, *names))
-    for kind in ("parameters", "options", "definitions", "sets", "variants"):
-        after: Mapping[object, object] = getattr(above, kind)
-        for name, meaning in getattr(below, kind).items():
-            if after.get(name) != meaning:
-                listed = ", ".join(map(str, names))
-                raise InputError(
-                    f"{listed}: changes '{name}' of the library, so what the evidence says is not what it "
-                    "seems; name the file with --spec if that is meant"
-                )
+    changed: list[str] = []
+    for kind in ("parameters", "options", "definitions", "sets"):
+        after: Mapping[str, object] = getattr(above, kind)
+        changed += [name for name, meaning in getattr(below, kind).items() if after.get(name) != meaning]
+    # One more variant replaces definitions under a value that may be the default one.
+    for choice, definitions in above.variants.items():
+        if definitions != below.variants.get(choice):
+            changed += [definition.name for definition in definitions]
+    if changed:
+        raise InputError(
+            f"{', '.join(map(str, names))}: changes '{changed[0]}' of the library, so what the evidence says "
+            "is not what it seems; name the file with --spec if that is meant"
+        )
 
 
 def _around(path: Path, beside: Mapping[Path, tuple[Path, ...]]) -> tuple[Path, ...]:
