@@ -36,8 +36,6 @@ from roadproof.witness.question import Means
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle
 
-# Danger is the same in either order, but that is not taken for granted: a near miss may have other roles.
-DANGER = "(F danger(SV,POV) or F danger(POV,SV))"
 FIRST_PROOF = 2.0
 LONG_PROOF = 30.0
 
@@ -131,21 +129,33 @@ class _Settling:
         return [found for found in self.known if self.classes.has(part, found.classes)]
 
     def _prove(self, part: Part | None, seconds: float) -> Answer | None:
-        """That the class of ``part`` is empty, in every road sector."""
-        claims = self._all_are_near() if part is None else self._are_no_gaps(part)
-        if prove(self.specification, claims[0], seconds).certificate is None:
-            return None
-        claim = " and ".join(claims)
-        result = prove(self.specification, claim, max(LONG_PROOF, seconds) * len(claims), "gap")
-        if result.verdict not in (Verdict.PROVED, Verdict.VACUOUS) or result.certificate is None:
-            return None
-        return Answer(part, Verdict.IMPOSSIBLE, (), claim, to_json(result.certificate))
+        """That the class of ``part`` is empty, in every road sector; ``seconds`` for a look at the first."""
+        attempts = [self._all_are_near()] if part is None else [self._is_redundant(part), self._no_gaps(part)]
+        for claims in attempts:
+            if prove(self.specification, claims[0], seconds).certificate is None:
+                continue
+            claim = " and ".join(claims)
+            result = prove(self.specification, claim, max(LONG_PROOF, seconds) * len(self.sectors), "gap")
+            if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
+                return Answer(part, Verdict.IMPOSSIBLE, (), claim, to_json(result.certificate))
+        return None
 
-    def _are_no_gaps(self, part: Part) -> list[str]:
-        """That near misses of ``part`` are no gaps, a claim for each road sector."""
+    def _is_redundant(self, part: Part) -> list[str]:
+        """That the scenario holds without the part only where it holds, a claim for each road sector."""
         return [
-            f"({counterpart.without} and {DANGER} -> {some_scenario(sector)})"
+            f"({counterpart.without} -> scenario_{counterpart.scenario}(SV,POV,L))"
+            for counterpart, _ in self._counterparts(part)
+        ]
+
+    def _no_gaps(self, part: Part) -> list[str]:
+        """That near misses of ``part`` are no gaps, in either role: claims for each road sector.
+
+        Danger is the same in either order, but that is not taken for granted.
+        """
+        return [
+            f"({counterpart.without} and F danger({pair}) -> {some_scenario(sector)})"
             for counterpart, sector in self._counterparts(part)
+            for pair in ("SV,POV", "POV,SV")
         ]
 
     def _all_are_near(self) -> list[str]:
