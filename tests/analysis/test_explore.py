@@ -100,6 +100,16 @@ def test_a_boundary_in_a_limit_is_where_reasoning_puts_it() -> None:
     assert not judge_file(faster, LIBRARY).accepted
 
 
+def test_a_map_is_what_reasoning_makes_it() -> None:
+    gain = Knob("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
+    explored = explore(Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)), gain), 3))
+    for finding in explored.findings:
+        time, limit = finding.at
+        assert finding.verdict is (Verdict.WITNESSED if time * limit >= 6 else Verdict.NONE_WITHIN)
+    assert explored.boundaries == ()
+    assert complaints(explored, "minSafe") == []
+
+
 def test_one_drive_serves_many_values() -> None:
     what = "scenario_4(SV,POV,L)"
     explored = explore(Asked(request(what), (Knob("minDanger", "s", F(0), F(3)),), 11))

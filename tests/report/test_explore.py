@@ -58,6 +58,13 @@ def test_a_gap_inside_is_said() -> None:
     assert "a gap beside 2 s; at 1 s UNKNOWN [1]" in text
 
 
+def test_of_many_reasons_only_some_are_printed() -> None:
+    values = [finding(str(k), "UNKNOWN", f"reason {k}") for k in range(5)]
+    text = as_text(exploration(values=values, boundaries=[]))
+    assert "at 5 of 5 values [1] [2] and 3 more" in text
+    assert "reason 2" not in text
+
+
 def test_a_map_has_the_first_knob_across() -> None:
     vary = [{"name": name, "unit": "s", "low": "0", "high": "1"} for name in ("a", "b")]
     signs = {"0 0": "WITNESSED", "0 1": "UNKNOWN", "1 0": "IMPOSSIBLE", "1 1": "NONE-WITHIN"}

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 from roadproof.report.figures import as_bytes, make_figure
 from roadproof.report.overlap import COLOURS, SIGNS
 
+MOST_NOTES = 2  # for one verdict on a map or strip; JSON has them all
 # Reasons, each with its number.
 Notes: TypeAlias = dict[str, int]
 _MEANING = {
@@ -73,7 +74,9 @@ def _legend(values: Sequence[Mapping[str, Any]], notes: Notes) -> list[str]:
     for verdict, sign in SIGNS.items():
         here = [x for x in values if x["verdict"] == verdict]
         if here:
-            why = dict.fromkeys(_note(x, notes).partition(" ")[2] for x in here if x["reason"])
+            unlike = list({x["reason"]: x for x in here if x["reason"]}.values())
+            why = [_note(x, notes).partition(" ")[2] for x in unlike[:MOST_NOTES]]
+            why += [f"and {len(unlike) - MOST_NOTES} more"] if len(unlike) > MOST_NOTES else []
             line = f"  {sign} {verdict}: {_MEANING[verdict]}, at {len(here)} of {len(values)} values"
             lines.append(" ".join([line, *why]))
     return lines
