@@ -5,7 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
 
+from judge.cases import drives
 from roadproof.analysis import redundancy
 from roadproof.analysis.meeting import Node
 from roadproof.analysis.overlap import Asked
@@ -13,13 +15,17 @@ from roadproof.analysis.redundancy import Change, Finding, _Examining, changes_o
 from roadproof.cli.main import main
 from roadproof.evidence.certificate import read_certificate, refusal
 from roadproof.evidence.witness import from_json, judge_file
+from roadproof.judge.exact import judge
 from roadproof.logic.formula import Formula
 from roadproof.solve.smt import ask
+from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Outcome, Request
 from roadproof.witness.ask import ask as ask_for_drive
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_road
 
 BASE = bundled_library().select("base")
 
@@ -138,3 +144,25 @@ def test_what_was_looked_for_in_vain_is_not_looked_for_again(monkeypatch: pytest
     assert finding.verdict is Verdict.REFUTED
     assert finding.trace is not None
     assert "another road" in finding.reason
+
+
+def test_what_motion_makes_redundant_is_proved_for_motion() -> None:
+    """SV need not be asked to keep its lane until it or POV1 has left it: one of them leaves first."""
+    part = "laneKeep(SV, L) U not sameLane(SV, POV1, L)"
+    (change,) = (x for x in changes("scenario_2(SV,POV1,POV2,L)") if x.part == part and x.value)
+    finding = _Examining(Asked(proof_seconds=10.0), Node(2, "base"))._redundant_in_motion(change)
+    assert finding is not None
+    assert finding.verdict is Verdict.PROVED
+    assert finding.assuming.count(" U not atLane(") == 3
+    assert finding.claim.count(finding.assuming) == 2
+    other = next(x for x in changes("scenario_8(SV,POV,L)") if x.part == "atLane(POV, L)" and not x.value)
+    assert _Examining(Asked(), Node(8, "base"))._redundant_in_motion(other) is None
+
+
+@settings(deadline=None, derandomize=True)
+@given(drives)
+def test_every_drive_has_a_first_moment_outside_its_lane(drive: Drive) -> None:
+    road = load_road("main-2")
+    text = "given A: vehicle: (atLane(A,L) U not atLane(A,L)) or G atLane(A,L)"
+    for lane in road.lanes:
+        assert judge(bind(read_claim(BASE, text).formula, road, {"L": lane}, {}), drive).holds

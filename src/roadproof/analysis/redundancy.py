@@ -50,7 +50,8 @@ class Change:
 class Finding:
     """PROVED: the change may be made. REFUTED: it matters, as a drive shows, or else a trace. UNKNOWN.
 
-    ``trace`` is a judged countermodel over points in time, where no drive was found.
+    ``trace`` is a judged countermodel over points in time, where no drive was found. ``assuming``: a
+    condition on the trace under which the change may be made, part of ``claim``; empty where it always may.
     """
 
     node: Node
@@ -61,6 +62,7 @@ class Finding:
     drive: Mapping[str, Any] | None = None
     trace: Mapping[str, Any] | None = None
     reason: str = ""
+    assuming: str = ""
 
 
 def changes_of(formula: Formula, whole: bool = False) -> Iterator[Change]:
@@ -198,6 +200,9 @@ class _Examining:
         result = prove(self.specification, claim, self.asked.proof_seconds, f"redundancy-{self.node}")
         if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
             return Finding(self.node, change, Verdict.PROVED, claim, to_json(result.certificate))
+        moving = self._redundant_in_motion(change)
+        if moving is not None:
+            return moving
         vain = not _in_sector(change) and _key(self.specification, change.changed) in self.learned.vain
         found = None if vain else self._ask(apart)
         if found is not None:
@@ -212,6 +217,22 @@ class _Examining:
             return Finding(self.node, change, Verdict.REFUTED, claim, trace=trace, reason=within)
         reason = f"{within}, and no proof within {self.asked.proof_seconds:g} s: {result.reason}"
         return Finding(self.node, change, Verdict.UNKNOWN, claim, reason=reason)
+
+    def _redundant_in_motion(self, change: Change) -> Finding | None:
+        """A proof for traces on which a vehicle that leaves L has a first moment outside it.
+
+        Every drive is one: it does not jump, and a lane is an open set, since touching is not occupying.
+        """
+        vehicles = vehicles_of(self.specification, self.node)
+        assuming = " and ".join(f"((atLane({x},L) U not atLane({x},L)) or G atLane({x},L))" for x in vehicles)
+        there = f"({assuming} and {self.text} -> ({change.changed}))"
+        back = f"({assuming} and ({change.changed}) -> {self.text})"
+        claim, label = f"{there} and {back}", f"redundancy-{self.node}"
+        result = prove(self.specification, claim, self.asked.proof_seconds, label)
+        if result.verdict is not Verdict.PROVED or result.certificate is None:
+            return None
+        certificate = to_json(result.certificate)
+        return Finding(self.node, change, Verdict.PROVED, claim, certificate, assuming=assuming)
 
     def _tells_apart(self, shown: Shown, formula: str, elsewhere: bool) -> Shown | None:
         """The drive judged on ``formula`` where it is, or also on roads of other zones."""

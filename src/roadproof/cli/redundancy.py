@@ -40,7 +40,9 @@ examples:
 
 Every occurrence of a part is replaced by true and by false: redundant where the scenario stays
 equivalent (proved for all time), needed where a judged drive, or else a judged trace over points in time,
-tells the two apart. A run with --out that was broken off goes on where it was.
+tells the two apart. Redundant for motion: equivalent on all traces on which a vehicle that leaves L has a
+first moment outside it, as every motion without jumps does.
+A run with --out that was broken off goes on where it was.
 """
 
 
@@ -203,6 +205,7 @@ def _record(number: int, findings: "Sequence[Finding]", journal: "Journal | None
                 if finding.verdict is Verdict.UNKNOWN
                 else finding.verdict is Verdict.PROVED,
                 "verdict": str(finding.verdict),
+                "assuming": finding.assuming,
                 "claim": finding.claim,
                 "certificate": certificate,
                 "drive": drive,
@@ -222,14 +225,16 @@ def _print(verdicts: Sequence[Mapping[str, Any]], seconds: float) -> None:
 
     for verdict in verdicts:
         if verdict["redundant"]:
-            print(f"scenario {verdict['scenario']}: redundant: {say(verdict)}")
+            where = " for motion" if verdict["assuming"] else ""
+            print(f"scenario {verdict['scenario']}: redundant{where}: {say(verdict)}")
     doubts = [x for x in verdicts if x["verdict"] == Verdict.UNKNOWN]
     for verdict in doubts:
         print(f"scenario {verdict['scenario']}: in doubt: {say(verdict)}: {verdict['reason']}")
-    redundant = sum(x["redundant"] is True for x in verdicts)
+    redundant = sum(x["redundant"] is True and not x["assuming"] for x in verdicts)
+    moving = sum(x["redundant"] is True and bool(x["assuming"]) for x in verdicts)
     drives = sum(x["drive"] is not None for x in verdicts)
     traces = sum(x["trace"] is not None for x in verdicts)
     print(
-        f"{len(verdicts)} changes: {redundant} redundant, {drives} told apart by a drive, {traces} by a "
-        f"trace, {len(doubts)} in doubt, in {seconds:.1f} s"
+        f"{len(verdicts)} changes: {redundant} redundant, {moving} more for motion, {drives} told apart by a "
+        f"drive, {traces} by a trace, {len(doubts)} in doubt, in {seconds:.1f} s"
     )
