@@ -144,7 +144,7 @@ def test_both_engines_answer_alike():
     short = {"horizon": Fraction(9, 5)}
     for what, verdict in (("4", Verdict.WITNESSED), ("F v_lon(SV) > 41 m/s", Verdict.NONE_WITHIN)):
         for engine in ("milp", "smt"):
-            means = replace(REQUEST.means, engine=engine)
+            means = replace(REQUEST.means, engine=engine, time_limit=240.0)
             assert ask_for(what, means=means, **short).verdict is verdict
     cubic = "F v_lon(SV)^3 > 20000 * 1 m/s * 1 m/s * 1 m/s"
     with pytest.raises(UsageError, match="--engine smt"):
