@@ -84,7 +84,10 @@ def test_known_drives_are_evidence_for_a_component_and_its_conditions(known: lis
         assert judge_file(from_json(dict(gap.drive), "gap"), LIBRARY).accepted
     elsewhere = answers[0].gaps[0].elsewhere["merge"]
     assert "scenario_12" in str(elsewhere["formula"])
-    assert judge_file(from_json(dict(elsewhere), "gap"), LIBRARY).accepted
+    placed = from_json(dict(elsewhere), "gap")
+    assert judge_file(placed, LIBRARY).accepted
+    assert whole.component is not None
+    assert whole.component.key in Classes(EXT).of(placed)
 
 
 def test_a_gap_is_in_the_classes_of_its_components_and_of_conditions(known: list[Found]) -> None:

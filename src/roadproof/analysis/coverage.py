@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from roadproof.analysis.meeting import Node, scenario_numbers, vehicles_of
 from roadproof.analysis.overlap import Asked
+from roadproof.analysis.placing import zones_of
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
 from roadproof.logic.formula import Formula
@@ -17,6 +18,7 @@ from roadproof.prove.prover import prove
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
 from roadproof.verdict import Verdict
+from roadproof.world.road import Road
 
 STARTS = "initSafe(SV,POV) and F danger(SV,POV)"
 PROOF_SECONDS = 60.0
@@ -46,6 +48,16 @@ def sectors_of(specification: Specification) -> tuple[tuple[int, ...], ...]:
         sector = read_claim(specification, f"roadSector_{number}(SV,POV)").formula
         sectors.setdefault(without_names(sector), []).append(number)
     return tuple(map(tuple, sectors.values()))
+
+
+def numbers_on(specification: Specification, road: Road) -> tuple[int, ...]:
+    """The two-vehicle scenarios whose sector's zones the road has; the others cannot hold on it."""
+    zones = {lanelet.zone for lanelet in road.lanelets}
+    found: list[int] = []
+    for sector in sectors_of(specification):
+        if zones_of(read_claim(specification, f"roadSector_{sector[0]}(SV,POV)").formula) <= zones:
+            found += sector
+    return tuple(found)
 
 
 def claims_of(specification: Specification) -> tuple[str, ...]:

@@ -7,14 +7,14 @@ every gap is in a class: the list is complete.
 """
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-from roadproof.analysis.coverage import sectors_of, wider_sets
+from roadproof.analysis.coverage import numbers_on, sectors_of, wider_sets
 from roadproof.analysis.coverage_parts import Part, parts_of
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.overlap import Asked, likes_of
 from roadproof.evidence.witness import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
@@ -54,11 +54,16 @@ class Found:
     classes: tuple[str, ...]
 
     @property
-    def effort(self) -> tuple[int, int]:
-        """How many vehicles move across the road, and how many accelerations there are."""
+    def effort(self) -> tuple[int, int, int, Fraction]:
+        """What makes a drive hard to read: vehicles that move across the road, accelerations, vehicles that
+        start off the middle of a lane; and how long it takes (s)."""
         motions = self.file.drive.vehicles.values()
         movers = sum(m.v_lat != 0 or any(p.a_lat for p in m.pieces) for m in motions)
-        return movers, sum((p.a_lon != 0) + (p.a_lat != 0) for m in motions for p in m.pieces)
+        changes = sum((p.a_lon != 0) + (p.a_lat != 0) for m in motions for p in m.pieces)
+        middles = {sum(lanelet.d, Fraction(0)) for lanelet in self.file.road.lanelets}
+        off = sum(2 * m.d - m.width not in middles for m in motions)
+        longest = max(sum((p.duration or Fraction(0) for p in m.pieces), Fraction(0)) for m in motions)
+        return movers, changes, off, longest
 
 
 @dataclass(frozen=True)
@@ -134,29 +139,52 @@ def groups_of(survey: Survey) -> list[Group]:
 
 
 class Classes:
-    """Which classes a drive belongs to, for the scenarios of the first road sector."""
+    """Which classes a drive belongs to. A class stands for the same part in every road sector."""
 
     def __init__(self, asked: Asked) -> None:
-        library, specification = asked.load()
+        library, self.specification = asked.load()
         self.values = {**default_values(library), **asked.values}
-        self.parts = [p for n in sectors_of(specification)[0] for p in parts_of(specification, n)]
-        self.queries = [read_claim(specification, near_miss(part)).formula for part in self.parts]
-        self.bound: dict[Road, Formula] = {}
+        self.sectors = sectors_of(self.specification)
+        self.likes = likes_of(self.specification)
+        self.by_number = {n: parts_of(self.specification, n) for sector in self.sectors for n in sector}
+        self.parts = [part for number in self.sectors[0] for part in self.by_number[number]]
         self.finest = frozenset(part.key for part in self.parts if part.finest)
+        self.bound: dict[Road, Formula] = {}
+
+    def counterparts(self, part: Part) -> Iterator[tuple[Part, tuple[int, ...]]]:
+        """The same part of the same disturbance in every road sector, with the sector's scenarios."""
+        place = self.by_number[part.scenario].index(part)
+        for sector in self.sectors:
+            for number in sector:
+                if self.likes[number] == self.likes[part.scenario]:
+                    yield self.by_number[number][place], sector
+
+    def near(self, part: Part, numbers: Collection[int]) -> str:
+        """That a drive is a near miss of the part, or of a counterpart among these scenarios."""
+        return (
+            " or ".join(near_miss(p) for p, _ in self.counterparts(part) if p.scenario in numbers) or "false"
+        )
 
     def of(self, file: DriveFile) -> tuple[str, ...]:
         """The keys of the parts without which their scenario would hold for some lane and either role."""
         if file.road not in self.bound:
-            bound = tuple(bind(query, file.road, {}, self.values) for query in self.queries)
-            # Equal parts as one object: the judge looks up what it knows, and comparing trees takes long.
-            self.bound[file.road] = f.transform(f.Or(bound), lambda part: part)
+            self.bound[file.road] = f.Or(tuple(self.bind(file.road).values()))
         whole = self.bound[file.road]
         judgement = judge(whole, file.drive)
         truths = zip(self.parts, f.children(whole), strict=True)
         return tuple(part.key for part, formula in truths if judgement.truth(formula).at(Fraction(0)))
 
+    def bind(self, road: Road) -> dict[str, Formula]:
+        """By key, that a drive on the road is a near miss of the part."""
+        numbers = numbers_on(self.specification, road)
+        queries = [read_claim(self.specification, self.near(part, numbers)).formula for part in self.parts]
+        bound = tuple(bind(query, road, {}, self.values) for query in queries)
+        # Equal parts as one object: the judge looks up what it knows, and comparing trees takes long.
+        shared = f.children(f.transform(f.Or(bound), lambda part: part))
+        return {part.key: formula for part, formula in zip(self.parts, shared, strict=True)}
+
     def has(self, part: Part | None, keys: Collection[str]) -> bool:
-        """Whether a drive with these keys is in the class of ``part``."""
+        """Whether a gap with these keys is in the class of ``part``."""
         return part.key in keys if part is not None else self.finest.isdisjoint(keys)
 
 

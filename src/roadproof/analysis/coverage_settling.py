@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import islice, product
 from typing import Any
 
-from roadproof.analysis.coverage import STARTS, caught, missed, sectors_of, some_scenario
+from roadproof.analysis.coverage import STARTS, caught, missed, some_scenario
 from roadproof.analysis.coverage_catalogue import HORIZON, catalogue
 from roadproof.analysis.coverage_classes import (
     Answer,
@@ -18,9 +18,8 @@ from roadproof.analysis.coverage_classes import (
     near_miss,
 )
 from roadproof.analysis.coverage_minimal import simplest
-from roadproof.analysis.coverage_parts import Part, parts_of
+from roadproof.analysis.coverage_parts import Part
 from roadproof.analysis.coverage_trial import Trials
-from roadproof.analysis.overlap import likes_of
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
@@ -76,8 +75,6 @@ class _Prepared:
 
     def __init__(self, survey: Survey) -> None:
         self.library, self.specification = survey.asked.load()
-        self.sectors = sectors_of(self.specification)
-        self.likes = likes_of(self.specification)
         self.values = {**default_values(self.library), **survey.asked.values}
         self.classes = Classes(survey.asked)
         self.trials = Trials(survey.asked, survey.wider)
@@ -93,7 +90,7 @@ class _Settling:
         self.group = group
         self.known = list(known)
         self.library, self.specification = ready.library, ready.specification
-        self.sectors, self.likes = ready.sectors, ready.likes
+        self.sectors = ready.classes.sectors
         self.values, self.classes, self.trials = ready.values, ready.classes, ready.trials
         self.numbers = tuple(n for sector in self.sectors for n in sector)
 
@@ -144,7 +141,7 @@ class _Settling:
         """That the scenario holds without the part only where it holds, a claim for each road sector."""
         return [
             f"({counterpart.without} -> scenario_{counterpart.scenario}(SV,POV,L))"
-            for counterpart, _ in self._counterparts(part)
+            for counterpart, _ in self.classes.counterparts(part)
         ]
 
     def _no_gaps(self, part: Part) -> list[str]:
@@ -154,7 +151,7 @@ class _Settling:
         """
         return [
             f"({counterpart.without} and F danger({pair}) -> {some_scenario(sector)})"
-            for counterpart, sector in self._counterparts(part)
+            for counterpart, sector in self.classes.counterparts(part)
             for pair in ("SV,POV", "POV,SV")
         ]
 
@@ -162,49 +159,48 @@ class _Settling:
         """That a gap is a near miss but for a single condition, a claim for each road sector."""
         claims = []
         for sector in self.sectors:
-            parts = [p for number in sector for p in parts_of(self.specification, number) if p.finest]
+            parts = [p for number in sector for p in self.classes.by_number[number] if p.finest]
             near = " or ".join(f"({x})" for p in parts for x in (p.without, exchanged(p.without)))
             start = f"roadSector_{sector[0]}(SV,POV) and atLane(SV,L) and {STARTS}"
             claims.append(f"({start} -> {some_scenario(sector)} or {near})")
         return claims
-
-    def _counterparts(self, part: Part) -> Iterator[tuple[Part, tuple[int, ...]]]:
-        """The same part of the same disturbance in every road sector, with the sector's scenarios."""
-        place = parts_of(self.specification, part.scenario).index(part)
-        for sector in self.sectors:
-            for number in sector:
-                if self.likes[number] == self.likes[part.scenario]:
-                    yield parts_of(self.specification, number)[place], sector
 
     def _look(self, part: Part | None, first: str, roads: Sequence[str], seconds: float) -> str:
         """Look for a gap on the roads in turn, each for so long; why none was found, or empty."""
         reasons = []
         for name in roads:
             numbers = self.trials.numbers_on(load_road(name))
-            formula = self._formula(part, numbers, first)
-            request = Request(
-                formula,
-                self.asked.sets[0],
-                self.asked.options,
-                self.asked.specs,
-                self.values,
-                name,
-                horizon=self.asked.horizon,
-                means=Means("smooth", time_limit=seconds, explain=False),
-            )
-            outcome = ask(request)
-            if outcome.drives:
-                file = simplest(from_json(dict(outcome.drives[0]), "drive"), self.library)
-                self.known.append(Found(file, self.trials.first(file), self.classes.of(file)))
-                return ""
-            reasons.append(f"{outcome.reason} on {name}")
+            for counterpart in self._on(part, numbers):
+                request = Request(
+                    self._formula(counterpart, numbers, first),
+                    self.asked.sets[0],
+                    self.asked.options,
+                    self.asked.specs,
+                    self.values,
+                    name,
+                    horizon=self.asked.horizon,
+                    means=Means("smooth", time_limit=seconds, explain=False),
+                )
+                outcome = ask(request)
+                if outcome.drives:
+                    file = simplest(from_json(dict(outcome.drives[0]), "drive"), self.library)
+                    self.known.append(Found(file, self.trials.first(file), self.classes.of(file)))
+                    return ""
+                reasons.append(f"{outcome.reason or 'none'} on {name}")
         return f"{'; '.join(reasons)}; {seconds:g} s each, {self.asked.horizon} s of driving"
+
+    def _on(self, part: Part | None, numbers: Sequence[int]) -> list[Part | None]:
+        """The counterparts of a part among these scenarios."""
+        if part is None:
+            return [None]
+        return [p for p, _ in self.classes.counterparts(part) if p.scenario in numbers]
 
     def _formula(self, part: Part | None, numbers: Sequence[int], first: str = "") -> str:
         """What a gap of the class satisfies; with ``first`` one that this set is the first to catch."""
         written = [missed(numbers)]
         if part is None:
-            written += [f"not {near_miss(p)}" for p in self.classes.parts if p.finest]
+            parts = [p for number in numbers for p in self.classes.by_number[number] if p.finest]
+            written += [f"not {near_miss(p)}" for p in parts]
         else:
             written.append(part.without)
         if first:
@@ -214,8 +210,9 @@ class _Settling:
 
     def _gap(self, part: Part | None, found: Found) -> Gap:
         """The drive as evidence for the class, judged on the scenarios of all road sectors."""
-        formula = self._formula(part, self.numbers)
-        file = replace(self._turned(part, found.file), formula=formula, scenario=None)
+        counterpart, turned = self._turned(part, found.file)
+        formula = self._formula(counterpart, self.numbers)
+        file = replace(turned, formula=formula, scenario=None)
         ruling = judge_file(file, self.library)
         assert ruling.accepted, ruling.reason
         data = as_data(file, ruling)
@@ -224,22 +221,23 @@ class _Settling:
         elsewhere = dict(self._elsewhere(part, Shown(formula, data))) if whole else {}
         return Gap(file.road.name, formula, data, found.first, smallest, found.classes, elsewhere)
 
-    def _turned(self, part: Part | None, file: DriveFile) -> DriveFile:
-        """The file with the roles and the lane for which the scenario of ``part`` is missed by it alone."""
+    def _turned(self, part: Part | None, file: DriveFile) -> tuple[Part | None, DriveFile]:
+        """The sector, the roles and the lane in which the scenario of ``part`` is missed by it alone."""
         if part is None:
-            return replace(file, lanes={})
-        query = read_claim(self.specification, part.without).formula
+            return None, replace(file, lanes={})
         mine, theirs = file.drive.vehicles["SV"], file.drive.vehicles["POV"]
         exchanged = Drive({"SV": theirs, "POV": mine})
-        for drive, lane in product((file.drive, exchanged), file.road.lanes):
-            bound = bind(query, file.road, {"L": lane}, self.values)
-            if judge(bound, drive).holds:
-                return replace(file, drive=drive, lanes={"L": lane})
+        for counterpart, _ in self.classes.counterparts(part):
+            query = read_claim(self.specification, counterpart.without).formula
+            for drive, lane in product((file.drive, exchanged), file.road.lanes):
+                bound = bind(query, file.road, {"L": lane}, self.values)
+                if judge(bound, drive).holds:
+                    return counterpart, replace(file, drive=drive, lanes={"L": lane})
         raise AssertionError(f"the drive is no near miss of {part.key}")
 
     def _elsewhere(self, part: Part | None, shown: Shown) -> Iterator[tuple[str, dict[str, Any]]]:
         """The same motions on other roads, where a counterpart is missed as nearly."""
-        counterparts = [None] if part is None else [p for p, _ in self._counterparts(part)][::-1]
+        counterparts = self._on(part, self.numbers)[::-1]
         home = shown.data["road"]["name"]
         for road in (name for name in self.survey.elsewhere if name != home):
             for counterpart in counterparts:

@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.analysis.coverage import missed
+from roadproof.analysis.coverage import missed, numbers_on
 from roadproof.analysis.coverage_classes import Classes
-from roadproof.analysis.coverage_trial import Trials
 from roadproof.analysis.overlap import Asked
 from roadproof.monitor.batch import Array, Batch
 from roadproof.monitor.compiled import Monitor, compile
@@ -50,7 +49,7 @@ def disturbances_in(asked: Asked, folder: Path) -> Iterator[Trace]:
     Raises ``InputError`` for what is no recording.
     """
     library, specification = asked.load()
-    classes, trials = Classes(asked), Trials(asked, ())
+    classes = Classes(asked)
     settings = Settings(
         library,
         asked.options,
@@ -66,10 +65,9 @@ def disturbances_in(asked: Asked, folder: Path) -> Iterator[Trace]:
             pair = {"SV": place[trace.first], "POV": place[trace.second]}
             cut = _cut(recording, pair, (trace.start_frame, trace.end_frame))
             if cut.road not in monitors:
-                queries = {GAP: read_claim(specification, missed(trials.numbers_on(cut.road))).formula}
-                queries |= {p.key: q for p, q in zip(classes.parts, classes.queries, strict=True)}
-                bound = {name: bind(q, cut.road, {}, classes.values) for name, q in queries.items()}
-                monitors[cut.road] = compile(bound)
+                query = read_claim(specification, missed(numbers_on(specification, cut.road)))
+                gap = bind(query.formula, cut.road, {}, classes.values)
+                monitors[cut.road] = compile({GAP: gap, **classes.bind(cut.road)})
             answers = monitors[cut.road].evaluate(cut.batch, "clip").answers
             true = [name for name, answer in answers.items() if answer.true[0]]
             frames = (trace.start_frame, trace.end_frame)

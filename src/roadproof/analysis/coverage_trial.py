@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from itertools import combinations
 
-from roadproof.analysis.coverage import missed, replaced_in, sectors_of
+from roadproof.analysis.coverage import missed, numbers_on, replaced_in
 from roadproof.analysis.overlap import Asked
-from roadproof.analysis.placing import zones_of
 from roadproof.evidence.witness import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.logic.formula import Formula, transform
@@ -27,17 +26,14 @@ class Trials:
         self.wider = tuple(wider)
         self.library, self.specification = asked.load()
         self.values = {**default_values(self.library), **asked.values}
-        self.sectors = {
-            n: zones_of(read_claim(self.specification, f"roadSector_{n}(SV,POV)").formula)
-            for sector in sectors_of(self.specification)
-            for n in sector
-        }
+        self.numbers: dict[Road, tuple[int, ...]] = {}
         self.bound: dict[tuple[str, tuple[str, ...], Road], Formula] = {}
 
     def numbers_on(self, road: Road) -> tuple[int, ...]:
         """The scenarios whose sector's zones the road has; the others cannot hold on it."""
-        zones = {lanelet.zone for lanelet in road.lanelets}
-        return tuple(n for n, wanted in self.sectors.items() if wanted <= zones)
+        if road not in self.numbers:
+            self.numbers[road] = numbers_on(self.specification, road)
+        return self.numbers[road]
 
     def first(self, file: DriveFile) -> str:
         """The first of the wider sets that catches the drive; empty where none does."""

@@ -52,10 +52,12 @@ class Evidence:
         """Write the evidence of a group, then a line in the journal."""
         entries = [self._entry(answer, f"{group.name}-{k}") for k, answer in enumerate(answers)]
         self.answers[group.name] = entries
-        files = [x["certificate"] for x in entries] + [gap["drive"] for x in entries for gap in x["gaps"]]
-        names = [Path(x).name for x in files if isinstance(x, str)]
-        if self.journal is not None and names and all(x["verdict"] != "UNKNOWN" for x in entries):
-            self.journal.add({"evidence": names[0], "group": group.name, "classes": entries})
+        gaps = [gap for entry in entries for gap in entry["gaps"]]
+        files = [entry["certificate"] for entry in entries]
+        files += [path for gap in gaps for path in (gap["drive"], *gap["elsewhere"].values())]
+        if self.journal is not None and all(entry["verdict"] != "UNKNOWN" for entry in entries):
+            names = [Path(path).name for path in files if path is not None]
+            self.journal.add({"evidence": names, "group": group.name, "classes": entries})
 
     def entries(self, survey: "Survey") -> tuple[list[Entry], list[Entry]]:
         """All classes in order, their gaps by numbers; and all gaps, counted from 1 on."""
