@@ -15,12 +15,13 @@ from hypothesis import strategies as st
 from monitor.cases import random_traffic
 from roadproof.analysis.classify import Classes, plan_of, what_axis, where_axis
 from roadproof.analysis.classify_cells import Axis, Cell, Outline, outline, refine, text_of
-from roadproof.analysis.classify_drives import patched, with_zones
+from roadproof.analysis.classify_drives import find_examples, patched, with_zones
 from roadproof.analysis.classify_shares import Shares, count_shares
 from roadproof.analysis.classify_text import claims_of, ranges, with_classes, write_classes
+from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.witness import judge_file, load_drive
+from roadproof.evidence.witness import from_json, judge_file, load_drive
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.monitor import compile
 from roadproof.prove.prover import prove
@@ -323,6 +324,17 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
         if len(found) == 7:
             break
     assert found == set(product((True, False), repeat=3)) - {(False, False, False)}
+
+
+def test_a_road_of_one_zone_where_the_usual_one_is_too_long() -> None:
+    """On the road merge vehicles cannot settle outside of the zone before the horizon."""
+    classes = classes_of((12, 16))
+    text = write_classes(classes, BASE)
+    [example] = find_examples(Asked(timeout=30.0), text, classes.plan, classes.all()[:1])
+    assert (example.name, example.verdict) == ("class_12", Verdict.WITNESSED)
+    file = from_json(dict(example.drive or {}), "drive")
+    assert {lanelet.zone for lanelet in file.road.lanelets} == {"merge"}
+    assert judge_file(file, with_classes(text, BASE).library).accepted
 
 
 def test_vehicles_side_by_side_may_be_in_three_zones() -> None:

@@ -11,7 +11,7 @@ from typing import Any, get_args
 from roadproof.analysis.classify import SET_NAME, Class, Plan, where_axis
 from roadproof.analysis.classify_text import FILE_NAME, with_classes
 from roadproof.analysis.overlap import Asked
-from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.analysis.placing import Shown, as_data, show_elsewhere, zones_of
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
@@ -24,9 +24,27 @@ from roadproof.witness.ask import Request, ask
 from roadproof.witness.impossible import parts
 from roadproof.witness.question import Means, usual_road
 from roadproof.world.drive import Drive
+from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road, Zone
 
 MOST_FAILURES = 2
+ROAD_OF_ONE_ZONE = """\
+name = "main-2 with zones {zone}"
+[[lanelet]]
+id = "m1"
+lane = "main-1"
+zone = "{zone}"
+attribute = "main"
+s = [-inf, inf]
+d = [0, 3.5]
+[[lanelet]]
+id = "m2"
+lane = "main-2"
+zone = "{zone}"
+attribute = "main"
+s = [-inf, inf]
+d = [3.5, 7]
+"""
 
 
 @dataclass(frozen=True)
@@ -46,13 +64,16 @@ def find_examples(asked: Asked, text: str, plan: Plan, classes: Sequence[Class])
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / FILE_NAME
         path.write_text(text, "utf-8")
-        searching = _Searching(asked, library, (*asked.specs, path), plan)
+        searching = _Searching(asked, library, (*asked.specs, path), plan, Path(folder))
         return [searching.example(one) for one in classes]
 
 
 class _Searching:
-    def __init__(self, asked: Asked, library: Library, specs: tuple[Path, ...], plan: Plan) -> None:
+    def __init__(
+        self, asked: Asked, library: Library, specs: tuple[Path, ...], plan: Plan, folder: Path
+    ) -> None:
         self.asked = asked
+        self.folder = folder
         self.library = library
         self.specs = specs
         self.plan = plan
@@ -66,34 +87,48 @@ class _Searching:
                 return Example(one.name, Verdict.WITNESSED, "", placed.data)
         if self.failures == MOST_FAILURES:
             return Example(one.name, Verdict.UNKNOWN, "no drive was found for the same in other places", None)
-        outcome = ask(self._request(one))
-        if not outcome.drives:
-            self.failures += 1
-            limits = f"road {outcome.road}, {self.asked.timeout:g} s of search"
-            return Example(one.name, outcome.verdict, f"{outcome.reason} ({limits})", None)
-        self.found.append(Shown(one.formula, dict(outcome.drives[0])))
-        return Example(one.name, Verdict.WITNESSED, "", outcome.drives[0])
+        reasons = []
+        for road in self._roads(one):
+            outcome = ask(self._request(one, road))
+            if outcome.drives:
+                self.found.append(Shown(one.formula, dict(outcome.drives[0])))
+                return Example(one.name, Verdict.WITNESSED, "", outcome.drives[0])
+            told = outcome.reason or "a proof that the class is empty was found late, and is not kept"
+            reasons.append(f"{told} (road {outcome.road}, {self.asked.timeout:g} s of search)")
+        self.failures += 1
+        return Example(one.name, Verdict.UNKNOWN, "; ".join(reasons), None)
 
-    def _request(self, one: Class) -> Request:
+    def _request(self, one: Class, road: str) -> Request:
         return Request(
             one.formula,
             SET_NAME,
             self.asked.options,
             self.specs,
             {**default_values(self.library), **self.asked.values},
-            self._road(one),
+            road,
             horizon=self.asked.horizon,
             means=Means("smooth", time_limit=self.asked.timeout, explain=False),
         )
 
-    def _road(self, one: Class) -> str | None:
-        """The usual road for the sectors that hold; those that do not hold would ask for their zones too."""
-        if one.where is None:
-            return None
-        axis = where_axis(self.plan, one.vehicles)
-        specification = self.library.select(SET_NAME, self.asked.options)
-        sectors = " and ".join(axis.rows[number] for number in one.where.holds)
-        return usual_road(read_claim(specification, sectors).formula)
+    def _roads(self, one: Class) -> Iterator[str]:
+        """The usual road for the sectors that hold; those that do not hold would ask for their zones too.
+
+        Then, for sectors of one zone that it has beside others, one that has no other: motions have to
+        settle in one lanelet within the horizon, for which zones of the usual roads can be too long.
+        """
+        sectors = one.formula
+        if one.where is not None:
+            axis = where_axis(self.plan, one.vehicles)
+            sectors = " and ".join(axis.rows[number] for number in one.where.holds)
+        formula = read_claim(self.library.select(SET_NAME, self.asked.options), sectors).formula
+        usual = usual_road(formula)
+        yield usual
+        zones = zones_of(formula)
+        if len(zones) == 1 and not zones >= {x.zone for x in load_road(usual).lanelets}:
+            (zone,) = zones
+            path = self.folder / f"{zone}.toml"
+            path.write_text(ROAD_OF_ONE_ZONE.format(zone=zone), "utf-8")
+            yield str(path)
 
     def _on_patched_road(self, shown: Shown, one: Class) -> Shown | None:
         """The motions of ``shown`` on their own road with other zones, judged; None where none does."""
