@@ -15,12 +15,13 @@ from roadproof.analysis.coverage import (
     wider_sets,
 )
 from roadproof.analysis.coverage_classes import Classes
+from roadproof.analysis.coverage_needed import find_need, replaced_by
 from roadproof.analysis.coverage_trial import Trials
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, judge_drive
 from roadproof.cli.main import main
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import DriveFile, as_json, judge_file
+from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file
 from roadproof.judge.replay import first_breach
 from roadproof.logic.show import text
 from roadproof.prove.prover import prove
@@ -132,3 +133,18 @@ def test_drives_that_are_missed_without_a_definition(name: str, drive: Drive) ->
     assert not judge_file(file_of(drive, "complete"), LIBRARY).accepted
     assert judge_file(file_of(drive, "ext"), LIBRARY).accepted
     assert [n for n in REPLACED if not caught_without(n, drive, load_road("main-2"))] == [name]
+
+
+def test_a_definition_is_shown_needed() -> None:
+    complete = Asked(("complete",))
+    assert sorted(replaced_by(complete)) == list(REPLACED)
+    need = find_need(complete, "cutIn")
+    assert need.verdict is Verdict.WITNESSED
+    assert need.drive is not None
+    file = from_json(dict(need.drive), "needed")
+    assert judge_file(file, LIBRARY).accepted
+    assert not judge_file(file_of(file.drive, "complete"), LIBRARY).accepted
+
+
+def test_a_set_that_extends_nothing_needs_nothing() -> None:
+    assert replaced_by(Asked(("base",))) == ()

@@ -79,6 +79,7 @@ def test_a_folder_with_other_answers_is_left_alone(
         (["--wider", "none"], ExitCode.BAD_INPUT, "there is no spec set 'none'"),
         (["--timeout", "0"], ExitCode.USAGE, "--timeout 0.0 must be greater than 0"),
         (["--road", "moon"], ExitCode.BAD_INPUT, "there is no road 'moon'"),
+        (["--on", "nowhere"], ExitCode.BAD_INPUT, "nowhere"),
     ],
 )
 def test_mistakes(more: list[str], code: int, message: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -78,7 +78,7 @@ def _alongs() -> Iterator[Along]:
     yield Along(Fraction(125), Fraction(5))  # danger after 9 s
     yield Along(Fraction(-50), Fraction(5))  # SV ahead, and faster
     yield Along(Fraction(58), speeds_up=Fraction(2))
-    yield Along(Fraction(58), slows_down=Fraction(2))
+    yield Along(Fraction(58), slows_down=Fraction(0))
     yield Along(Fraction(58), speeds_up=Fraction(9))
     yield Along(Fraction(0), Fraction(-5))
     yield Along(Fraction(24), Fraction(-5), speeds_up=Fraction(2))  # danger, though POV stays faster

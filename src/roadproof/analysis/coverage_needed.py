@@ -56,24 +56,26 @@ WIDE = Road(
 )
 
 
-def find_needs(asked: Asked) -> list[Need]:
-    """One answer for each definition that the first set of ``asked`` replaces in the set that it extends."""
+def replaced_by(asked: Asked) -> tuple[str, ...]:
+    """The definitions that the first set of ``asked`` replaces in the set that it extends, if it does."""
     library, specification = asked.load()
+    parent = library.sets[asked.sets[0]].parent
+    return replaced_in(specification.in_set(parent), specification) if parent else ()
+
+
+def find_need(asked: Asked, name: str) -> Need:
+    """Whether the first set of ``asked`` needs the definition ``name``, one of ``replaced_by``."""
+    library, _ = asked.load()
     wide = asked.sets[0]
     parent = library.sets[wide].parent
     trials = Trials(replace(asked, sets=(parent,)), (wide,))
-    names = replaced_in(trials.specification, specification)
-    written = {name: trials.written(wide, [n for n in names if n != name]) for name in names}
-    needs: dict[str, Need] = {}
+    kept = tuple(n for n in replaced_by(asked) if n != name)
+    written = trials.written(wide, kept)
     for road in (load_road("main-2"), WIDE):
         for drive in _dangerous(trials, road):
-            for name in names:
-                kept = tuple(n for n in names if n != name)
-                if name not in needs and trials.misses(_file(asked, parent, trials, road, drive), wide, kept):
-                    needs[name] = _need(asked, trials, name, written[name], road, drive)
-            if len(needs) == len(names):
-                break
-    return [needs.get(name) or _spare(asked, trials, name, written[name]) for name in names]
+            if trials.misses(_file(asked, parent, trials, road, drive), wide, kept):
+                return _need(asked, trials, name, written, road, drive)
+    return _spare(asked, trials, name, written)
 
 
 def _dangerous(trials: Trials, road: Road) -> Iterator[Drive]:

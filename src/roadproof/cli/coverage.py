@@ -90,6 +90,12 @@ class ClaimJob:
 
 
 @dataclass(frozen=True)
+class NeedJob:
+    asked: "Asked"
+    name: str
+
+
+@dataclass(frozen=True)
 class CatalogueJob:
     survey: "Survey"
     road: str
@@ -113,9 +119,7 @@ def run(args: argparse.Namespace) -> int:
     if not proved:
         _settle(survey, evidence, args.jobs)
     elif args.needed:
-        from roadproof.analysis.coverage_needed import find_needs
-
-        needs = find_needs(asked)
+        needs = _find_needs(asked, args.jobs)
     classes, gaps = evidence.entries(survey)
     traffic = None if args.on is None else count_in_traffic(asked, args.on, classes)
     broken = _broken(proved, classes, traffic)
@@ -179,6 +183,10 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
     roads = args.roads or ["main-2", "main-3"]
     for road in roads:
         load_road(road)
+    if args.on is not None:
+        from roadproof.traffic.sources import find_sources
+
+        find_sources(args.on)
     elsewhere = ("main-3", "merge", "depart")
     if args.wider is not None:
         library.select(args.wider)
@@ -203,6 +211,26 @@ def prove_one(job: ClaimJob) -> "Covered":
     from roadproof.analysis.coverage import prove_claim
 
     return prove_claim(job.asked, job.claim)
+
+
+def _find_needs(asked: "Asked", processes: int | None) -> "list[Need]":
+    from roadproof.analysis.coverage_needed import replaced_by
+
+    jobs = [NeedJob(asked, name) for name in replaced_by(asked)]
+    needs: list[Need] = []
+    with closing(work(find_one_need, jobs, processes)) as answers:
+        for need in answers:
+            needs.append(need)
+            tell(f"{len(needs)} of {len(jobs)} definitions")
+    tell(f"{len(jobs)} of {len(jobs)} definitions", last=True)
+    return sorted(needs, key=lambda need: need.definition)
+
+
+def find_one_need(job: NeedJob) -> "Need":
+    """Whether one definition is needed."""
+    from roadproof.analysis.coverage_needed import find_need
+
+    return find_need(job.asked, job.name)
 
 
 def _settle(survey: "Survey", evidence: Evidence, processes: int | None) -> None:
