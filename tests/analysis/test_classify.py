@@ -328,9 +328,10 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
 
 def test_a_road_of_one_zone_where_the_usual_one_is_too_long() -> None:
     """On the road merge vehicles cannot settle outside of the zone before the horizon."""
-    classes = classes_of((12, 16))
+    cell = Cell((12,), (12,), ("behaviourSV_16(SV, POV, L)",))
+    classes = Classes(plan_of(BASE, (12, 16)), ((cell,),), ())
     text = write_classes(classes, BASE)
-    [example] = find_examples(Asked(timeout=30.0), text, classes.plan, classes.all()[:1])
+    [example] = find_examples(Asked(timeout=30.0), text, classes.plan, classes.all())
     assert (example.name, example.verdict) == ("class_12", Verdict.WITNESSED)
     file = from_json(dict(example.drive or {}), "drive")
     assert {lanelet.zone for lanelet in file.road.lanelets} == {"merge"}
