@@ -1,6 +1,7 @@
 """Classes of gaps: drives are judged, proofs are checked, and no drive is in a class that is proved empty."""
 
 from dataclasses import replace
+from fractions import Fraction as F
 from pathlib import Path
 
 import pytest
@@ -107,3 +108,12 @@ def test_roles_exchanged_give_the_same_classes(known: list[Found]) -> None:
 def test_a_set_that_is_not_extended() -> None:
     with pytest.raises(UsageError, match="does not extend"):
         survey_of(Asked(("complete",)), "base", ("main-2",))
+
+
+def test_where_no_search_is_possible_the_answer_says_so() -> None:
+    off_the_grid = Asked(("ext",), values={"minDanger": F(1, 7)}, timeout=0.1)
+    survey = survey_of(off_the_grid, "", ("main-2",))
+    part = next(x.component for x in groups_of(survey) if x.name == "behaviourPOV_8")
+    (answer,) = settle_group(survey, Group(part))
+    assert answer.verdict is Verdict.UNKNOWN
+    assert "no search on main-2" in answer.reason

@@ -21,6 +21,7 @@ from roadproof.analysis.coverage_minimal import simplest
 from roadproof.analysis.coverage_parts import Part
 from roadproof.analysis.coverage_trial import Trials
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.exact import judge
@@ -181,7 +182,11 @@ class _Settling:
                     horizon=self.asked.horizon,
                     means=Means("smooth", time_limit=seconds, explain=False),
                 )
-                outcome = ask(request)
+                try:
+                    outcome = ask(request)
+                except UsageError as error:  # an interval that is off the grid, a comparison too steep
+                    reasons.append(f"no search on {name}: {error}")
+                    continue
                 if outcome.drives:
                     file = simplest(from_json(dict(outcome.drives[0]), "drive"), self.library)
                     self.known.append(Found(file, self.trials.first(file), self.classes.of(file)))
