@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis import coverage_classes, coverage_settling
+from roadproof.analysis import coverage, coverage_classes, coverage_settling
 from roadproof.analysis.coverage_classes import Found, Group, Survey, groups_of
 from roadproof.cli.main import main
 from roadproof.verdict import ExitCode
@@ -16,7 +16,7 @@ WANTED = ("behaviourPOV_4", "behaviourSV_8")
 
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Few classes and a part of the catalogue; what comes is the roads that were looked up in it."""
+    """Few classes, one claim, a part of the catalogue; what comes is the roads that were looked up in it."""
     roads: list[str] = []
     every, look_up = groups_of, coverage_settling.find_in_catalogue
 
@@ -27,6 +27,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         roads.append(road)
         return look_up(survey, road, 0, 97) if start == 0 and road == "main-2" else []
 
+    monkeypatch.setattr(coverage, "claims_of", lambda _: ("F danger(SV,POV) -> scenario_1(SV,POV,L)",))
     monkeypatch.setattr(coverage_classes, "groups_of", some_groups)
     monkeypatch.setattr(coverage_settling, "find_in_catalogue", some_drives)
     return roads
