@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.coverage import sectors_of, some_scenario
-from roadproof.analysis.coverage_classes import Classes
-from roadproof.analysis.coverage_traffic import disturbances_in
+from roadproof.analysis.coverage.claims import sectors_of, some_scenario
+from roadproof.analysis.coverage.classes import Classes
+from roadproof.analysis.coverage.traffic import disturbances_in
 from roadproof.analysis.meeting import Meeting, Node, conjunctions
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main

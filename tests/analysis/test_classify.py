@@ -13,11 +13,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from monitor.cases import random_traffic
-from roadproof.analysis.classify import Classes, plan_of, what_axis, where_axis
-from roadproof.analysis.classify_cells import Axis, Cell, Outline, outline, refine, text_of
-from roadproof.analysis.classify_drives import find_examples, patched, with_zones
-from roadproof.analysis.classify_shares import Shares, count_shares
-from roadproof.analysis.classify_text import claims_of, ranges, with_classes, write_classes
+from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, refine, text_of
+from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, where_axis
+from roadproof.analysis.classify.drives import find_examples, patched, with_zones
+from roadproof.analysis.classify.shares import Shares, count_shares
+from roadproof.analysis.classify.text import claims_of, ranges, with_classes, write_classes
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.coverage import (
+from roadproof.analysis.coverage.claims import (
     claims_of,
     missed,
     prove_claim,
@@ -14,9 +14,9 @@ from roadproof.analysis.coverage import (
     two_vehicle_numbers,
     wider_sets,
 )
-from roadproof.analysis.coverage_classes import Classes
-from roadproof.analysis.coverage_needed import find_need, replaced_by
-from roadproof.analysis.coverage_trial import Trials
+from roadproof.analysis.coverage.classes import Classes
+from roadproof.analysis.coverage.needed import find_need, replaced_by
+from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, judge_drive
 from roadproof.cli.main import main

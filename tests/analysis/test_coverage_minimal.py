@@ -3,7 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction as F
 
-from roadproof.analysis.coverage_minimal import simplest
+from roadproof.analysis.coverage.minimal import simplest
 from roadproof.evidence.witness import DriveFile, judge_file
 from roadproof.spec.library import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece

@@ -2,8 +2,8 @@
 
 import pytest
 
-from roadproof.analysis.coverage import two_vehicle_numbers
-from roadproof.analysis.coverage_parts import Part, parts_of
+from roadproof.analysis.coverage.claims import two_vehicle_numbers
+from roadproof.analysis.coverage.parts import Part, parts_of
 from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.coverage import missed, sectors_of, some_scenario
-from roadproof.analysis.coverage_classes import Classes, Found, Group, Survey, groups_of, survey_of
-from roadproof.analysis.coverage_settling import find_in_catalogue, settle_group
+from roadproof.analysis.coverage.claims import missed, sectors_of, some_scenario
+from roadproof.analysis.coverage.classes import Classes, Found, Group, Survey, groups_of, survey_of
+from roadproof.analysis.coverage.settling import find_in_catalogue, settle_group
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
 from roadproof.errors import UsageError

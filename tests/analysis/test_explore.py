@@ -10,15 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadproof.analysis import explore as exploring
-from roadproof.analysis import explore_search
-from roadproof.analysis.explore import Asked, Explored, Finding, explore
-from roadproof.analysis.explore_bracket import Bracket
-from roadproof.analysis.explore_extreme import Extreme, Sought, find_extreme, find_extremes
-from roadproof.analysis.explore_knobs import Knob, between
-from roadproof.analysis.explore_measure import Sense, read_measure
-from roadproof.analysis.explore_range import range_of, starting_ranges
-from roadproof.analysis.explore_search import (
+from roadproof.analysis.explore import search, values
+from roadproof.analysis.explore.bracket import Bracket
+from roadproof.analysis.explore.extreme import Extreme, Sought, find_extreme, find_extremes
+from roadproof.analysis.explore.knobs import Knob, between
+from roadproof.analysis.explore.measure import Sense, read_measure
+from roadproof.analysis.explore.range import range_of, starting_ranges
+from roadproof.analysis.explore.search import (
     MOST_STEPS,
     Claim,
     Reply,
@@ -30,6 +28,7 @@ from roadproof.analysis.explore_search import (
     made_for,
     stand_ins,
 )
+from roadproof.analysis.explore.values import Asked, Explored, Finding, explore
 from roadproof.cli.main import main
 from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file
 from roadproof.spec.bind import default_values
@@ -142,20 +141,20 @@ def test_a_drive_that_keeps_its_old_value_is_caught(monkeypatch: pytest.MonkeyPa
     def forgetful(file: DriveFile, claim: Claim) -> DriveFile:
         return replace(file, formula=claim.text)
 
-    monkeypatch.setattr(explore_search, "made_for", forgetful)
+    monkeypatch.setattr(search, "made_for", forgetful)
     asked = Asked(request(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
     assert complaints(explore(asked), "minSafe")
 
 
 def test_a_drive_that_is_not_judged_again_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Trusting(exploring.Pool):
-        def show(self, claim: Claim, since: int = 0) -> explore_search.Shown | None:
+    class Trusting(values.Pool):
+        def show(self, claim: Claim, since: int = 0) -> search.Shown | None:
             if not self.files:
                 return None
             file = made_for(self.files[0], claim)
-            return explore_search.Shown(1, as_json(file, {}))
+            return search.Shown(1, as_json(file, {}))
 
-    monkeypatch.setattr(exploring, "Pool", Trusting)
+    monkeypatch.setattr(values, "Pool", Trusting)
     asked = Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3)
     assert complaints(explore(asked), "minSafe")
 
@@ -164,7 +163,7 @@ def test_a_leap_that_takes_the_next_value_for_granted_is_caught(monkeypatch: pyt
     def hasty(self: object, held: Finding, missed: Finding, precision: F) -> Finding:
         return replace(held, at=(between(held.at[0], missed.at[0]),))
 
-    monkeypatch.setattr(exploring.Exploring, "leap", hasty)
+    monkeypatch.setattr(values.Exploring, "leap", hasty)
     explored = explore(Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3))
     assert complaints(explored, "minSafe")
 

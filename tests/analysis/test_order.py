@@ -8,16 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadproof.analysis.meeting import Node
-from roadproof.analysis.order import (
-    Decided,
-    Doubt,
-    decide_family,
-    families_of,
-    kinds_of,
-    reachable,
-    settle_doubts,
-    transitive_reduction,
-)
+from roadproof.analysis.order.deciding import Decided, Doubt, decide_family, settle_doubts
+from roadproof.analysis.order.kinds import families_of, kinds_of
+from roadproof.analysis.order.relation import reachable, transitive_reduction
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
 from roadproof.report.order import as_dot

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis import coverage, coverage_classes, coverage_settling
-from roadproof.analysis.coverage_classes import Found, Group, Survey, groups_of
+from roadproof.analysis.coverage import claims, classes, settling
+from roadproof.analysis.coverage.classes import Found, Group, Survey, groups_of
 from roadproof.cli.main import main
 from roadproof.verdict import ExitCode
 
@@ -18,7 +18,7 @@ WANTED = ("behaviourPOV_4", "behaviourSV_8")
 def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Few classes, one claim, a part of the catalogue; what comes is the roads that were looked up in it."""
     roads: list[str] = []
-    every, look_up = groups_of, coverage_settling.find_in_catalogue
+    every, look_up = groups_of, settling.find_in_catalogue
 
     def some_groups(survey: Survey) -> list[Group]:
         return [Group(x.component) for x in every(survey) if x.name in WANTED]
@@ -27,9 +27,9 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         roads.append(road)
         return look_up(survey, road, 0, 97) if start == 0 and road == "main-2" else []
 
-    monkeypatch.setattr(coverage, "claims_of", lambda _: ("F danger(SV,POV) -> scenario_1(SV,POV,L)",))
-    monkeypatch.setattr(coverage_classes, "groups_of", some_groups)
-    monkeypatch.setattr(coverage_settling, "find_in_catalogue", some_drives)
+    monkeypatch.setattr(claims, "claims_of", lambda _: ("F danger(SV,POV) -> scenario_1(SV,POV,L)",))
+    monkeypatch.setattr(classes, "groups_of", some_groups)
+    monkeypatch.setattr(settling, "find_in_catalogue", some_drives)
     return roads
 
 

@@ -21,11 +21,11 @@ from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 if TYPE_CHECKING:
-    from roadproof.analysis.classify import Class, Classes, Plan
-    from roadproof.analysis.classify_cells import Axis, Cell
-    from roadproof.analysis.classify_drives import Example
-    from roadproof.analysis.classify_shares import Shares
-    from roadproof.analysis.classify_text import Claim
+    from roadproof.analysis.classify.cells import Axis, Cell
+    from roadproof.analysis.classify.classes import Class, Classes, Plan
+    from roadproof.analysis.classify.drives import Example
+    from roadproof.analysis.classify.shares import Shares
+    from roadproof.analysis.classify.text import Claim
     from roadproof.analysis.overlap import Asked
     from roadproof.prove.prover import Result
     from roadproof.spec.library import Specification
@@ -96,8 +96,8 @@ class Settled:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.analysis.classify import plan_of
-    from roadproof.analysis.classify_text import claims_of, with_classes, write_classes
+    from roadproof.analysis.classify.classes import plan_of
+    from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
     from roadproof.analysis.meeting import read_numbers, scenario_numbers
     from roadproof.cli.classify_output import Answers, as_data, evidence_folder, summary, write
     from roadproof.report.classify import as_table
@@ -174,7 +174,7 @@ def count_on(
     classes: "Classes", specification: "Specification", asked: "Asked", recordings: "Iterator[Recording]"
 ) -> "Shares":
     """The shares of the classes of ``specification`` on recordings, under the values that were asked for."""
-    from roadproof.analysis.classify_shares import count_shares
+    from roadproof.analysis.classify.shares import count_shares
     from roadproof.spec.bind import default_values
 
     values = {**default_values(specification.library), **asked.values}
@@ -185,8 +185,8 @@ def _divide(
     asked: "Asked", plan: "Plan", processes: int | None
 ) -> "tuple[Classes, dict[tuple[str, ...], tuple[str, ...]]]":
     """The cells of every axis of a plan, and the claims why there are no more, by vehicles."""
-    from roadproof.analysis.classify import Classes, what_axis, where_axis
-    from roadproof.analysis.classify_cells import outline
+    from roadproof.analysis.classify.cells import outline
+    from roadproof.analysis.classify.classes import Classes, what_axis, where_axis
 
     _, specification = asked.load()
     axes = [what_axis(plan, group, specification) for group in plan.groups]
@@ -213,7 +213,7 @@ def _divide(
 
 def refine_one(job: Refining) -> "Cell":
     """One cell with few words."""
-    from roadproof.analysis.classify_cells import refine
+    from roadproof.analysis.classify.cells import refine
 
     return refine(job.axis, job.asked.load()[1], job.holds, job.others)
 
@@ -244,8 +244,8 @@ def _settle(
 
 def settle(job: Settling) -> Settled:
     """The drives or the proofs of one job."""
-    from roadproof.analysis.classify_drives import find_examples
-    from roadproof.analysis.classify_text import with_classes
+    from roadproof.analysis.classify.drives import find_examples
+    from roadproof.analysis.classify.text import with_classes
     from roadproof.prove.prover import prove
 
     if job.classes:

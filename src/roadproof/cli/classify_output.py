@@ -12,10 +12,10 @@ from roadproof.cli.options import write_json, write_text
 from roadproof.files import make_folder, write_whole
 
 if TYPE_CHECKING:
-    from roadproof.analysis.classify import Class, Classes
-    from roadproof.analysis.classify_drives import Example
-    from roadproof.analysis.classify_shares import Shares
-    from roadproof.analysis.classify_text import Claim
+    from roadproof.analysis.classify.classes import Class, Classes
+    from roadproof.analysis.classify.drives import Example
+    from roadproof.analysis.classify.shares import Shares
+    from roadproof.analysis.classify.text import Claim
     from roadproof.analysis.overlap import Asked
     from roadproof.prove.prover import Result
     from roadproof.spec.library import Specification
@@ -56,7 +56,7 @@ def evidence_folder(out: Path | None, target: str | None) -> Path | None:
 
 def as_data(answers: Answers, folder: Path | None, seconds: float) -> tuple[dict[str, Any], dict[str, str]]:
     """The answer as plain data, and files by their path in ``folder``; without one, evidence is inside."""
-    from roadproof.analysis.classify_text import FILE_NAME
+    from roadproof.analysis.classify.text import FILE_NAME
     from roadproof.evidence.certificate import to_json
 
     files: dict[str, str] = {}
@@ -109,7 +109,7 @@ def as_data(answers: Answers, folder: Path | None, seconds: float) -> tuple[dict
 
 
 def _classes(answers: Answers) -> "Iterator[tuple[Class, dict[str, Any]]]":
-    from roadproof.analysis.classify_text import describe
+    from roadproof.analysis.classify.text import describe
 
     counts = answers.shares
     for one in answers.classes.all():
@@ -149,8 +149,8 @@ def _shares(answers: Answers) -> dict[str, Any] | None:
 
 def _claims_text(claims: "Sequence[Claim]") -> str:
     """The claims as a file for ``prove --claims``: paragraphs under a comment for each kind."""
-    from roadproof.analysis.classify import SET_NAME
-    from roadproof.analysis.classify_text import FILE_NAME
+    from roadproof.analysis.classify.classes import SET_NAME
+    from roadproof.analysis.classify.text import FILE_NAME
 
     lines = [f"# To be proved with --spec {FILE_NAME} --set {SET_NAME}.", ""]
     for kind, heading in _HEADINGS.items():

@@ -24,9 +24,9 @@ from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
-    from roadproof.analysis.coverage import Covered
-    from roadproof.analysis.coverage_classes import Answer, Found, Group, Survey
-    from roadproof.analysis.coverage_needed import Need
+    from roadproof.analysis.coverage.claims import Covered
+    from roadproof.analysis.coverage.classes import Answer, Found, Group, Survey
+    from roadproof.analysis.coverage.needed import Need
     from roadproof.analysis.overlap import Asked
 
 SUMMARY = "which disturbances a spec set misses, by drives in classes; or a proof that it misses none"
@@ -165,7 +165,7 @@ def _broken(proved: bool, classes: list[dict[str, Any]], traffic: dict[str, Any]
 
 
 def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
-    from roadproof.analysis.coverage_classes import survey_of
+    from roadproof.analysis.coverage.classes import survey_of
     from roadproof.analysis.overlap import Asked
     from roadproof.world.models import load_road
 
@@ -199,7 +199,7 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
 
 
 def _prove(asked: "Asked", processes: int | None) -> "list[Covered]":
-    from roadproof.analysis.coverage import claims_of
+    from roadproof.analysis.coverage.claims import claims_of
 
     jobs = [ClaimJob(asked, claim) for claim in claims_of(asked.load()[1])]
     with closing(work_in_order(prove_one, jobs, processes)) as answers:
@@ -208,13 +208,13 @@ def _prove(asked: "Asked", processes: int | None) -> "list[Covered]":
 
 def prove_one(job: ClaimJob) -> "Covered":
     """The answer to one claim of coverage."""
-    from roadproof.analysis.coverage import prove_claim
+    from roadproof.analysis.coverage.claims import prove_claim
 
     return prove_claim(job.asked, job.claim)
 
 
 def _find_needs(asked: "Asked", processes: int | None) -> "list[Need]":
-    from roadproof.analysis.coverage_needed import replaced_by
+    from roadproof.analysis.coverage.needed import replaced_by
 
     jobs = [NeedJob(asked, name) for name in replaced_by(asked)]
     needs: list[Need] = []
@@ -228,14 +228,14 @@ def _find_needs(asked: "Asked", processes: int | None) -> "list[Need]":
 
 def find_one_need(job: NeedJob) -> "Need":
     """Whether one definition is needed."""
-    from roadproof.analysis.coverage_needed import find_need
+    from roadproof.analysis.coverage.needed import find_need
 
     return find_need(job.asked, job.name)
 
 
 def _settle(survey: "Survey", evidence: Evidence, processes: int | None) -> None:
     """Answers for all groups of classes go to ``evidence``; what it holds already is not asked again."""
-    from roadproof.analysis.coverage_classes import groups_of
+    from roadproof.analysis.coverage.classes import groups_of
 
     groups = groups_of(survey)
     left = [group for group in groups if not evidence.has(group)]
@@ -262,14 +262,14 @@ def _concerning(group: "Group", known: "Sequence[Found]") -> "tuple[Found, ...]"
 
 def look_up(job: CatalogueJob) -> "list[Found]":
     """The gaps in one part of the catalogue."""
-    from roadproof.analysis.coverage_settling import find_in_catalogue
+    from roadproof.analysis.coverage.settling import find_in_catalogue
 
     return find_in_catalogue(job.survey, job.road, job.chunk, CHUNKS)
 
 
 def settle(job: GroupJob) -> "tuple[Group, list[Answer]]":
     """The answers for one group of classes."""
-    from roadproof.analysis.coverage_settling import settle_group
+    from roadproof.analysis.coverage.settling import settle_group
 
     return job.group, settle_group(job.survey, job.group, job.known)
 

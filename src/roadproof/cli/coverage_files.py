@@ -11,9 +11,9 @@ from roadproof.cli.options import write_text
 from roadproof.cli.working import work
 
 if TYPE_CHECKING:
-    from roadproof.analysis.coverage import Covered
-    from roadproof.analysis.coverage_classes import Answer, Group, Survey
-    from roadproof.analysis.coverage_needed import Need
+    from roadproof.analysis.coverage.claims import Covered
+    from roadproof.analysis.coverage.classes import Answer, Group, Survey
+    from roadproof.analysis.coverage.needed import Need
     from roadproof.analysis.overlap import Asked
 
 Entry = dict[str, Any]
@@ -61,7 +61,7 @@ class Evidence:
 
     def entries(self, survey: "Survey") -> tuple[list[Entry], list[Entry]]:
         """All classes in order, their gaps by numbers; and all gaps, counted from 1 on."""
-        from roadproof.analysis.coverage_classes import groups_of
+        from roadproof.analysis.coverage.classes import groups_of
 
         classes: list[Entry] = []
         gaps: list[Entry] = []

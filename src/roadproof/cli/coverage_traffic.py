@@ -19,8 +19,8 @@ def count_in_traffic(asked: "Asked", folder: Path, classes: list[Entry]) -> Entr
     A class without a drive that occurs is seen so: its reason says where. A class that is proved empty
     and occurs is CROSSCHECK-FAILED.
     """
-    from roadproof.analysis.coverage_classes import Classes
-    from roadproof.analysis.coverage_traffic import disturbances_in
+    from roadproof.analysis.coverage.classes import Classes
+    from roadproof.analysis.coverage.traffic import disturbances_in
 
     known = Classes(asked)
     disturbances = 0

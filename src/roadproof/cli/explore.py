@@ -17,10 +17,10 @@ from roadproof.errors import UsageError
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
-    from roadproof.analysis.explore import Asked, Finding
-    from roadproof.analysis.explore_extreme import Extreme, Sought
-    from roadproof.analysis.explore_measure import Measure
-    from roadproof.analysis.explore_search import Reply, Task
+    from roadproof.analysis.explore.extreme import Extreme, Sought
+    from roadproof.analysis.explore.measure import Measure
+    from roadproof.analysis.explore.search import Reply, Task
+    from roadproof.analysis.explore.values import Asked, Finding
     from roadproof.spec.library import Library
     from roadproof.witness.ask import Request
 
@@ -136,8 +136,8 @@ def _jobs(args: argparse.Namespace, library: "Library") -> list[Job]:
 
 
 def _job(args: argparse.Namespace, what: str, request: "Request", library: "Library") -> Job:
-    from roadproof.analysis.explore import Asked
-    from roadproof.analysis.explore_measure import read_measure
+    from roadproof.analysis.explore.measure import read_measure
+    from roadproof.analysis.explore.values import Asked
     from roadproof.spec.elaborate import read_claim
     from roadproof.witness.ask import as_formula
     from roadproof.witness.impossible import split_given
@@ -176,9 +176,9 @@ def _make_ready(folder: Path | None, processes: int) -> None:
 
 def carry_out(job: Job) -> dict[str, Any]:
     """Explore one formula; what was found as plain data, evidence inside."""
-    from roadproof.analysis.explore import explore
-    from roadproof.analysis.explore_extreme import Sought, find_extremes
-    from roadproof.analysis.explore_search import look
+    from roadproof.analysis.explore.extreme import Sought, find_extremes
+    from roadproof.analysis.explore.search import look
+    from roadproof.analysis.explore.values import explore
 
     begun = time.monotonic()
     asked, request = job.asked, job.asked.request
@@ -214,7 +214,7 @@ def carry_out(job: Job) -> dict[str, Any]:
 
 
 def _seek(sought: "Sought") -> "Extreme":
-    from roadproof.analysis.explore_extreme import find_extreme
+    from roadproof.analysis.explore.extreme import find_extreme
 
     return find_extreme(sought, say=tell)
 
@@ -234,7 +234,7 @@ def _plain(finding: "Finding | None") -> dict[str, Any] | None:
 
 
 def _extreme(sought: "Sought", extreme: "Extreme") -> dict[str, Any]:
-    from roadproof.analysis.explore_text import unit_text
+    from roadproof.analysis.explore.text import unit_text
 
     measure = extreme.measure
     data: dict[str, Any] = {"sense": measure.sense, "measure": measure.text, "when": measure.when}

@@ -10,7 +10,7 @@ from roadproof.cli.options import read_value
 from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
-    from roadproof.analysis.explore_knobs import Knob
+    from roadproof.analysis.explore.knobs import Knob
     from roadproof.spec.elaborate import Query
     from roadproof.spec.library import Library
     from roadproof.witness.ask import Request
@@ -46,8 +46,8 @@ def _knob(text: str, request: "Request", query: "Query", library: "Library") -> 
 
 
 def _parameter(text: str, name: str, low: str, high: str, query: "Query", library: "Library") -> "Knob":
-    from roadproof.analysis.explore_knobs import Knob
-    from roadproof.analysis.explore_text import unit_text
+    from roadproof.analysis.explore.knobs import Knob
+    from roadproof.analysis.explore.text import unit_text
     from roadproof.logic.rewrite import parameters_of
     from roadproof.spec.library import unknown
     from roadproof.spec.quantity import UNITS
@@ -72,7 +72,7 @@ def _parameter(text: str, name: str, low: str, high: str, query: "Query", librar
 
 
 def _limit(text: str, name: str, low: str, high: str, request: "Request", query: "Query") -> "Knob":
-    from roadproof.analysis.explore_knobs import Knob
+    from roadproof.analysis.explore.knobs import Knob
     from roadproof.world.vehicle import LIMITS
 
     read = _LIMIT.fullmatch(name)

@@ -27,7 +27,8 @@ from roadproof.verdict import ExitCode
 if TYPE_CHECKING:
     from roadproof.analysis.journal import Journal
     from roadproof.analysis.meeting import Node
-    from roadproof.analysis.order import Decided, Kind
+    from roadproof.analysis.order.deciding import Decided
+    from roadproof.analysis.order.kinds import Kind
     from roadproof.analysis.overlap import Asked
 
 SUMMARY = "which scenarios imply which: proofs for the implications, drives against the others"
@@ -82,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
     from roadproof.analysis.meeting import read_numbers
-    from roadproof.analysis.order import kinds_of
+    from roadproof.analysis.order.kinds import kinds_of
     from roadproof.analysis.overlap import Asked
 
     library = load_library_of(args)
@@ -111,7 +112,8 @@ def _settle(
     Doubts are left to the end, when the drives of all families are there to settle them.
     """
     from roadproof.analysis.journal import Journal, fingerprint
-    from roadproof.analysis.order import families_of, settle_doubts
+    from roadproof.analysis.order.deciding import settle_doubts
+    from roadproof.analysis.order.kinds import families_of
 
     families = {str(family[0].node): family for family in families_of(kinds)}
     journal = None
@@ -139,7 +141,7 @@ def _settle(
 
 def settle(job: Job) -> "tuple[str, Decided]":
     """What is found for one family, which has the name of its first node."""
-    from roadproof.analysis.order import decide_family
+    from roadproof.analysis.order.deciding import decide_family
 
     return str(job.family[0].node), decide_family(job.asked, job.kinds, job.family)
 
@@ -187,7 +189,7 @@ def _as_data(
     asked: "Asked", kinds: "tuple[Kind, ...]", answers: Sequence[Mapping[str, Any]]
 ) -> dict[str, Any]:
     """All answers together: the edges of the Hasse diagram, and for the other pairs what refutes them."""
-    from roadproof.analysis.order import reachable, transitive_reduction
+    from roadproof.analysis.order.relation import reachable, transitive_reduction
 
     proved = [edge for answer in answers for edge in answer["proved"]]
     pairs = {(edge["from"], edge["to"]) for edge in proved}
@@ -223,7 +225,7 @@ def _missing(
     doubtful: set[tuple[str, str]],
 ) -> list[dict[str, Any]]:
     """The pairs of kinds without implication, with the numbers of the drives that show it."""
-    from roadproof.analysis.order import reachable
+    from roadproof.analysis.order.relation import reachable
 
     refuting: dict[tuple[str, str], list[int]] = {}
     for drive in drives:

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from roadproof.analysis.coverage import (
+from roadproof.analysis.coverage.catalogue import HORIZON, ZERO, catalogue
+from roadproof.analysis.coverage.claims import (
     PROOF_SECONDS,
     STARTS,
     claims_of,
@@ -13,8 +14,7 @@ from roadproof.analysis.coverage import (
     replaced_in,
     two_vehicle_numbers,
 )
-from roadproof.analysis.coverage_catalogue import HORIZON, ZERO, catalogue
-from roadproof.analysis.coverage_trial import TRIAL, Trials
+from roadproof.analysis.coverage.trial import TRIAL, Trials
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import as_data
 from roadproof.evidence.witness import DriveFile, judge_file

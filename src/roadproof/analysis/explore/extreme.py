@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeAlias
 
-from roadproof.analysis.explore import PROOF_SECONDS, QUICK_PROOF, Finding, LookAll, Say, look_one_by_one
-from roadproof.analysis.explore_bracket import Bracket
-from roadproof.analysis.explore_knobs import Knob, Point, stated, with_point
-from roadproof.analysis.explore_measure import Measure
-from roadproof.analysis.explore_range import range_of, starting_ranges
-from roadproof.analysis.explore_search import (
+from roadproof.analysis.explore.bracket import Bracket
+from roadproof.analysis.explore.knobs import Knob, Point, stated, with_point
+from roadproof.analysis.explore.measure import Measure
+from roadproof.analysis.explore.range import range_of, starting_ranges
+from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
     PLAIN_FIRST,
     Pool,
@@ -25,7 +24,15 @@ from roadproof.analysis.explore_search import (
     claim_of,
     made_for,
 )
-from roadproof.analysis.explore_text import conjoin
+from roadproof.analysis.explore.text import conjoin
+from roadproof.analysis.explore.values import (
+    PROOF_SECONDS,
+    QUICK_PROOF,
+    Finding,
+    LookAll,
+    Say,
+    look_one_by_one,
+)
 from roadproof.errors import InputError
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.signals import Courses, DriveSignals

@@ -2,8 +2,8 @@
 
 from fractions import Fraction
 
-from roadproof.analysis.explore import Finding
-from roadproof.analysis.explore_knobs import between
+from roadproof.analysis.explore.knobs import between
+from roadproof.analysis.explore.values import Finding
 from roadproof.verdict import Verdict
 
 PATIENCE = 2  # doubts in a row before one is taken for the end

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from itertools import combinations
 
-from roadproof.analysis.coverage import missed, numbers_on, replaced_in
+from roadproof.analysis.coverage.claims import missed, numbers_on, replaced_in
 from roadproof.analysis.overlap import Asked
 from roadproof.evidence.witness import DriveFile
 from roadproof.judge.exact import judge

@@ -7,20 +7,19 @@ one road sector is put on roads of the others. Families of nodes that differ in 
 nothing with other families, so that each can be decided by itself.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import permutations
 from typing import Any
 
-from roadproof.analysis.meeting import Node, applied, scenario_numbers, vehicles_of
-from roadproof.analysis.overlap import Asked, without_sectors
+from roadproof.analysis.meeting import Node, applied, vehicles_of
+from roadproof.analysis.order.kinds import Kind, text_of
+from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.exact import judge
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import without_names
 from roadproof.prove.prover import prove
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import Query, read_claim
@@ -31,18 +30,6 @@ from roadproof.witness.question import Means, usual_road
 from roadproof.world.drive import Drive
 
 FAR = Fraction(2000)
-
-
-@dataclass(frozen=True)
-class Kind:
-    """Scenarios with one formula, the first of which stands for all; ``like``: equal but for the sector."""
-
-    nodes: tuple[Node, ...]
-    like: int
-
-    @property
-    def node(self) -> Node:
-        return self.nodes[0]
 
 
 @dataclass(frozen=True)
@@ -89,42 +76,6 @@ class Decided:
     doubts: tuple[Doubt, ...] = ()
 
 
-def kinds_of(asked: Asked, numbers: Sequence[int] | None = None) -> tuple[Kind, ...]:
-    """The scenarios of all sets of ``asked`` in groups with one formula; ``numbers``: only these."""
-    _, specification = asked.load()
-    found: dict[Formula, list[Node]] = {}
-    likes: dict[Formula, int] = {}
-    for set_name in asked.sets:
-        there = specification.in_set(set_name)
-        for number in scenario_numbers(there):
-            if numbers is not None and number not in numbers:
-                continue
-            node = Node(number, set_name)
-            formula = read_claim(specification, _text(asked, node)).formula
-            found.setdefault(without_names(formula), []).append(node)
-            likes.setdefault(without_sectors(formula), len(likes))
-    return tuple(
-        Kind(
-            tuple(nodes),
-            likes[without_sectors(read_claim(specification, _text(asked, nodes[0])).formula)],
-        )
-        for nodes in found.values()
-    )
-
-
-def _text(asked: Asked, node: Node) -> str:
-    _, specification = asked.load()
-    return applied(node, specification, vehicles_of(specification, node))
-
-
-def families_of(kinds: Sequence[Kind]) -> list[tuple[Kind, ...]]:
-    """The kinds in groups that differ in their road sectors only."""
-    families: dict[int, list[Kind]] = {}
-    for kind in kinds:
-        families.setdefault(kind.like, []).append(kind)
-    return [tuple(family) for family in families.values()]
-
-
 def decide_family(asked: Asked, kinds: Sequence[Kind], family: Sequence[Kind]) -> Decided:
     """Decide the implications from the kinds of ``family`` to all other ``kinds``."""
     return _Deciding(asked, tuple(kinds), tuple(family)).run()
@@ -165,27 +116,6 @@ def _refuted_by(
             if shown is not None:
                 return shown
     return None
-
-
-def transitive_reduction(pairs: Set[tuple[str, str]]) -> set[tuple[str, str]]:
-    """The pairs of a relation that do not follow from others by a chain."""
-    kept = set(pairs)
-    for above, below in sorted(pairs):
-        rest = kept - {(above, below)}
-        if below in reachable(above, rest):
-            kept = rest
-    return kept
-
-
-def reachable(name: str, pairs: Set[tuple[str, str]]) -> set[str]:
-    """All that a chain of pairs leads to from ``name``, and ``name``."""
-    seen, waiting = {name}, [name]
-    while waiting:
-        current = waiting.pop()
-        new = {below for above, below in pairs if above == current} - seen
-        seen |= new
-        waiting += new
-    return seen
 
 
 @dataclass(frozen=True)
@@ -248,7 +178,7 @@ class _Deciding:
             yield _Cast(applied(kind.node, self.specification, vehicles), tuple(others))
 
     def _refute_with_pool(self, kind: Kind) -> None:
-        text = _text(self.asked, kind.node)
+        text = text_of(self.asked, kind.node)
         alone = " and ".join([text, *(f"not {x}" for x in self._same_elsewhere(kind))])
         if not self.pool:
             found = self._ask(text, text)
@@ -262,7 +192,7 @@ class _Deciding:
 
     def _same_elsewhere(self, kind: Kind) -> list[str]:
         """The kinds that differ from this one in the sector only."""
-        return [_text(self.asked, x.node) for x in self.family if x != kind]
+        return [text_of(self.asked, x.node) for x in self.family if x != kind]
 
     def _use(self, kind: Kind, shown: Shown) -> None:
         """Refute with a drive all that it refutes of what is still open."""
@@ -348,7 +278,7 @@ class _Deciding:
         for twin in self.family:
             if twin != kind:
                 others = [f"not {x}" for x in self._same_elsewhere(twin)]
-                alone = " and ".join([_text(self.asked, twin.node), *others])
+                alone = " and ".join([text_of(self.asked, twin.node), *others])
                 placed = show_elsewhere(found, alone, self.library)
                 if placed is not None:
                     self._use(twin, placed)

@@ -8,8 +8,8 @@ from itertools import combinations, pairwise, product
 from pathlib import Path
 from typing import Any, get_args
 
-from roadproof.analysis.classify import SET_NAME, Class, Plan, where_axis
-from roadproof.analysis.classify_text import FILE_NAME, with_classes
+from roadproof.analysis.classify.classes import SET_NAME, Class, Plan, where_axis
+from roadproof.analysis.classify.text import FILE_NAME, with_classes
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere, zones_of
 from roadproof.evidence.witness import from_json, judge_file

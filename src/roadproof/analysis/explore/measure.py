@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.analysis.explore_text import compared, eventually, expression
+from roadproof.analysis.explore.text import compared, eventually, expression
 from roadproof.errors import UsageError
 from roadproof.logic.syntax import Expression
 from roadproof.logic.terms import Dimension, Inverse, Signal, Term, leaves

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.analysis.coverage import missed, numbers_on
-from roadproof.analysis.coverage_classes import Classes
+from roadproof.analysis.coverage.claims import missed, numbers_on
+from roadproof.analysis.coverage.classes import Classes
 from roadproof.analysis.overlap import Asked
 from roadproof.monitor.batch import Array, Batch
 from roadproof.monitor.compiled import Monitor, compile

@@ -6,8 +6,8 @@ from itertools import combinations
 from textwrap import wrap
 from typing import Literal
 
-from roadproof.analysis.classify import SET_NAME, Classes, Group, name_of, what_axis, where_axis
-from roadproof.analysis.classify_cells import Cell, text_of
+from roadproof.analysis.classify.cells import Cell, text_of
+from roadproof.analysis.classify.classes import SET_NAME, Classes, Group, name_of, what_axis, where_axis
 from roadproof.errors import InputError
 from roadproof.spec.library import Library, Source, Specification, build_library
 

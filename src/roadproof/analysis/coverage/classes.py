@@ -12,8 +12,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-from roadproof.analysis.coverage import numbers_on, sectors_of, wider_sets
-from roadproof.analysis.coverage_parts import Part, parts_of
+from roadproof.analysis.coverage.claims import numbers_on, sectors_of, wider_sets
+from roadproof.analysis.coverage.parts import Part, parts_of
 from roadproof.analysis.overlap import Asked, likes_of
 from roadproof.evidence.witness import DriveFile
 from roadproof.judge.exact import judge

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from roadproof.analysis.classify_cells import Axis, Cell
+from roadproof.analysis.classify.cells import Axis, Cell
 from roadproof.analysis.meeting import Node, vehicles_of
 from roadproof.analysis.overlap import likes_of
 from roadproof.errors import InputError, TextError, UsageError

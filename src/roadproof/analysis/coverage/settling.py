@@ -5,9 +5,9 @@ from dataclasses import replace
 from itertools import islice, product
 from typing import Any
 
-from roadproof.analysis.coverage import STARTS, caught, missed, some_scenario
-from roadproof.analysis.coverage_catalogue import HORIZON, catalogue
-from roadproof.analysis.coverage_classes import (
+from roadproof.analysis.coverage.catalogue import HORIZON, catalogue
+from roadproof.analysis.coverage.claims import STARTS, caught, missed, some_scenario
+from roadproof.analysis.coverage.classes import (
     Answer,
     Classes,
     Found,
@@ -17,9 +17,9 @@ from roadproof.analysis.coverage_classes import (
     exchanged,
     near_miss,
 )
-from roadproof.analysis.coverage_minimal import simplest
-from roadproof.analysis.coverage_parts import Part
-from roadproof.analysis.coverage_trial import Trials
+from roadproof.analysis.coverage.minimal import simplest
+from roadproof.analysis.coverage.parts import Part
+from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeAlias
 
-from roadproof.analysis.explore_text import always, compared, expression
+from roadproof.analysis.explore.text import always, compared, expression
 from roadproof.logic.syntax import Expression
 from roadproof.spec.quantity import UNITS
 from roadproof.witness.ask import Request

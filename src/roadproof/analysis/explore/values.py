@@ -10,8 +10,8 @@ from fractions import Fraction
 from itertools import pairwise, product
 from typing import Any, TypeAlias
 
-from roadproof.analysis.explore_knobs import Knob, Point, between, stated, with_point
-from roadproof.analysis.explore_search import (
+from roadproof.analysis.explore.knobs import Knob, Point, between, stated, with_point
+from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
     PLAIN_FIRST,
     Claim,
@@ -23,7 +23,7 @@ from roadproof.analysis.explore_search import (
     duration_parameters,
     look,
 )
-from roadproof.analysis.explore_text import conjoin
+from roadproof.analysis.explore.text import conjoin
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import load_library
 from roadproof.verdict import Verdict
