@@ -138,6 +138,7 @@ class _Deciding:
         self.edges: list[Edge] = []
         self.drives: list[Refuting] = []
         self.doubts: list[Doubt] = []
+        self.vain: set[int] = set()  # what kinds are like that no drive was found against
         # By kind and kind: the readings of the second that no drive has refuted yet.
         self.open: dict[tuple[Node, Node], set[tuple[str, str]]] = {}
 
@@ -149,8 +150,8 @@ class _Deciding:
         for kind in self.family:
             self._refute_with_pool(kind)
         for kind in self.family:
-            for other in (x.node for x in self.kinds):
-                if self.open.get((kind.node, other)):
+            for other in self.kinds:
+                if self.open.get((kind.node, other.node)):
                     self._decide(kind, other)
         return Decided(tuple(self.edges), tuple(self.drives), tuple(self.doubts))
 
@@ -249,9 +250,12 @@ class _Deciding:
 
     # --- proofs ----------------------------------------------------------------------------------
 
-    def _decide(self, kind: Kind, other: Node) -> None:
-        """A proof of one of the readings, or drives against all that are left."""
-        one = kind.node
+    def _decide(self, kind: Kind, target: Kind) -> None:
+        """A proof of one of the readings, or drives against all that are left.
+
+        What was looked for in vain is not looked for again on another road.
+        """
+        one, other = kind.node, target.node
         for text, below in sorted(self.open[one, other]):
             claim = f"{text} -> {below}"
             result = prove(self.specification, claim, self.asked.proof_seconds)
@@ -261,8 +265,9 @@ class _Deciding:
         for text, below in sorted(self.open[one, other]):
             if (text, below) not in self.open[one, other]:
                 continue
-            found = self._ask(f"{text} and not {below}", text)
+            found = None if target.like in self.vain else self._ask(f"{text} and not {below}", text)
             if found is None:
+                self.vain.add(target.like)
                 self.doubts.append(Doubt(one, other, tuple(sorted(self.open[one, other]))))
                 return
             if len(vehicles_of(self.specification, one)) == len(self._query(f"{text} and {below}").vehicles):
