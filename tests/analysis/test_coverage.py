@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.analysis.coverage.catalogue import HORIZON, catalogue
 from roadproof.analysis.coverage.claims import (
     claims_of,
     missed,
@@ -148,3 +149,18 @@ def test_a_definition_is_shown_needed() -> None:
 
 def test_a_set_that_extends_nothing_needs_nothing() -> None:
     assert replaced_by(Asked(("base",))) == ()
+
+
+def test_a_trial_set_with_nothing_of_a_wider_set_is_not_that_set() -> None:
+    """One object judges under both, and what it remembers of one is not taken for the other."""
+    asked = Asked(("ext",))
+    trials = Trials(asked, ("complete",))
+    road, car = load_road("main-2"), load_vehicle("car")
+    options = trials.specification.options
+    files = (
+        DriveFile(None, "ext", "", HORIZON, {}, trials.values, options, road, drive)
+        for drive in catalogue(road, car)
+    )
+    file = next(x for x in files if trials.misses(x, "complete", ()))
+    assert not trials.misses(file, "complete", None)
+    assert trials.misses(file, "complete", ())

@@ -7,7 +7,10 @@ import pytest
 
 from roadproof.analysis.coverage import claims, classes, settling
 from roadproof.analysis.coverage.classes import Found, Group, Survey, groups_of
+from roadproof.analysis.overlap import Asked
+from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.main import main
+from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode
 
 WANTED = ("behaviourPOV_4", "behaviourSV_8")
@@ -62,6 +65,15 @@ def test_evidence_in_files_and_going_on(
     assert [x["certificate"] for x in again["classes"]] == [x["certificate"] for x in data["classes"]]
     assert len((out / "answers.jsonl").read_text().splitlines()) == 1 + len(WANTED)
     assert few == []
+
+
+def test_answers_that_compare_with_other_sets_are_not_taken_over(tmp_path: Path) -> None:
+    """Which set is the first to catch a drive is part of an answer, so it depends on the sets compared."""
+    asked = Asked(("base",))
+    Evidence(tmp_path, Survey(asked, ("extA", "ext")))
+    Evidence(tmp_path, Survey(asked, ("extA", "ext"), roads=("main-3",)))
+    with pytest.raises(UsageError, match="another question"):
+        Evidence(tmp_path, Survey(asked, ("extA", "ext", "complete")))
 
 
 def test_a_folder_with_other_answers_is_left_alone(

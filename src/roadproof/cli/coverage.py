@@ -112,7 +112,7 @@ class GroupJob:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     asked, survey = _asked(args)
-    evidence = Evidence(args.out, asked)
+    evidence = Evidence(args.out, survey)
     covered = _prove(asked, args.jobs)
     proved = all(x.verdict is Verdict.PROVED for x in covered)
     needs: list[Need] = []

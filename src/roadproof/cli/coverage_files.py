@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from roadproof.analysis.coverage.claims import Covered
     from roadproof.analysis.coverage.classes import Answer, Group, Survey
     from roadproof.analysis.coverage.needed import Need
-    from roadproof.analysis.overlap import Asked
 
 Entry = dict[str, Any]
 
@@ -30,18 +29,18 @@ class PictureJob:
 class Evidence:
     """Answers by component; with a folder, drives and certificates are files there, beside a journal."""
 
-    def __init__(self, folder: Path | None, asked: "Asked") -> None:
+    def __init__(self, folder: Path | None, survey: "Survey") -> None:
         from roadproof.analysis.journal import Journal, fingerprint
 
         self.folder = folder
-        self.asked = asked
+        self.asked = survey.asked
         self.answers: dict[str, list[Entry]] = {}
         self.journal: Journal | None = None
         self.shown: list[tuple[Entry, Entry]] = []
         if folder is not None:
-            values = " ".join(f"{name}={value}" for name, value in sorted(asked.values.items()))
-            question = {"coverage": asked.sets[0], "options": repr(sorted(asked.options.items()))}
-            self.journal = Journal(folder, fingerprint(asked.load()[0], {**question, "values": values}))
+            # Not the roads: what was decided on some of them stays so, and doubts are asked again.
+            question = {"coverage": " ".join(survey.wider), **survey.asked.question()}
+            self.journal = Journal(folder, fingerprint(survey.asked.load()[0], question))
             self.answers = {x["group"]: x["classes"] for x in self.journal.answers()}
 
     def has(self, group: "Group") -> bool:

@@ -27,7 +27,7 @@ class Trials:
         self.library, self.specification = asked.load()
         self.values = {**default_values(self.library), **asked.values}
         self.numbers: dict[Road, tuple[int, ...]] = {}
-        self.bound: dict[tuple[str, tuple[str, ...], Road], Formula] = {}
+        self.bound: dict[tuple[str, tuple[str, ...] | None, Road], Formula] = {}
 
     def numbers_on(self, road: Road) -> tuple[int, ...]:
         """The scenarios whose sector's zones the road has; the others cannot hold on it."""
@@ -59,7 +59,7 @@ class Trials:
 
     def misses(self, file: DriveFile, wide: str, names: tuple[str, ...] | None) -> bool:
         """Whether the drive is a gap of ``wide``, or of the trial set with its definitions ``names``."""
-        key = (wide, names or (), file.road)
+        key = (wide, names, file.road)
         if key not in self.bound:
             specification = self.specification.in_set(wide)
             if names is not None:
