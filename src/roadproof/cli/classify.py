@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.cli.evidence import evidence_folder
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -18,6 +19,7 @@ from roadproof.cli.options import (
 )
 from roadproof.cli.working import tell, work, work_in_order
 from roadproof.errors import UsageError
+from roadproof.files import make_folder
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 if TYPE_CHECKING:
@@ -99,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.analysis.classify.classes import plan_of
     from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
     from roadproof.analysis.meeting import read_numbers, scenario_numbers
-    from roadproof.cli.classify_output import Answers, as_data, evidence_folder, summary, write
+    from roadproof.cli.classify_output import Answers, as_data, summary, write
     from roadproof.report.classify import as_table
 
     begun = time.monotonic()
@@ -108,6 +110,8 @@ def run(args: argparse.Namespace) -> int:
     numbers = read_numbers(args.among, specification) if args.among else scenario_numbers(specification)
     plan = plan_of(specification, numbers)
     folder = evidence_folder(args.out, args.json)
+    if folder is not None:
+        make_folder(folder)
     source, recordings = _recordings(args)
     classes, empty = _divide(asked, plan, args.jobs)
     text = write_classes(classes, specification, [path.name for path in asked.specs])

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import write_json, write_text
+from roadproof.cli.options import json_text, write_json, write_text
 from roadproof.files import make_folder, write_whole
 
 if TYPE_CHECKING:
@@ -44,16 +44,6 @@ class Answers:
     source: str
 
 
-def evidence_folder(out: Path | None, target: str | None) -> Path | None:
-    """DIR of --out, or FILE-evidence beside the file of --json, or none. Raises ``InputError``."""
-    folder = out
-    if folder is None and target not in (None, "-"):
-        folder = Path(str(target)).with_name(f"{Path(str(target)).stem}-evidence")
-    if folder is not None:
-        make_folder(folder)
-    return folder
-
-
 def as_data(answers: Answers, folder: Path | None, seconds: float) -> tuple[dict[str, Any], dict[str, str]]:
     """The answer as plain data, and files by their path in ``folder``; without one, evidence is inside."""
     from roadproof.analysis.classify.text import FILE_NAME
@@ -71,7 +61,7 @@ def as_data(answers: Answers, folder: Path | None, seconds: float) -> tuple[dict
         drive = answers.examples[one.name].drive
         if drive is None:
             return None
-        return put(f"drives/{one.name}.json", json.dumps(drive, indent=2, ensure_ascii=False) + "\n", drive)
+        return put(f"drives/{one.name}.json", json_text(drive), drive)
 
     def certificate_of(claim: "Claim", result: "Result") -> object:
         if result.certificate is None:

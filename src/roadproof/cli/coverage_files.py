@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import write_text
+from roadproof.cli.options import json_text, write_text
 from roadproof.cli.working import work
 
 if TYPE_CHECKING:
@@ -137,8 +137,7 @@ class Evidence:
         }
 
     def _drive(self, name: str, drive: Mapping[str, Any]) -> object:
-        text = json.dumps(drive, indent=2, ensure_ascii=False) + "\n"
-        return dict(drive) if self.folder is None else self._text(name, text)
+        return dict(drive) if self.folder is None else self._text(name, json_text(drive))
 
     def _text(self, name: str, content: str | None) -> str | None:
         """The path of a file with this content, or the content where there is no folder."""

@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.evidence import evidence_folder
 from roadproof.cli.explore_files import draw_all, with_evidence
 from roadproof.cli.explore_options import read_knobs, read_precision, read_steps
 from roadproof.cli.options import add_json_option, load_library_of, write_json
@@ -90,9 +91,7 @@ def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     library = load_library_of(args)
     jobs = _jobs(args, library)
-    folder = args.out
-    if folder is None and args.json not in (None, "-"):
-        folder = Path(args.json).with_name(f"{Path(args.json).stem}-evidence")
+    folder = evidence_folder(args.out, args.json)
     _make_ready(folder, count_workers(range(1000), args.jobs))
     if len(jobs) > 1:
         jobs = [replace(job, processes=1, asked=replace(job.asked, width=1)) for job in jobs]

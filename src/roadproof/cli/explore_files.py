@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import write_text
+from roadproof.cli.options import json_text, write_text
 
 if TYPE_CHECKING:
     from roadproof.spec.library import Library
@@ -47,7 +47,7 @@ def _writer(folder: Path) -> Callable[[Mapping[str, Any], str], dict[str, Any]]:
         for kind in ("drive", "certificate"):
             if finding[kind] is None:
                 continue
-            text = json.dumps(finding[kind], indent=2, ensure_ascii=False) + "\n"
+            text = json_text(finding[kind])
             path = folder / f"{stem}.json"
             if kind == "drive" or text not in certificates:
                 write_text(path, text)

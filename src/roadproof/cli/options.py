@@ -159,11 +159,16 @@ def _assignments(option: str, texts: Iterable[str]) -> list[tuple[str, str]]:
 
 def write_json(data: Mapping[str, Any], target: str) -> None:
     """``data`` as JSON to the file ``target``, or to stdout where it is ``-``. Raises ``InputError``."""
-    text = json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+    text = json_text(data)
     if target == "-":
         sys.stdout.write(text)
     else:
         write_text(Path(target), text)
+
+
+def json_text(data: Mapping[str, Any]) -> str:
+    """``data`` as the text of a JSON file."""
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
 
 
 def write_text(path: Path, text: str) -> None:

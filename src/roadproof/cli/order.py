@@ -1,7 +1,6 @@
 """``roadproof order``: which scenarios imply which, with a certificate or a drive for every answer."""
 
 import argparse
-import json
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import closing
@@ -10,6 +9,7 @@ from itertools import permutations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.evidence import Evidence, read_drive
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -148,36 +148,26 @@ def settle(job: Job) -> "tuple[str, Decided]":
 
 def _drives(answers: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """The drive files of recorded answers."""
-    drives = [drive["drive"] for answer in answers for drive in answer["drives"]]
-    return [json.loads(Path(x).read_text("utf-8")) if isinstance(x, str) else x for x in drives]
+    return [read_drive(drive["drive"]) for answer in answers for drive in answer["drives"]]
 
 
 def _record(family: str, decided: "Decided", journal: "Journal | None") -> dict[str, Any]:
     """The answers for a family as plain data; evidence in files, or inside where there is no folder."""
-    files: list[str] = []
-
-    def kept(name: str, content: str) -> str | None:
-        if journal is None:
-            return None
-        write_text(journal.folder / name, content)
-        files.append(name)
-        return str(journal.folder / name)
-
+    evidence = Evidence(journal)
     edges = []
     for edge in decided.edges:
-        path = kept(f"edge-{_file(edge.above)}-{_file(edge.below)}.json", edge.certificate)
+        name = f"edge-{_file(edge.above)}-{_file(edge.below)}.json"
         names = {"from": str(edge.above), "to": str(edge.below), "claim": edge.claim}
-        edges.append({**names, "certificate": path or edge.certificate})
+        edges.append({**names, "certificate": evidence.certificate(name, edge.certificate)})
     drives = []
     for number, drive in enumerate(decided.drives, 1):
-        content = json.dumps(drive.data, indent=2, ensure_ascii=False) + "\n"
-        path = kept(f"drive-{_file(drive.node)}-{number}.json", content)
+        kept = evidence.drive(f"drive-{_file(drive.node)}-{number}.json", drive.data)
         others = sorted({str(node) for node in drive.others})
-        drives.append({"holds": str(drive.node), "fails": others, "drive": path or dict(drive.data)})
+        drives.append({"holds": str(drive.node), "fails": others, "drive": kept})
     doubts = [{"from": str(x.above), "to": str(x.below), "reason": x.reason} for x in decided.doubts]
     answer = {"family": family, "proved": edges, "drives": drives, "doubts": doubts}
     if journal is not None:
-        journal.add({"evidence": [] if doubts else files, **answer})
+        journal.add({"evidence": [] if doubts else evidence.files, **answer})
     return answer
 
 

@@ -1,7 +1,6 @@
 """``roadproof overlap``: which scenarios can hold together, with a drive or a proof for every pair."""
 
 import argparse
-import json
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import closing
@@ -10,6 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.evidence import Evidence, evidence_folder
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -80,9 +80,7 @@ def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     asked, pairs = _asked(args)
     question = {"lanes": args.lanes, "roles": args.roles, "start": args.start}
-    folder = args.out
-    if folder is None and args.json not in (None, "-"):
-        folder = Path(args.json).with_name(f"{Path(args.json).stem}-evidence")
+    folder = evidence_folder(args.out, args.json)
     verdicts = _settle(asked, pairs, folder, args.jobs)
     data = {
         "schema": SCHEMA,
@@ -171,15 +169,11 @@ def _record(entry: "Entry", journal: "Journal | None") -> dict[str, Any]:
     certificate: str | None = entry.certificate
     drive: object = entry.drive
     stem = f"{entry.a.set_name}-{entry.a.number:02}-{entry.b.set_name}-{entry.b.number:02}.json"
-    evidence: list[str] = []
-    if journal is not None and certificate is not None:
-        evidence = [f"impossible-{stem}"]
-        write_text(journal.folder / evidence[0], certificate)
-        certificate = str(journal.folder / evidence[0])
-    elif journal is not None and entry.drive is not None:
-        evidence = [f"drive-{stem}"]
-        write_text(journal.folder / evidence[0], json.dumps(entry.drive, indent=2, ensure_ascii=False) + "\n")
-        drive = str(journal.folder / evidence[0])
+    evidence = Evidence(journal)
+    if certificate is not None:
+        certificate = evidence.certificate(f"impossible-{stem}", certificate)
+    elif entry.drive is not None:
+        drive = evidence.drive(f"drive-{stem}", entry.drive)
     verdict = {
         "a": entry.a.number,
         "b": entry.b.number,
@@ -195,7 +189,7 @@ def _record(entry: "Entry", journal: "Journal | None") -> dict[str, Any]:
         "seconds": round(entry.seconds, 3),
     }
     if journal is not None:
-        journal.add({"evidence": evidence, "verdict": verdict})
+        journal.add({"evidence": evidence.files, "verdict": verdict})
     return verdict
 
 

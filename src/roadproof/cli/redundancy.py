@@ -1,7 +1,6 @@
 """``roadproof redundancy``: which parts of scenarios could be left out, and what shows the others needed."""
 
 import argparse
-import json
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import closing
@@ -9,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.evidence import Evidence, read_drive
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -17,7 +17,6 @@ from roadproof.cli.options import (
     load_library_of,
     parameter_values,
     write_json,
-    write_text,
 )
 from roadproof.cli.working import tell, work
 from roadproof.errors import UsageError
@@ -164,35 +163,22 @@ def _learned(asked: "Asked", verdicts: Sequence[Mapping[str, Any]]) -> "Learned"
     from roadproof.analysis.redundancy import learn
 
     told = [x for x in verdicts if x["drive"] is not None]
-    data = [
-        json.loads(Path(x["drive"]).read_text("utf-8")) if isinstance(x["drive"], str) else x["drive"]
-        for x in told
-    ]
-    drives = [(x["changed"], Shown(x["claim"], y)) for x, y in zip(told, data, strict=True)]
+    drives = [(x["changed"], Shown(x["claim"], dict(read_drive(x["drive"])))) for x in told]
     vain = [x["changed"] for x in verdicts if x["drive"] is None and not x["redundant"]]
     return learn(asked, drives, vain)
 
 
 def _record(number: int, findings: "Sequence[Finding]", journal: "Journal | None") -> list[dict[str, Any]]:
     """The findings on a scenario as plain data; evidence in files, or inside where there is no folder."""
-    files: list[str] = []
-
-    def kept(name: str, content: str) -> str | None:
-        if journal is None:
-            return None
-        write_text(journal.folder / name, content)
-        files.append(name)
-        return str(journal.folder / name)
-
+    evidence = Evidence(journal)
     verdicts = []
     for place, finding in enumerate(findings, 1):
         certificate: str | None = finding.certificate
         drive: object = finding.drive
         if certificate is not None:
-            certificate = kept(f"redundant-{number:02}-{place:03}.json", certificate) or certificate
-        elif drive is not None:
-            content = json.dumps(drive, indent=2, ensure_ascii=False) + "\n"
-            drive = kept(f"needed-{number:02}-{place:03}.json", content) or drive
+            certificate = evidence.certificate(f"redundant-{number:02}-{place:03}.json", certificate)
+        elif finding.drive is not None:
+            drive = evidence.drive(f"needed-{number:02}-{place:03}.json", finding.drive)
         change = finding.change
         verdicts.append(
             {
@@ -214,7 +200,7 @@ def _record(number: int, findings: "Sequence[Finding]", journal: "Journal | None
             }
         )
     if journal is not None:
-        journal.add({"evidence": files, "scenario": number, "verdicts": verdicts})
+        journal.add({"evidence": evidence.files, "scenario": number, "verdicts": verdicts})
     return verdicts
 
 
