@@ -1,4 +1,4 @@
-"""The book of console sessions: every page is run as it stands, in a folder of its own.
+"""The book of console sessions, and the attacks: every page is run as it stands, in a folder of its own.
 
 A page is Markdown. ```` ```file NAME ```` blocks are written first; in ```` ```console ```` blocks each
 line after ``$`` is given to bash, and what follows is what it prints (stdout and stderr together),
@@ -9,7 +9,6 @@ import os
 import re
 import subprocess
 import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,10 +17,11 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
+    *sorted(ROOT.joinpath("tests/attacks").glob("*.md")),
     ROOT / "README.md",
     ROOT / "docs/language.md",
 ]
-SLOWEST = 60.0  # seconds: no command hangs, however busy the machine; test_main measures the real bound
+HANGS = 600.0  # seconds after which a command is said to hang; no page depends on how fast it is
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def run(command: str, folder: Path) -> list[str]:
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        timeout=60,
+        timeout=HANGS,
     )
     printed = done.stdout.decode("utf-8").splitlines()
     return [*printed, f"[exit {done.returncode}]"] if done.returncode else printed
@@ -81,13 +81,10 @@ def test_page(path: Path, tmp_path: Path) -> None:
     sessions = sessions_of(page)
     assert sessions, f"{path.name} has no sessions"
     for session in sessions:
-        started = time.monotonic()
         printed = run(session.command, tmp_path)
-        taken = time.monotonic() - started
         expected = list(session.expected)
         same = len(printed) == len(expected) and all(map(matches, printed, expected))
         assert same, f"{path.name}:{session.line}: $ {session.command}\n" + "\n".join(printed)
-        assert taken < SLOWEST, f"{path.name}:{session.line}: took {taken:.1f} s"
         assert not any("Traceback" in line for line in printed)
 
 
