@@ -1,6 +1,8 @@
-# Two commands: `make test` and `make demo`. Each sets up what it needs on a machine with Python 3.11 and make.
+# Two commands: `make test` and `make demo`. Each sets up what it needs on a machine with Python and make.
 VENV ?= .venv
-PYTHON ?= python3.11
+# The first of these that is there and is Python 3.11 or later.
+PYTHON ?= $(shell for name in python3.11 python3 python3.12 python3.13 python3.14; do \
+	$$name -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$name && break; done)
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
@@ -29,8 +31,10 @@ format: $(READY)
 	$(BIN)/ruff format .
 
 $(READY): pyproject.toml
+	@test -x $(BIN)/python || test -n "$(PYTHON)" || \
+		{ echo "no Python 3.11 or later was found: install one, or name it: make PYTHON=/path/to/python3" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[all,dev]'
+	$(BIN)/python -m pip install --disable-pip-version-check --editable '.[all,dev]'
 	touch $@
 
 clean:
