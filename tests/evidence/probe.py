@@ -7,9 +7,10 @@ one, without a finder.
 import re
 
 from roadproof.evidence import derivation
-from roadproof.evidence.atoms import Atoms, road_names
+from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import ZERO, at, moment_of
 from roadproof.logic import formula as f
+from roadproof.logic.rewrite import road_names
 from roadproof.solve.smt import Answer, ask
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification

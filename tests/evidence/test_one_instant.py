@@ -11,12 +11,12 @@ from prove.claims import holds, specification
 from roadproof.errors import InputError
 from roadproof.evidence import atoms as atoms_module
 from roadproof.evidence import cases, state
-from roadproof.evidence.atoms import Atoms, rename, road_names, up_to_variables
+from roadproof.evidence.atoms import Atoms, up_to_variables
 from roadproof.evidence.derivation import derive_lemma_queries
 from roadproof.evidence.times import Moment, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.rewrite import without_names
+from roadproof.logic.rewrite import rename, road_names, without_names
 from roadproof.solve.smt import ask
 from roadproof.spec.elaborate import read_claim
 

@@ -6,9 +6,10 @@ from roadproof.errors import TextError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import FOREVER, Formula
-from roadproof.spec.elaborate import Query, apply_definition, read_claim, signature
+from roadproof.spec.elaborate import apply_definition, read_claim, signature
 from roadproof.spec.library import Source, Specification, build_library, bundled_library
 from roadproof.spec.quantity import unit_name
+from roadproof.spec.query import Query
 
 BASE = bundled_library().select()
 SECONDS = (0, 1)

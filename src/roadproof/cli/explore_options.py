@@ -11,8 +11,8 @@ from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
     from roadproof.analysis.explore.knobs import Knob
-    from roadproof.spec.elaborate import Query
     from roadproof.spec.library import Library
+    from roadproof.spec.query import Query
     from roadproof.witness.ask import Request
 
 _LIMIT = re.compile(r"(\w+)\.(\w+)\.(min|max)")

@@ -21,8 +21,8 @@ from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
     from roadproof.report.one_trace import Observed
-    from roadproof.spec.elaborate import Query
     from roadproof.spec.library import Library, Specification
+    from roadproof.spec.query import Query
     from roadproof.traffic.one_trace import OneTrace
 
 SUMMARY = "say where a formula holds on one trace: a drive, samples, or vehicles of a recording"

@@ -6,14 +6,14 @@ are quantifiers over lanes. Two atoms are the same when their bodies are built a
 and their bound variables are called.
 """
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Named
 from roadproof.logic.restore import as_syntax
-from roadproof.logic.rewrite import terms_of, without_names
+from roadproof.logic.rewrite import rename, road_names, terms_of, without_names
 from roadproof.logic.show import text
 from roadproof.logic.terms import Signal, leaves
 
@@ -101,59 +101,6 @@ def _combined(formula: Formula) -> Iterator[Formula]:
             yield from _combined(child)
     else:
         yield formula
-
-
-def rename(formula: Formula, old: str, new: str) -> Formula:
-    """``formula`` with the free lane or lanelet variable ``old`` called ``new``.
-
-    What a quantifier inside calls ``old`` stays as it is; one that calls something ``new`` has its
-    variable renamed first, so that it captures nothing.
-    """
-    done: dict[Formula, Formula] = {}
-
-    def visit(current: Formula) -> Formula:
-        if current not in done:
-            done[current] = change(current)
-        return done[current]
-
-    def change(current: Formula) -> Formula:
-        match current:
-            case f.Occupies(vehicle, lanelet):
-                return f.Occupies(vehicle, new if lanelet == old else lanelet)
-            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
-                inside = f.Domain(domain.kind, new if domain.of == old else domain.of)
-                if variable == old:
-                    return type(current)(variable, inside, body)
-                if variable == new:
-                    variable = _free_name(variable, road_names(body) | {old})
-                    body = rename(body, new, variable)
-                return type(current)(variable, inside, visit(body))
-            case Named(name, arguments, body):
-                return Named(name, tuple(new if a == old else a for a in arguments), visit(body))
-            case _:
-                return f.with_children(current, tuple(visit(child) for child in f.children(current)))
-
-    return visit(formula)
-
-
-def _free_name(name: str, taken: Set[str]) -> str:
-    while name in taken:
-        name += "_"
-    return name
-
-
-def road_names(formula: Formula) -> frozenset[str]:
-    """Names of lanes and lanelets that ``formula`` speaks of or calls a variable by."""
-    found: set[str] = set()
-    for part in f.subformulas(formula):
-        match part:
-            case f.Occupies(_, lanelet):
-                found.add(lanelet)
-            case f.Some(variable, domain, _) | f.Every(variable, domain, _):
-                found |= {variable, domain.of} if domain.kind in ("lanelets", "adjacent") else {variable}
-            case _:
-                pass
-    return frozenset(found)
 
 
 def up_to_variables(formula: Formula) -> Formula:

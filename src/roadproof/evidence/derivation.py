@@ -14,12 +14,13 @@ from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence import state
-from roadproof.evidence.atoms import Atoms, is_rigid, membership, rename, road_names
+from roadproof.evidence.atoms import Atoms, is_rigid, membership
 from roadproof.evidence.cases import split
 from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
+from roadproof.logic.rewrite import rename, road_names
 from roadproof.logic.show import text
 
 _NEW_NAME = re.compile(r"[tM]_*[0-9]{1,9}", re.ASCII)

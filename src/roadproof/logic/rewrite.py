@@ -1,19 +1,24 @@
 """Formulas to formulas with the same meaning, or with names replaced by values."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from fractions import Fraction
 
 from roadproof.logic.formula import (
     Always,
     Compare,
+    Domain,
     Eventually,
+    Every,
     Formula,
     Interval,
     Named,
     Occupies,
+    Some,
     Until,
+    children,
     subformulas,
     transform,
+    with_children,
 )
 from roadproof.logic.terms import (
     Leaf,
@@ -97,6 +102,79 @@ def vehicles_of(formula: Formula) -> tuple[str, ...]:
         leaf.vehicle for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Signal | Size)
     }
     return tuple(sorted(found))
+
+
+def rename(formula: Formula, old: str, new: str) -> Formula:
+    """``formula`` with the free lane or lanelet variable ``old`` called ``new``.
+
+    What a quantifier inside calls ``old`` stays as it is; one that calls something ``new`` has its
+    variable renamed first, so that it captures nothing.
+    """
+    done: dict[Formula, Formula] = {}
+
+    def visit(current: Formula) -> Formula:
+        if current not in done:
+            done[current] = change(current)
+        return done[current]
+
+    def change(current: Formula) -> Formula:
+        match current:
+            case Occupies(vehicle, lanelet):
+                return Occupies(vehicle, new if lanelet == old else lanelet)
+            case Some(variable, domain, body) | Every(variable, domain, body):
+                inside = Domain(domain.kind, new if domain.of == old else domain.of)
+                if variable == old:
+                    return type(current)(variable, inside, body)
+                if variable == new:
+                    variable = _free_name(variable, road_names(body) | {old})
+                    body = rename(body, new, variable)
+                return type(current)(variable, inside, visit(body))
+            case Named(name, arguments, body):
+                return Named(name, tuple(new if a == old else a for a in arguments), visit(body))
+            case _:
+                return with_children(current, tuple(visit(child) for child in children(current)))
+
+    return visit(formula)
+
+
+def _free_name(name: str, taken: Set[str]) -> str:
+    while name in taken:
+        name += "_"
+    return name
+
+
+def road_names(formula: Formula) -> frozenset[str]:
+    """Names of lanes and lanelets that ``formula`` speaks of or calls a variable by."""
+    found: set[str] = set()
+    for part in subformulas(formula):
+        match part:
+            case Occupies(_, lanelet):
+                found.add(lanelet)
+            case Some(variable, domain, _) | Every(variable, domain, _):
+                found |= {variable, domain.of} if domain.kind in ("lanelets", "adjacent") else {variable}
+            case _:
+                pass
+    return frozenset(found)
+
+
+def rename_vehicles(formula: Formula, roles: Mapping[str, str]) -> Formula:
+    """``formula`` with the vehicles in ``roles`` replaced, all at once; also in the arguments of names."""
+
+    def leaf(old: Leaf) -> Term:
+        if isinstance(old, Signal | Size):
+            return type(old)(old.name, roles.get(old.vehicle, old.vehicle))  # type: ignore[arg-type]
+        return old
+
+    def visit(current: Formula) -> Formula:
+        match current:
+            case Occupies(vehicle, lanelet):
+                return Occupies(roles.get(vehicle, vehicle), lanelet)
+            case Named(name, arguments, body):
+                return Named(name, tuple(roles.get(a, a) for a in arguments), body)
+            case _:
+                return current
+
+    return transform(map_terms(formula, lambda term: replace_leaves(term, leaf)), visit)
 
 
 def bounds_of(interval: Interval) -> tuple[Fraction, Fraction | None]:

@@ -12,14 +12,14 @@ from fractions import Fraction
 from typing import Literal
 
 from roadproof.evidence import state
-from roadproof.evidence.atoms import Atoms, is_atom, membership, rename
+from roadproof.evidence.atoms import Atoms, is_atom, membership
 from roadproof.judge import TruthSet, judge
 from roadproof.judge.signals import AbstractSignals
 from roadproof.judge.truth import from_switches
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
+from roadproof.logic.rewrite import bounds_of, map_terms, rename, terms_of, without_names
 from roadproof.prove.roads import boxes_of, contains, is_on_some_road, is_same_where_it_stands, whose
 from roadproof.prove.search import Model
 from roadproof.prove.states import TYPICAL_SIZE

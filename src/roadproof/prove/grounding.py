@@ -10,11 +10,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from roadproof.evidence.atoms import Atoms, is_rigid, membership, rename
+from roadproof.evidence.atoms import Atoms, is_rigid, membership
 from roadproof.evidence.derivation import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import rename
 from roadproof.solve.smt import Session
 
 

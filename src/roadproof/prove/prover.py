@@ -16,8 +16,9 @@ from roadproof.prove.search import GaveUp, Proof, Search
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import Query, read_claim
+from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 
 # Ways to look, in turns: (ask for few instants, seconds). The last is given what time is left.

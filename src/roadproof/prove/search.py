@@ -12,11 +12,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.evidence.atoms import Atoms, road_names
+from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import Lemma, Site, free_prefix
 from roadproof.evidence.times import ZERO, Moment, at, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import road_names
 from roadproof.prove.grounding import Grounding, Universal
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import Answer

@@ -6,7 +6,7 @@ are names from the start, so what comes out speaks of SV, POV and L and nothing 
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -21,6 +21,7 @@ from roadproof.logic.syntax import Binding, Bounds, Definition, Expression
 from roadproof.logic.terms import Dimension
 from roadproof.spec.library import BUILT_IN, Specification, source_of, unknown
 from roadproof.spec.quantity import SECONDS, UNITS, Quantity, product_dimension, same_dimension, unit_name
+from roadproof.spec.query import Query
 
 DEEPEST_FORMULA = 100
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")
@@ -45,19 +46,6 @@ Value: TypeAlias = Ref | Vehicles | Quantity
 Scope: TypeAlias = Mapping[str, Value]
 
 
-@dataclass(frozen=True)
-class Query:
-    """A formula with the names that are free in it: what a user asks about.
-
-    ``lanes`` are in order of appearance; ``text`` is what the user wrote.
-    """
-
-    text: str
-    formula: Formula
-    vehicles: tuple[str, ...]
-    lanes: tuple[str, ...]
-
-
 def read_claim(specification: Specification, text: str, source: str = "claim") -> Query:
     """Parse and elaborate a claim such as ``scenario_8(SV,POV,L) -> F danger(SV,POV)``.
 
@@ -66,14 +54,19 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
     set. Raises ``TextError``.
     """
     claim = parse_claim(text, source)
-    elaborator = _Elaborator(specification)
     try:
-        made = elaborator.formula(claim.body, elaborator.scope_of(claim.given))
+        return replace(elaborate(specification, claim), written=text.strip())
     except TextError as error:
         raise error.locate(source, text) from None
+
+
+def elaborate(specification: Specification, claim: syntax.Claim) -> Query:
+    """What a claim means in a specification. Raises ``TextError``, located where the claim has positions."""
+    elaborator = _Elaborator(specification)
+    made = elaborator.formula(claim.body, elaborator.scope_of(claim.given))
     declared = [b.name for b in claim.given if b.sort == "vehicle"]
     vehicles = tuple(dict.fromkeys([*declared, *sorted(elaborator.free["vehicle"])]))
-    return Query(text.strip(), made, vehicles or vehicles_of(made), tuple(sorted(elaborator.free["lane"])))
+    return Query(claim, made, vehicles or vehicles_of(made), tuple(sorted(elaborator.free["lane"])))
 
 
 def read_term(specification: Specification, text: str, source: str = "term") -> tuple[t.Term, Dimension]:
@@ -96,8 +89,8 @@ def apply_definition(specification: Specification, name: str, arguments: tuple[s
     >>> apply_definition(bundled_library().select(), "scenario_2").vehicles
     ('POV1', 'POV2', 'SV')
     """
-    roles = arguments or signature(specification, name)
-    return read_claim(specification, f"{name}({', '.join(roles)})")
+    roles = arguments or signature(specification, name.partition("@")[0])
+    return elaborate(specification, syntax.Claim((), syntax.Call(name, tuple(map(syntax.Name, roles)))))
 
 
 def signature(specification: Specification, name: str) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import Query
+from roadproof.spec.query import Query
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle

@@ -22,8 +22,9 @@ from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.exact import judge
 from roadproof.prove.prover import prove
 from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import Query, read_claim
+from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
+from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, ask
 from roadproof.witness.question import Means, usual_road

@@ -1,0 +1,163 @@
+"""Queries put together to larger ones, on trees: what is said and what it means stay side by side.
+
+All parts have to come from one specification. ``text`` of what comes out reads, in that specification,
+as the same formula.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
+
+from roadproof.errors import UsageError
+from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import rename, rename_vehicles
+from roadproof.logic.syntax import Binary, Binding, Chain, Claim, Expression, Prefix, Temporal
+from roadproof.spec.query import Query
+
+
+def both(*queries: Query) -> Query:
+    """All of ``queries`` hold."""
+    return _chained("and", queries, f.conjunction)
+
+
+def either(*queries: Query) -> Query:
+    """One of ``queries`` holds, or more."""
+    return _chained("or", queries, f.disjunction)
+
+
+def negation(query: Query) -> Query:
+    """``query`` does not hold."""
+    body = query.claim.body
+    said = body.body if isinstance(body, Prefix) and body.op == "not" else Prefix("not", body)
+    return replace(query, claim=Claim(query.claim.given, said), formula=f.negation(query.formula), written="")
+
+
+def implication(premise: Query, conclusion: Query) -> Query:
+    """``premise -> conclusion``."""
+    said = Binary("->", premise.claim.body, conclusion.claim.body)
+    return _joined((premise, conclusion), said, f.implication(premise.formula, conclusion.formula))
+
+
+def equivalence(one: Query, other: Query) -> Query:
+    """``one <-> other``."""
+    said = Binary("<->", one.claim.body, other.claim.body)
+    return _joined((one, other), said, f.equivalence(one.formula, other.formula))
+
+
+def eventually(query: Query) -> Query:
+    """``F query``: it holds now or at some later time."""
+    claim = Claim(query.claim.given, Temporal("F", None, None, query.claim.body))
+    return replace(query, claim=claim, formula=f.Eventually(f.FOREVER, query.formula), written="")
+
+
+def always(query: Query) -> Query:
+    """``G query``: it holds from now on."""
+    claim = Claim(query.claim.given, Temporal("G", None, None, query.claim.body))
+    return replace(query, claim=claim, formula=f.Always(f.FOREVER, query.formula), written="")
+
+
+def with_vehicles(query: Query, roles: Mapping[str, str]) -> Query:
+    """``query`` with every vehicle named in ``roles`` replaced by another: roles exchanged, all at once."""
+    given = tuple(replace(b, name=roles.get(b.name, b.name)) for b in query.claim.given)
+    return replace(
+        query,
+        claim=Claim(given, _with_names(query.claim.body, roles)),
+        formula=rename_vehicles(query.formula, roles),
+        vehicles=_ordered(given, {roles.get(v, v) for v in query.vehicles}),
+        written="",
+    )
+
+
+def with_lane(query: Query, old: str, new: str) -> Query:
+    """``query`` about the lane ``new`` where it is about the free lane ``old``."""
+    given = tuple(replace(b, name=new) if b.name == old else b for b in query.claim.given)
+    return replace(
+        query,
+        claim=Claim(given, _with_names(query.claim.body, {old: new})),
+        formula=rename(query.formula, old, new),
+        lanes=tuple(sorted({new if lane == old else lane for lane in query.lanes})),
+        written="",
+    )
+
+
+def in_some_lane(query: Query, lane: str = "L", variable: str = "M") -> Query:
+    """``some M in lanes: query`` with the free lane ``lane`` as M."""
+    inside = with_lane(query, lane, variable)
+    given = tuple(b for b in inside.claim.given if b.name != variable)
+    said = syntax.Quantified("some", variable, syntax.Name("lanes"), inside.claim.body)
+    return replace(
+        inside,
+        claim=Claim(given, said),
+        formula=f.Some(variable, f.Domain("lanes"), inside.formula),
+        lanes=tuple(x for x in inside.lanes if x != variable),
+    )
+
+
+def _chained(op: Literal["and", "or"], queries: Sequence[Query], join: Callable[..., Formula]) -> Query:
+    bodies = [query.claim.body for query in queries]
+    said: Expression = bodies[0] if len(bodies) == 1 else Chain(op, tuple(bodies))
+    if not bodies:
+        said = syntax.Literal_(op == "and")
+    return _joined(queries, said, join(*(query.formula for query in queries)))
+
+
+def _joined(queries: Sequence[Query], said: Expression, formula: Formula) -> Query:
+    given: dict[str, Binding] = {}
+    for binding in (b for query in queries for b in query.claim.given):
+        known = given.setdefault(binding.name, binding)
+        if known.sort != binding.sort:
+            raise UsageError(
+                f"'{binding.name}' is a {known.sort} in one formula and a {binding.sort} in another: "
+                "rename it in one of them"
+            )
+    vehicles = _ordered(tuple(given.values()), {v for query in queries for v in query.vehicles})
+    lanes = tuple(sorted({lane for query in queries for lane in query.lanes}))
+    return Query(Claim(tuple(given.values()), said), formula, vehicles, lanes)
+
+
+def _ordered(given: Sequence[Binding], vehicles: set[str]) -> tuple[str, ...]:
+    """Vehicles that are declared, in that order, then the others by name."""
+    declared = [b.name for b in given if b.sort == "vehicle"]
+    return tuple(dict.fromkeys([*declared, *sorted(vehicles)]))
+
+
+def _with_names(expression: Expression, names: Mapping[str, str]) -> Expression:
+    """``expression`` with free names replaced; what a quantifier inside calls by one of them stays."""
+    match expression:
+        case syntax.Name(name, at):
+            return syntax.Name(names.get(name, name), at)
+        case syntax.Literal_():
+            return expression
+        case syntax.Call(name, arguments, at):
+            return syntax.Call(name, tuple(_with_names(a, names) for a in arguments), at)
+        case Prefix(op, body, at):
+            return Prefix(op, _with_names(body, names), at)
+        case Binary(op, left, right, at):
+            return Binary(op, _with_names(left, names), _with_names(right, names), at)
+        case Chain(op, parts, at):
+            return Chain(op, tuple(_with_names(p, names) for p in parts), at)
+        case Temporal(op, bounds, left, right, at):
+            first = None if left is None else _with_names(left, names)
+            return Temporal(op, bounds, first, _with_names(right, names), at)
+        case syntax.Quantified(kind, variable, domain, body, at):
+            inner = {old: new for old, new in names.items() if old != variable}
+            if variable in inner.values():
+                raise UsageError(
+                    f"'{variable}' is a variable of a quantifier inside, and would be taken for another: "
+                    "rename that variable"
+                )
+            return syntax.Quantified(kind, variable, _in_domain(domain, names), _with_names(body, inner), at)
+
+
+def _in_domain(
+    domain: syntax.Name | syntax.Call | syntax.Group, names: Mapping[str, str]
+) -> syntax.Name | syntax.Call | syntax.Group:
+    match domain:
+        case syntax.Name():
+            return domain
+        case syntax.Call(name, arguments, at):
+            return syntax.Call(name, tuple(_with_names(a, names) for a in arguments), at)
+        case syntax.Group(members, at):
+            return syntax.Group(tuple(syntax.Name(names.get(m.name, m.name), m.at) for m in members), at)

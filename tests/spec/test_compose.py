@@ -1,0 +1,86 @@
+"""Queries put together: what is said reads as what is meant."""
+
+import pytest
+
+from roadproof.errors import UsageError
+from roadproof.logic.rewrite import without_names
+from roadproof.spec.compose import (
+    always,
+    both,
+    either,
+    equivalence,
+    eventually,
+    implication,
+    in_some_lane,
+    negation,
+    with_lane,
+    with_vehicles,
+)
+from roadproof.spec.elaborate import apply_definition, read_claim
+from roadproof.spec.library import bundled_library
+from roadproof.spec.query import Query
+
+BASE = bundled_library().select()
+
+
+def read(text: str) -> Query:
+    return read_claim(BASE, text)
+
+
+ONE = read("scenario_1(SV, POV, L)")
+FOUR = read("given x: m/s: scenario_4(SV, POV, L) and v_lon(SV) > x")
+PLAIN = read("danger(SV, POV) or aheadOf(SV, POV)")
+LANES = read("some K in lanes: atLane(POV, K) and not (every l in lanelets(K): occ(SV, l))")
+NOT = read("not danger(SV, POV)")
+
+TOGETHER = {
+    "both": both(ONE, PLAIN, FOUR),
+    "both of one": both(ONE),
+    "none": both(),
+    "either": either(NOT, LANES, ONE),
+    "no either": either(),
+    "negation": negation(PLAIN),
+    "negation of a negation": negation(NOT),
+    "implication": implication(both(ONE, NOT), FOUR),
+    "equivalence": equivalence(PLAIN, negation(ONE)),
+    "eventually": eventually(PLAIN),
+    "always": always(implication(PLAIN, ONE)),
+    "roles exchanged": with_vehicles(both(FOUR, LANES), {"SV": "POV", "POV": "SV"}),
+    "another lane": with_lane(FOUR, "L", "L2"),
+    "some lane": in_some_lane(both(ONE, LANES)),
+    "some lane, negated": both(PLAIN, negation(in_some_lane(FOUR))),
+}
+
+
+@pytest.mark.parametrize("name", TOGETHER)
+def test_what_is_said_reads_as_what_is_meant(name: str) -> None:
+    query = TOGETHER[name]
+    again = read(query.text)
+    assert without_names(again.formula) == without_names(query.formula)
+    assert again.formula == query.formula
+    assert again.lanes == query.lanes
+    assert set(again.vehicles) == set(query.vehicles)
+
+
+def test_what_came_out_is_said_as_a_reader_would() -> None:
+    assert negation(NOT).text == "danger(SV, POV)"
+    assert implication(ONE, PLAIN).text == "scenario_1(SV, POV, L) -> danger(SV, POV) or aheadOf(SV, POV)"
+    assert TOGETHER["roles exchanged"].text.startswith(
+        "given x: m/s: (scenario_4(POV, SV, L) and v_lon(POV) > x)"
+    )
+    assert in_some_lane(ONE).text == "some M in lanes: scenario_1(SV, POV, M)"
+    assert ONE.text == "scenario_1(SV, POV, L)"
+
+
+def test_definitions_of_other_sets_keep_their_set() -> None:
+    ext = apply_definition(BASE, "scenario_4@ext")
+    assert ext.text == "scenario_4@ext(SV, POV, L)"
+    assert read(both(ext, PLAIN).text).formula == both(ext, PLAIN).formula
+    assert ext.formula != apply_definition(BASE, "scenario_4").formula
+
+
+def test_names_that_would_mean_two_things_are_refused() -> None:
+    with pytest.raises(UsageError, match=r"'x' is a m/s in one formula and a m in another"):
+        both(FOUR, read("given x: m: s(SV) > x"))
+    with pytest.raises(UsageError, match=r"'K' is a variable of a quantifier inside"):
+        with_lane(read("atLane(SV, L) and (some K in lanes: atLane(POV, K) and atLane(SV, L))"), "L", "K")
