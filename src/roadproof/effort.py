@@ -1,36 +1,74 @@
 """How much work an answer may cost: counted, so that the same question has the same answer on every machine.
 
-One unit is about a second of a solver on the machine of docs/performance.md; each solver's own count
-(z3's resource limit, HiGHS' nodes) is converted where the solver lives. Wall clock is a backstop for
-the case that counting fails; an answer that it cut short says so.
+One unit is about a second of a solver on an idle machine; each solver's own count (z3's resource limit,
+HiGHS' iterations and nodes) is converted where the solver lives. Wall clock is a backstop for the case
+that counting fails, and what it cuts off is in doubt: ``Late``.
 """
 
 import math
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
+from roadproof.errors import RoadproofError
 
 # Wall-clock seconds that a unit of work may take before the backstop ends it, and the least backstop.
 SECONDS_A_UNIT = 20.0
 LEAST_BACKSTOP = 120.0
 
 
+class Late(RoadproofError):
+    """The backstop has passed: what was asked stays unanswered, whatever was found of it by then."""
+
+    exit_code = 20
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__(
+            f"cut off by the clock after {seconds:g} s, not by the count of work, so an idle or faster "
+            "machine may answer: raise --timeout"
+        )
+        self.seconds = seconds
+
+    def __reduce__(self) -> tuple[type["Late"], tuple[float]]:
+        return Late, (self.seconds,)
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What one search may cost: ``units`` of work, and ``timeout`` seconds of wall clock as a backstop.
+
+    Without ``timeout`` the backstop follows from the units.
+    """
+
+    units: float = 60.0
+    timeout: float | None = None
+
+    def of(self, units: float) -> "Effort":
+        """Other units under the same backstop."""
+        return replace(self, units=units)
+
+    def meter(self) -> "Meter":
+        """A meter that begins to count now."""
+        seconds = self.timeout if self.timeout is not None else backstop(self.units)
+        return Meter(self.units, seconds)
+
+
 @dataclass
 class Meter:
-    """The work left for one question: ``limit`` units in all, ``seconds`` of wall clock as a backstop.
+    """The work left for one search: ``limit`` units in all, ``seconds`` of wall clock from ``begun``.
 
-    A part of a question has a meter of its own (``part``), which spends from the whole's as well.
+    A part of a search has a meter of its own (``part``), which spends from the whole's as well.
     """
 
     limit: float
-    seconds: float | None = None
+    seconds: float
     whole: "Meter | None" = None
     spent: float = 0.0
     begun: float = field(default_factory=time.monotonic)
 
-    def left(self, most: float = math.inf) -> float:
-        """Units left, at most ``most``; never below 0."""
+    def left(self) -> float:
+        """Units left; never below 0."""
         above = math.inf if self.whole is None else self.whole.left()
-        return max(0.0, min(most, self.limit - self.spent, above))
+        return max(0.0, min(self.limit - self.spent, above))
 
     def spend(self, units: float) -> None:
         """Count ``units`` here and in the whole."""
@@ -39,37 +77,33 @@ class Meter:
             self.whole.spend(units)
 
     def part(self, limit: float) -> "Meter":
-        """A meter for a part of the question, under the same backstop."""
-        return Meter(limit, whole=self)
+        """A meter for a part of the search, of at most ``limit`` units."""
+        return Meter(limit, self.seconds, self, begun=self.begun)
+
+    def apart(self, limit: float) -> "Meter":
+        """A meter of ``limit`` units of its own, whatever is left of these, under the same backstop."""
+        return Meter(limit, self.seconds, begun=self.begun)
 
     def seconds_left(self) -> float:
-        """Wall-clock seconds until the backstop, at least a hundredth."""
-        if self.whole is not None:
-            return self.whole.seconds_left()
-        allowed = self.seconds if self.seconds is not None else backstop(self.limit)
-        return max(0.01, allowed - (time.monotonic() - self.begun))
-
-    def is_late(self) -> bool:
-        """Whether the backstop has passed."""
-        return self.seconds_left() <= 0.01
+        """Wall-clock seconds until the backstop. Raises ``Late``."""
+        left = self.seconds - (time.monotonic() - self.begun)
+        if left <= 0:
+            raise Late(self.seconds)
+        return left
 
     def is_out(self) -> bool:
-        """Whether nothing may be tried any more."""
-        return self.left() <= 0 or self.is_late()
+        """Whether the units are used up. Raises ``Late``."""
+        self.seconds_left()
+        return self.left() <= 0
 
     def reason(self) -> str:
-        """Why nothing may be tried any more, for an answer that says so."""
-        if self.is_late():
-            return (
-                "cut off by the clock, not by the count of work, so a faster or idle machine may answer: "
-                "raise --timeout"
-            )
-        top = self
-        while top.whole is not None and top.whole.left() <= 0:
-            top = top.whole
-        return f"the work limit of {top.limit:g} is used up; raise --effort"
+        """Why there is no answer, where the units are used up."""
+        above = self.whole
+        if above is not None and above.left() <= 0:
+            return above.reason()
+        return f"no answer within {self.limit:g} units of work"
 
 
-def backstop(limit: float) -> float:
-    """Wall-clock seconds after which an answer with a work limit of ``limit`` units is cut off."""
-    return max(LEAST_BACKSTOP, SECONDS_A_UNIT * limit)
+def backstop(units: float) -> float:
+    """Wall-clock seconds after which a search with a limit of ``units`` is cut off."""
+    return max(LEAST_BACKSTOP, SECONDS_A_UNIT * units)

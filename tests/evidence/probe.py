@@ -6,6 +6,7 @@ one, without a finder.
 
 import re
 
+from roadproof.effort import Effort
 from roadproof.evidence import derivation
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import ZERO, at, moment_of
@@ -60,6 +61,6 @@ def _on_road(site: derivation.Site) -> bool:
     return site.formula.startswith(("(some", "(every"))
 
 
-def probe(specification: Specification, claim: str, timeout: float = 2.0) -> Answer:
+def probe(specification: Specification, claim: str, units: float = 2.0) -> Answer:
     """z3's answer to the saturated query: ``unsat`` would prove ``claim``."""
-    return ask(saturated(specification, claim), timeout=timeout)
+    return ask(saturated(specification, claim), meter=Effort(units).meter())

@@ -9,6 +9,7 @@ from functools import cache
 import pytest
 
 from prove.claims import specification
+from roadproof.effort import Effort
 from roadproof.errors import InputError
 from roadproof.evidence import derivation
 from roadproof.evidence.atoms import Atoms
@@ -41,7 +42,7 @@ def certificate(name: str) -> Certificate:
 
 
 def check(tampered: Certificate) -> str | None:
-    return refusal(tampered, library, lambda query: ask(query, timeout=20))
+    return refusal(tampered, library, lambda query: ask(query, meter=Effort(20).meter()))
 
 
 def rederived(changed: Certificate) -> Certificate:

@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, Phase, find, given, settings
 from hypothesis import strategies as st
 
 from prove.claims import holds, specification
+from roadproof.effort import Effort
 from roadproof.errors import InputError
 from roadproof.evidence import atoms as atoms_module
 from roadproof.evidence import cases, state
@@ -200,7 +201,7 @@ def lemma_answers(claim: str) -> set[str]:
     named = known.atomise(read_claim(specification(), claim).formula)
     literals = [(part.name, True) for part in f.subformulas(named) if isinstance(part, f.Named)]
     bounds = {name: p.bound for name, p in specification().library.parameters.items()}
-    return {ask(query, timeout=5) for query in derive_lemma_queries(known, literals, bounds)}
+    return {ask(query, meter=Effort(5).meter()) for query in derive_lemma_queries(known, literals, bounds)}
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from fractions import Fraction
 from functools import cache
 from math import prod
 
+from roadproof.effort import Effort
 from roadproof.evidence.atoms import Atoms
 from roadproof.judge import TruthSet, judge
 from roadproof.judge.truth import from_switches
@@ -182,8 +183,8 @@ def specification(set_name: str = "base") -> Specification:
     return bundled_library().select(set_name)
 
 
-def settle(claim: str, set_name: str = "base", timeout: float = 10.0) -> Result:
-    return prove(specification(set_name), spelled(claim), timeout)
+def settle(claim: str, set_name: str = "base", units: float = 10.0) -> Result:
+    return prove(specification(set_name), spelled(claim), Effort(units))
 
 
 def is_false_on(countermodel: Countermodel, claim: str, set_name: str = "base") -> bool:

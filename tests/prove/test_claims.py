@@ -46,7 +46,7 @@ def test_does_not_prove_the_negation_of_what_is_valid(claim):
 
 @pytest.mark.parametrize("claim", NEEDS_INFINITELY_MANY_SWITCHES)
 def test_claims_nothing_where_no_finite_trace_decides(claim):
-    assert settle(claim, timeout=1).verdict is Verdict.UNKNOWN
+    assert settle(claim, units=1).verdict is Verdict.UNKNOWN
 
 
 @pytest.mark.parametrize("claim", BEYOND)

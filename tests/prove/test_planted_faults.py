@@ -11,7 +11,7 @@ from roadproof.prove.search import Search
 from roadproof.prove.states import StateChecker
 from roadproof.verdict import Verdict
 
-SECONDS = 0.4
+UNITS = 0.4
 true_smt, true_holds, true_shrink = Window.smt, Window.holds, Search._shrink
 true_unfold, true_atom, true_name = Grounding._unfold, Grounding.atom, Grounding._name_time
 true_spread, true_holds_part, true_judge = countermodel._spread, countermodel._holds, countermodel.judge
@@ -78,9 +78,9 @@ def frozen_atoms(monkeypatch):
 def wishes_as_clauses(monkeypatch):
     """A model has few instants, or there is none."""
 
-    def check(self, timeout):
+    def check(self, meter):
         ground = self.grounding
-        return ground.session.check([*ground.switches, *ground.wishes], timeout=timeout)
+        return ground.session.check([*ground.switches, *ground.wishes], meter=meter)
 
     def shrink(self):
         ground = self.grounding
@@ -104,7 +104,7 @@ def every_state_is_impossible(monkeypatch):
     monkeypatch.setattr(
         StateChecker,
         "refute",
-        lambda self, wanted, deadline: tuple((name, not value) for name, value in wanted.items()) or None,
+        lambda self, wanted, meter: tuple((name, not value) for name, value in wanted.items()) or None,
     )
     monkeypatch.setattr(StateChecker, "signals", lambda self, wanted: {})
 
@@ -139,7 +139,7 @@ TEMPTING = [
 
 def verdict_or_crash(claim: str) -> Verdict | str:
     try:
-        return settle(claim, timeout=SECONDS).verdict
+        return settle(claim, units=UNITS).verdict
     except (AssertionError, KeyError) as crash:
         return type(crash).__name__
 
@@ -235,7 +235,7 @@ def wrong_refutation() -> str | None:
     """A claim that is called false though it is true, or on a trace on which it is true."""
     for claim in VALID + MORE + INVALID:
         try:
-            result = settle(claim, timeout=SECONDS)
+            result = settle(claim, units=UNITS)
             if result.verdict is not Verdict.REFUTED:
                 continue
             true = claim in VALID or claim in MORE[2:4]

@@ -19,7 +19,7 @@ from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.verdict import Verdict
 
-SECONDS = 0.5
+UNITS = 0.5
 WINDOWS = [
     "",
     "[0, 1]",
@@ -127,7 +127,7 @@ seen: Counter[str] = Counter()
 )
 @given(claims(), st.lists(traces, min_size=12, max_size=12))
 def test_verdicts_of_random_claims(claim, tried):
-    result = settle(claim, timeout=SECONDS)
+    result = settle(claim, units=UNITS)
     note(f"{result.verdict}: {claim} {result.reason}")
     event(str(result.verdict))
     seen[str(result.verdict)] += 1

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+from roadproof.effort import Effort
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import bundled_library
@@ -14,7 +15,7 @@ from roadproof.witness.bounded import check_bounded
 from roadproof.witness.question import Means
 
 LIBRARY = bundled_library()
-REQUEST = Request("", values=default_values(LIBRARY), horizon=Fraction(6, 5), means=Means(time_limit=30))
+REQUEST = Request("", values=default_values(LIBRARY), horizon=Fraction(6, 5), means=Means(effort=Effort(30)))
 
 
 def check(claim, engine):

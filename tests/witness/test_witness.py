@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pytest
 
+from roadproof.effort import Effort
 from roadproof.errors import UsageError
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.judge.replay import first_breach, first_overlap
@@ -20,7 +21,7 @@ from roadproof.world.models import load_vehicle
 from roadproof.world.motion import starts_of, state_at
 
 LIBRARY = bundled_library()
-REQUEST = Request("4", values=default_values(LIBRARY), means=Means(time_limit=30))
+REQUEST = Request("4", values=default_values(LIBRARY), means=Means(effort=Effort(30)))
 
 
 def ask_for(what, set_name="base", **changes):
@@ -144,7 +145,7 @@ def test_both_engines_answer_alike():
     short = {"horizon": Fraction(9, 5)}
     for what, verdict in (("4", Verdict.WITNESSED), ("F v_lon(SV) > 41 m/s", Verdict.NONE_WITHIN)):
         for engine in ("milp", "smt"):
-            means = replace(REQUEST.means, engine=engine, time_limit=240.0)
+            means = replace(REQUEST.means, engine=engine, effort=Effort(240))
             assert ask_for(what, means=means, **short).verdict is verdict
     cubic = "F v_lon(SV)^3 > 20000 * 1 m/s * 1 m/s * 1 m/s"
     with pytest.raises(UsageError, match="--engine smt"):
@@ -159,7 +160,7 @@ def test_a_drive_that_the_judge_rejects_is_never_handed_out(monkeypatch):
         holds = False
 
     monkeypatch.setattr(search, "judge", lambda formula, drive: No())
-    outcome = ask_for("4", means=replace(REQUEST.means, time_limit=4.0, refinements=0))
+    outcome = ask_for("4", means=replace(REQUEST.means, effort=Effort(4), refinements=0))
     assert outcome.verdict is Verdict.UNKNOWN
     assert not outcome.drives
     assert true_judge is not search.judge

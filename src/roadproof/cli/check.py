@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from roadproof.cli.numbers import add_effort_options, add_jobs_option, read_effort
 from roadproof.cli.options import add_json_option, write_json
 from roadproof.cli.working import work_in_order
+from roadproof.effort import Effort
 from roadproof.errors import InputError, RoadproofError
 from roadproof.verdict import ExitCode
 
@@ -32,9 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
     parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who is asked (default: z3)")
-    parser.add_argument(
-        "--timeout", type=float, default=60.0, metavar="S", help="seconds a query (default: 60)"
-    )
+    add_effort_options(parser, each="a query")
     parser.add_argument(
         "--spec",
         dest="specs",
@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a specification file that the claims were made with; may be repeated",
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_jobs_option(parser)
     add_json_option(parser)
 
 
@@ -53,7 +53,7 @@ class Job:
     path: Path
     specs: tuple[Path, ...]
     solver: str
-    timeout: float
+    effort: Effort
 
 
 @dataclass(frozen=True)
@@ -70,10 +70,10 @@ class Finding:
 
 
 def run(args: argparse.Namespace) -> int:
-    given = tuple(args.specs)
+    given, effort = tuple(args.specs), read_effort(args)
     beside = {folder: names for path in args.paths for folder, names in _specifications(path, given).items()}
     jobs = [
-        Job(path, (*given, *_around(path, beside)), args.solver, args.timeout) for path in _files(args.paths)
+        Job(path, (*given, *_around(path, beside)), args.solver, effort) for path in _files(args.paths)
     ]
     if args.json != "-":
         for name in dict.fromkeys(name for names in beside.values() for name in names):
@@ -191,7 +191,7 @@ def _examine_certificate(job: Job) -> str:
     from roadproof.spec.library import load_library
 
     def answer(script: str) -> str:
-        return ask(script, job.solver, job.timeout)
+        return ask(script, job.solver, job.effort.meter())
 
     return refusal(read_certificate(job.path), load_library(job.specs), answer) or ""
 

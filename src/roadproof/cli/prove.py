@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.numbers import add_effort_options, add_jobs_option, read_effort
 from roadproof.cli.options import (
     add_json_option,
     add_specification_options,
@@ -56,9 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=str(Verdict.PROVED),
         help="verdict that is expected of your own claims (default: PROVED)",
     )
-    parser.add_argument(
-        "--timeout", type=float, default=60.0, metavar="S", help="seconds a claim (default: 60)"
-    )
+    add_effort_options(parser, each="a claim")
     parser.add_argument(
         "--engine",
         choices=("dense", "smt", "milp"),
@@ -70,7 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--dt", metavar="S", default="3/5", help="with smt, milp: seconds a sample (default: 3/5)"
     )
     parser.add_argument("--road", metavar="R", help="with smt, milp: a reference road or a .toml file")
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_jobs_option(parser)
     parser.add_argument(
         "--no-drive", action="store_true", help="do not look for a drive that refutes a claim"
     )
@@ -113,8 +112,6 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
     from roadproof.prove.properties import Task, choose, read_claims, template_properties
     from roadproof.spec.elaborate import read_claim
 
-    if not args.timeout > 0 or (args.jobs is not None and args.jobs < 1):
-        raise UsageError(f"timeout={args.timeout} and jobs={args.jobs} must be greater than 0")
     library = load_library_of(args)
     options = chosen_options(args)
     named = [claim for claim in args.claims if _PROPERTY.fullmatch(claim)]
@@ -145,8 +142,8 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         bounded = Bounded(args.engine, horizon, dt, args.road)
     if not tasks:
         raise UsageError(f"none of {', '.join(named)} is stated for set={args.set_name}: leave out --set")
-    seek_drive = not args.no_drive
-    return [Job(task, tuple(args.specs), options, args.timeout, seek_drive, bounded) for task in tasks]
+    seek_drive, effort = not args.no_drive, read_effort(args)
+    return [Job(task, tuple(args.specs), options, effort, seek_drive, bounded) for task in tasks]
 
 
 # --- files ---------------------------------------------------------------------------------------

@@ -7,14 +7,15 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.errors import RoadproofError
+from roadproof.effort import Effort, Late
+from roadproof.errors import InputError, UsageError
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
     from roadproof.prove.properties import Task
     from roadproof.prove.prover import Result
 
-DRIVE_SECONDS = 5.0
+DRIVE = 5.0  # units of work for a drive that refutes
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Job:
     task: "Task"
     specs: tuple[Path, ...]
     options: Mapping[str, str]
-    timeout: float
+    effort: Effort
     seek_drive: bool
     bounded: "Bounded | None" = None
 
@@ -54,7 +55,22 @@ class Settled:
 
 
 def settle(job: Job) -> Settled:
-    """Prove or refute one claim; a refuted or undecided one also by a drive, where there is one."""
+    """Prove or refute one claim; a refuted or undecided one also by a drive, where there is one.
+
+    UNKNOWN where the clock cuts the search off.
+    """
+    begun = time.monotonic()
+    try:
+        return _settle(job)
+    except Late as late:
+        from roadproof.prove.prover import Result
+
+        seconds = time.monotonic() - begun
+        result = Result(job.task.claim, job.task.set_name, Verdict.UNKNOWN, str(late), seconds)
+        return Settled(job.task, result, None)
+
+
+def _settle(job: Job) -> Settled:
     if job.bounded is not None:
         return _settle_bounded(job, job.bounded)
     from roadproof.prove.prover import prove
@@ -63,7 +79,7 @@ def settle(job: Job) -> Settled:
     specification = load_library(job.specs).select(job.task.set_name, job.options)
     task = job.task
     label = task.id + (f"-{task.part}" if task.part else "")
-    result = prove(specification, task.claim, job.timeout, label, task.scenario)
+    result = prove(specification, task.claim, job.effort, label, task.scenario)
     drive = None
     if job.seek_drive and result.verdict in (Verdict.REFUTED, Verdict.UNKNOWN):
         drive = _refuting_drive(job)
@@ -89,11 +105,11 @@ def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
         bounded.road,
         horizon=bounded.horizon,
         dt=bounded.dt,
-        means=Means("any", "smt" if bounded.engine == "smt" else "milp", time_limit=job.timeout),
+        means=Means("any", "smt" if bounded.engine == "smt" else "milp", effort=job.effort),
     )
     found = check_bounded(request)
     if found.verdict is Verdict.PROVED:
-        return settle(replace(job, bounded=None))
+        return _settle(replace(job, bounded=None))
     expected = Verdict.PROVED_BOUNDED if job.task.expected is Verdict.PROVED else job.task.expected
     seconds = time.monotonic() - begun
     result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
@@ -107,6 +123,6 @@ def _refuting_drive(job: Job) -> Mapping[str, Any] | None:
     except ImportError:
         return None
     try:
-        return refuting_drive(job.task.claim, job.task.set_name, job.options, job.specs, DRIVE_SECONDS)
-    except RoadproofError:
+        return refuting_drive(job.task.claim, job.task.set_name, job.options, job.specs, job.effort.of(DRIVE))
+    except (InputError, UsageError):
         return None

@@ -11,14 +11,14 @@ from roadproof.cli.options import (
     read_seconds,
     select_specification,
 )
-from roadproof.errors import UsageError
+from roadproof.cli.numbers import add_effort_options, read_effort
 
 if TYPE_CHECKING:
     from roadproof.spec.library import Library
     from roadproof.witness.ask import Request
 
 
-def add_search_options(parser: argparse.ArgumentParser, seconds: float = 60.0) -> None:
+def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> None:
     """Where, with whom, how long and by whom is searched; ``read_request`` understands them."""
     add_specification_options(parser, several=True)
     add_parameter_option(parser)
@@ -49,13 +49,7 @@ def add_search_options(parser: argparse.ArgumentParser, seconds: float = 60.0) -
     parser.add_argument("--allow-collisions", action="store_true", help="boxes may overlap")
     parser.add_argument("--engine", choices=("milp", "smt"), default="milp", help="default: milp")
     parser.add_argument("--solver", default="highs", help="a mixed-integer solver for milp (default: highs)")
-    parser.add_argument(
-        "--timeout",
-        type=float,
-        default=seconds,
-        metavar="S",
-        help=f"seconds a question (default: {seconds:g})",
-    )
+    add_effort_options(parser, units)
 
 
 def read_request(args: argparse.Namespace, library: "Library") -> "Request":
@@ -63,8 +57,6 @@ def read_request(args: argparse.Namespace, library: "Library") -> "Request":
     from roadproof.witness.ask import Request
     from roadproof.witness.question import Means
 
-    if not args.timeout > 0:
-        raise UsageError(f"--timeout {args.timeout}: must be greater than 0")
     base = argparse.Namespace(**{**vars(args), "set_name": "base"})
     return Request(
         what="",
@@ -78,7 +70,7 @@ def read_request(args: argparse.Namespace, library: "Library") -> "Request":
         dt=read_seconds("--dt", args.dt),
         reach=read_seconds("--reach", args.reach),
         collisions=args.allow_collisions,
-        means=Means(engine=args.engine, solver=args.solver, time_limit=args.timeout),
+        means=Means(engine=args.engine, solver=args.solver, effort=read_effort(args)),
     )
 
 

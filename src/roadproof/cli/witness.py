@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.cli.numbers import add_jobs_option, whole
 from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
 from roadproof.cli.search_options import add_search_options, read_request
 from roadproof.cli.working import count_workers, work_in_order
@@ -43,8 +44,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="smooth",
         help="what the drive should be like (default: smooth)",
     )
-    parser.add_argument("--count", type=int, default=1, metavar="K", help="K clearly different drives")
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    parser.add_argument("--count", type=whole("--count", 1), default=1, metavar="K", help="K clearly different drives")
+    add_jobs_option(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drive files, CSV and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     parser.add_argument("--verbose", action="store_true", help="print sizes and seconds by stage")
@@ -77,8 +78,6 @@ def run(args: argparse.Namespace) -> int:
 def _requests(args: argparse.Namespace, library: "Library") -> "Iterator[Request]":
     if args.all == bool(args.what):
         raise UsageError("name scenarios or formulas, or ask for --all: one of the two")
-    if args.count < 1 or (args.jobs is not None and args.jobs < 1):
-        raise UsageError("--count and --jobs must be greater than 0")
     sets = [name for text in args.set_names or ["base"] for name in text.split(",")]
     for name in sets:
         library.select(name)
@@ -125,7 +124,7 @@ def _line(outcome: "Outcome", verbose: bool) -> str:
     if outcome.reason:
         shown += f"\n  {outcome.reason}"
     if outcome.impossibility is not None:
-        kind = "minimal core" if outcome.impossibility.minimal else "core, not minimised in the time given"
+        kind = "minimal core" if outcome.impossibility.minimal else "core, not minimised with the work given"
         shown += f"\n  proved for all time, on every road; {kind}:"
         shown += "".join(f"\n    {part}" for part in outcome.impossibility.core)
     if verbose:
@@ -149,9 +148,9 @@ def fulfil(task: Task) -> "Outcome":
     from roadproof.export.drive_csv import csv_of
     from roadproof.report.drive import draw_drive
     from roadproof.spec.library import load_library
-    from roadproof.witness.ask import ask
+    from roadproof.witness.ask import answer
 
-    outcome = ask(task.request)
+    outcome = answer(task.request)
     if task.folder is None:
         return outcome
     name = f"formula-{task.number:02d}" if outcome.scenario is None else f"scenario-{outcome.scenario:02d}"

@@ -1,10 +1,12 @@
 """One claim, one verdict: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
 
+import math
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from roadproof.effort import Effort, Meter
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify
@@ -21,27 +23,31 @@ from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 
-# Ways to look, in turns: (ask for few instants, seconds). The last is given what time is left.
+# Ways to look, in turns: (ask for few instants, units of work). The last is given what is left.
 TURNS: tuple[tuple[bool, float], ...] = (
     (False, 0.3),
     (True, 0.5),
     (False, 3.0),
     (True, 6.0),
     (False, 20.0),
-    (True, 1e9),
+    (True, math.inf),
 )
-VACUITY_SECONDS = 0.5
+VACUITY = 0.5
 
 
 @dataclass(frozen=True)
 class Result:
-    """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS."""
+    """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
+
+    ``work``: the units spent on the search.
+    """
 
     claim: str
     set_name: str
     verdict: Verdict
     reason: str
     seconds: float
+    work: float = 0.0
     certificate: Certificate | None = None
     countermodel: Countermodel | None = None
 
@@ -49,25 +55,25 @@ class Result:
 def prove(
     specification: Specification,
     claim: str,
-    timeout: float = 60.0,
+    effort: Effort | None = None,
     label: str = "",
     scenario: int | None = None,
 ) -> Result:
     """Decide whether ``claim`` holds at time 0 on all traces, for all values of its parameters.
 
     Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
-    above zero, roads, and signals as functions of time. ``timeout`` is in seconds. A proof counts
-    only once its certificate, derived apart, has been answered unsat. Raises ``TextError``.
+    above zero, roads, and signals as functions of time. A proof counts only once its certificate, derived
+    apart, has been answered unsat. Raises ``TextError``, and ``Late`` where the clock cuts it off.
     """
     begun = time.monotonic()
-    deadline = begun + timeout
+    meter = (effort or Effort()).meter()
     query = read_claim(specification, claim)
     atoms = Atoms()
     atomised = atoms.atomise(query.formula)
     defaults = default_values(specification.library)
     bounds = specification.library.bounds
     states = StateChecker(atoms, bounds, defaults)
-    attempt = _Attempt(atoms, bounds, defaults, states, query.lanes, deadline)
+    attempt = _Attempt(atoms, bounds, defaults, states, query.lanes, meter)
 
     def result(
         verdict: Verdict,
@@ -77,7 +83,7 @@ def prove(
     ) -> Result:
         seconds = time.monotonic() - begun
         name = specification.set_name
-        return Result(claim, name, verdict, reason, seconds, certificate, countermodel)
+        return Result(claim, name, verdict, reason, seconds, meter.spent, certificate, countermodel)
 
     names: dict[Site, str] = {}
     proofs: list[Proof] = []
@@ -93,7 +99,7 @@ def prove(
     for title, script in certificate.queries:
         if script in settled:
             continue
-        answer = ask(script, timeout=max(1.0, deadline - time.monotonic()))
+        answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
             return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
@@ -128,15 +134,15 @@ class _Attempt:
     defaults: Mapping[str, Fraction]
     states: StateChecker
     lanes: tuple[str, ...]
-    deadline: float
+    meter: Meter
 
     def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
-        """Look for a proof and for a countermodel in turns, until one is found or the time is up."""
-        last = GaveUp("the time is up")
-        for wishful, seconds in TURNS[-1:] if f.is_state(goal) else TURNS:
-            until = min(self.deadline, time.monotonic() + seconds)
+        """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
+        last = GaveUp(self.meter.reason())
+        for wishful, units in TURNS[-1:] if f.is_state(goal) else TURNS:
+            meter = self.meter.part(units)
             search = self._search(goal, names, wishful)
-            found = search.run(until)
+            found = search.run(meter)
             while not isinstance(found, Proof | GaveUp):
                 countermodel = realise(goal, self.atoms, found, self.defaults)
                 if countermodel is not None:
@@ -144,25 +150,24 @@ class _Attempt:
                 if not search.widen():
                     found = GaveUp("the only countermodels found over points in time are no traces")
                     break
-                found = search.run(until)
+                found = search.run(meter)
             if isinstance(found, Proof):
                 return found
             last = found
-            if time.monotonic() >= self.deadline:
+            if self.meter.is_out():
                 break
         return last
 
     def never_holds(self, premise: Formula) -> bool:
         """Whether the negation of ``premise`` is proved quickly, its query derived apart as for a claim."""
-        until = min(self.deadline, time.monotonic() + VACUITY_SECONDS)
         names: dict[Site, str] = {}
         goal = f.negation(premise)
-        proof = self._search(goal, names, True).run(until)
+        proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
         if not isinstance(proof, Proof):
             return False
         met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.lanes)
         query = derive_query(goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.lanes)
-        return ask(query, timeout=VACUITY_SECONDS) == "unsat"
+        return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
 
     def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:
         return Search(goal, self.atoms, self.bounds, self.states, self.lanes, names, wishful)

@@ -7,11 +7,11 @@ model is a candidate countermodel. When the clauses have no model, the claim is 
 instances are shrunk to those that are needed.
 """
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from roadproof.effort import Meter
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import Lemma, Site, free_prefix
 from roadproof.evidence.times import ZERO, Moment, at, moment_of
@@ -23,7 +23,7 @@ from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import Answer
 
 MOST_ROUNDS = 400
-WISH_SECONDS = 0.25
+WISH = 0.25  # units of work for a check with wishes, or for one of a shorter proof
 
 
 @dataclass(frozen=True)
@@ -83,25 +83,25 @@ class Search:
         self.spread = 0
         self.grounding.demand(claim, False)
 
-    def run(self, deadline: float) -> Proof | Model | GaveUp:
-        """A proof, a candidate countermodel, or why neither was found before ``deadline``.
+    def run(self, meter: Meter) -> Proof | Model | GaveUp:
+        """A proof, a candidate countermodel, or why neither was found with what ``meter`` had left.
 
-        May be called again: after a later deadline, or after ``widen``.
+        May be called again: with more work, or after ``widen``. Raises ``Late``.
         """
         for _ in range(MOST_ROUNDS):
-            left = deadline - time.monotonic()
-            if left <= 0:
-                return GaveUp("the time is up")
-            answer = self._check(left)
+            if meter.is_out():
+                return GaveUp(meter.reason())
+            answer = self._check(meter)
             if answer == "unsat":
-                return self._shrink()
+                return self._shrink(meter)
             if answer == "unknown":
-                return GaveUp("z3 gave no answer to the ground query in the time left")
+                out = meter.is_out()
+                return GaveUp(meter.reason() if out else "z3 gave no answer to the ground query")
             values = self._values()
             if self._instantiate(values):
                 continue
             states = self._states(values)
-            refused = self._lemmas(states, values, deadline)
+            refused = self._lemmas(states, values, meter)
             if refused is None:
                 signals = {instant: self.states.signals(state) for instant, state in states.items()}
                 return Model(values, states, signals, tuple(self.grounding.elements), self._facts())
@@ -116,16 +116,14 @@ class Search:
         self.spread += 1
         return True
 
-    def _check(self, timeout: float) -> Answer:
+    def _check(self, meter: Meter) -> Answer:
         """Check all clauses, giving up the latest wish that stands in the way until none does.
 
-        Wishes make the query harder; all are given up where they cost more than ``WISH_SECONDS``.
+        Wishes make the query harder; all are given up where they cost more than ``WISH``.
         """
         session, grounding = self.grounding.session, self.grounding
         while grounding.wishes:
-            answer = session.check(
-                [*grounding.switches, *grounding.wishes], timeout=min(WISH_SECONDS, timeout)
-            )
+            answer = session.check([*grounding.switches, *grounding.wishes], meter.part(WISH))
             if answer == "sat":
                 return answer
             if answer == "unknown":
@@ -135,7 +133,7 @@ class Search:
             if not blamed:
                 return answer
             grounding.wishes.remove(max(blamed, key=grounding.wishes.index))
-        return session.check(list(grounding.switches), timeout=timeout)
+        return session.check(list(grounding.switches), meter)
 
     # --- one round -------------------------------------------------------------------------------
 
@@ -215,12 +213,12 @@ class Search:
         self,
         states: Mapping[Fraction, Mapping[str, bool]],
         values: dict[str, Fraction],
-        deadline: float,
+        meter: Meter,
     ) -> bool | GaveUp | None:
         """Turn impossible states into lemmas; None where every state is possible."""
         learnt = False
         for instant, state in states.items():
-            clause = self.states.refute(state, deadline)
+            clause = self.states.refute(state, meter)
             if isinstance(clause, str):
                 return GaveUp(clause)
             if clause is not None:
@@ -235,13 +233,13 @@ class Search:
 
     # --- a proof ---------------------------------------------------------------------------------
 
-    def _shrink(self) -> Proof:
+    def _shrink(self, meter: Meter) -> Proof:
         """The clauses that the last refutation needs, each one of them."""
         session = self.grounding.session
         needed = session.core()
         for switch in list(needed):
             without = [s for s in needed if s != switch]
-            if session.check(without, timeout=WISH_SECONDS) == "unsat":
+            if session.check(without, meter.apart(WISH)) == "unsat":
                 needed = without
         instances: dict[Site, list[str]] = {}
         lemmas: dict[tuple[tuple[str, bool], ...], list[str]] = {}

@@ -6,11 +6,11 @@ general. An impossible
 combination comes back as a clause that holds at every instant.
 """
 
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
+from roadproof.effort import Meter
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import derive_lemma_queries
@@ -24,9 +24,10 @@ from roadproof.solve.smt import Session, ask, solve
 Assumed: TypeAlias = Literal["typical", "near", "nothing"]
 ASSUMED: tuple[Assumed, ...] = ("typical", "near", "nothing")
 Clause: TypeAlias = tuple[tuple[str, bool], ...]
-QUICK_SECONDS = 0.3
-CASE_SECONDS = 5.0
-SHRINK_SECONDS = 0.1
+# Units of work for one query: of a state, of a clause, of a clause with one literal less.
+QUICK = 0.3
+CASE = 5.0
+SHRINK = 0.1
 PLAUSIBLE: Mapping[t.SignalName, tuple[Fraction, Fraction]] = {
     "s": (Fraction(0), Fraction(500)),
     "d": (Fraction(0), Fraction(11)),
@@ -49,7 +50,7 @@ class StateChecker:
         self.clauses: list[Clause] = []
         self.known: dict[frozenset[tuple[str, bool]], Mapping[str, Fraction | bool]] = {}
 
-    def refute(self, wanted: Mapping[str, bool], deadline: float) -> Clause | str | None:
+    def refute(self, wanted: Mapping[str, bool], meter: Meter) -> Clause | str | None:
         """None where a state with these truth values exists; else a clause against it, or why not known."""
         key = frozenset(wanted.items())
         if key in self.known:
@@ -60,19 +61,19 @@ class StateChecker:
         literals = list(wanted.items())
         for assumed in ASSUMED:
             question = _Question(self, wanted, assumed)
-            answer = question.session.check(list(question.switches), _left(deadline, QUICK_SECONDS))
+            answer = question.session.check(list(question.switches), meter.part(QUICK))
             if answer == "sat":
                 self.known[key] = question.values()
                 return None
             if answer == "unsat":
                 literals = question.core()
             clause = tuple((name, not positive) for name, positive in literals)
-            if self._always_holds(clause, deadline):
-                self.clauses.append(self._shrink(clause, deadline))
+            if self._always_holds(clause, meter):
+                self.clauses.append(self._shrink(clause, meter))
                 return self.clauses[-1]
         symbols = _Question(self, wanted, "nothing").symbols
         for query in derive_lemma_queries(self.atoms, [(n, not p) for n, p in wanted.items()], self.bounds):
-            found = solve(query, symbols, _left(deadline, CASE_SECONDS))
+            found = solve(query, symbols, meter.part(CASE))
             if found is not None:
                 self.known[key] = found
                 return None
@@ -80,20 +81,20 @@ class StateChecker:
             name if positive else f"not {name}" for name, positive in literals
         )
 
-    def _always_holds(self, clause: Clause, deadline: float, seconds: float = CASE_SECONDS) -> bool:
+    def _always_holds(self, clause: Clause, meter: Meter, units: float = CASE) -> bool:
         """Whether each query of the clause, as a certificate will hold it, is answered unsat in time."""
         for query in derive_lemma_queries(self.atoms, clause, self.bounds):
             if query not in self.settled:
-                if ask(query, timeout=_left(deadline, seconds)) != "unsat":
+                if ask(query, meter=meter.part(units)) != "unsat":
                     return False
                 self.settled.add(query)
         return True
 
-    def _shrink(self, clause: Clause, deadline: float) -> Clause:
+    def _shrink(self, clause: Clause, meter: Meter) -> Clause:
         """The clause without the literals that it holds without."""
         for literal in clause:
             shorter = tuple(kept for kept in clause if kept != literal)
-            if shorter and self._always_holds(shorter, deadline, SHRINK_SECONDS):
+            if shorter and self._always_holds(shorter, meter, SHRINK):
                 clause = shorter
         return clause
 
@@ -103,10 +104,6 @@ class StateChecker:
         Numbers that are not rational are left out.
         """
         return self.known[frozenset(wanted.items())]
-
-
-def _left(deadline: float, most: float) -> float:
-    return min(most, max(0.01, deadline - time.monotonic()))
 
 
 class _Question:

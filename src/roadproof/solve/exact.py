@@ -8,7 +8,11 @@ from typing import Literal, TypeAlias, assert_never
 from roadproof.encode.circuit import All, AnyOf, Leaf, nodes
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import ColumnFact, Problem, Row
+from roadproof.effort import Meter
 from roadproof.solve.smt import Answer, Session
+
+UNIT = 300_000  # what z3 counts in about a second on polynomial arithmetic
+FIRST_TURN = 1.0
 
 Status: TypeAlias = Literal["found", "infeasible", "unknown"]
 
@@ -21,18 +25,19 @@ class ExactSolution:
     values: tuple[Fraction, ...] = ()
 
 
-def solve_exactly(problem: Problem, time_limit: float = 60.0) -> ExactSolution:
-    """Ask z3 for a solution within ``time_limit`` s; ``infeasible`` is an exact no.
+def solve_exactly(problem: Problem, meter: Meter) -> ExactSolution:
+    """Ask z3 for a solution within what ``meter`` has left; ``infeasible`` is an exact no.
 
-    How long z3 takes depends on luck, so it starts again with another seed and twice the time.
+    How long z3 takes depends on luck, so it starts again with another seed and twice the work.
+    Raises ``Late``.
     """
-    session = Session()
+    session = Session(UNIT)
     session.tell("\n".join(script(problem)))
     answer: Answer = "unknown"
-    seed, turn, left = 0, 1.0, time_limit
-    while answer == "unknown" and left > 0:
-        answer = session.check_plainly(min(turn, left), seed)
-        seed, turn, left = seed + 1, turn * 2, left - turn
+    seed, turn = 0, FIRST_TURN
+    while answer == "unknown" and not meter.is_out():
+        answer = session.check_plainly(meter.part(turn), seed)
+        seed, turn = seed + 1, turn * 2
     if answer != "sat":
         return ExactSolution("infeasible" if answer == "unsat" else "unknown")
     values = [v for v in session.values([f"c{k}" for k in range(len(problem.columns))]) if v is not None]

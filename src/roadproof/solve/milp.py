@@ -5,6 +5,7 @@ part that is not chosen, so no condition is needed in the other direction. Each 
 its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth`` only.
 """
 
+import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +15,7 @@ from typing import Any, Literal, TypeAlias, assert_never
 
 import numpy as np
 
+from roadproof.effort import Effort, Meter
 from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, nodes, replace_leaves
 from roadproof.encode.problem import Problem
 from roadproof.errors import MissingSolverError, UsageError
@@ -22,36 +24,98 @@ from roadproof.solve.bounds import Affine, Bound, Box, Side, approximate
 Status: TypeAlias = Literal["found", "infeasible", "unknown"]
 
 
+# A unit of work, about a second: HiGHS does 3,000 to 8,000 iterations a second, and 100 to 500 nodes once
+# it branches. Iterations are the better measure, but only nodes can be limited.
+ITERATIONS_A_UNIT = 5_000
+NODES_A_UNIT = 300
+# The only words of cvxpy that say no. It has others, such as infeasible_inaccurate, for solvers that reach
+# a limit without a solution.
+INFEASIBLE = ("infeasible", "infeasible_or_unbounded")
+TOLERANCE = 1e-4  # of a row or a bound, relative to its size
+
+
+@dataclass(frozen=True)
+class Limits:
+    """``units`` of work, ``seconds`` as a backstop, and ``gap``: how far from the best an answer may be."""
+
+    units: float
+    seconds: float
+    gap: float
+
+    @property
+    def nodes(self) -> int:
+        return max(1, math.ceil(min(self.units, 1e6) * NODES_A_UNIT))
+
+
 @dataclass(frozen=True)
 class SolverFacts:
     """What we know of a solver: cvxpy's name for it, the module it needs, its options."""
 
     cvxpy_name: str
     module: str
-    options: Callable[[float, float], Mapping[str, object]]
+    options: Callable[[Limits], Mapping[str, object]]
 
 
 SOLVERS: Mapping[str, SolverFacts] = {
     "highs": SolverFacts(
         "HIGHS",
         "highspy",
-        lambda limit, gap: {
-            "time_limit": limit,
-            "mip_rel_gap": gap,
+        lambda limits: {
+            "mip_max_nodes": limits.nodes,
+            "time_limit": limits.seconds,
+            "mip_rel_gap": limits.gap,
             "mip_heuristic_effort": 0.3,  # we ask for any solution, so heuristics are most of the work
             "random_seed": 1,
+            "threads": 1,
+            "parallel": "off",
         },
     ),
     "scipy": SolverFacts(
-        "SCIPY", "scipy", lambda limit, gap: {"scipy_options": {"time_limit": limit, "mip_rel_gap": gap}}
+        "SCIPY",
+        "scipy",
+        lambda limits: {
+            "scipy_options": {
+                "node_limit": limits.nodes,
+                "time_limit": limits.seconds,
+                "mip_rel_gap": limits.gap,
+            }
+        },
     ),
     "scip": SolverFacts(
-        "SCIP", "pyscipopt", lambda limit, gap: {"scip_params": {"limits/time": limit, "limits/gap": gap}}
+        "SCIP",
+        "pyscipopt",
+        lambda limits: {
+            "scip_params": {
+                "limits/nodes": limits.nodes,
+                "limits/time": limits.seconds,
+                "limits/gap": limits.gap,
+            }
+        },
     ),
-    "gurobi": SolverFacts("GUROBI", "gurobipy", lambda limit, gap: {"TimeLimit": limit, "MIPGap": gap}),
-    "cbc": SolverFacts("CBC", "cylp", lambda limit, gap: {"maximumSeconds": limit, "allowableGap": gap}),
+    "gurobi": SolverFacts(
+        "GUROBI",
+        "gurobipy",
+        lambda limits: {
+            "WorkLimit": limits.units,
+            "TimeLimit": limits.seconds,
+            "MIPGap": limits.gap,
+            "Threads": 1,
+        },
+    ),
+    "cbc": SolverFacts(
+        "CBC",
+        "cylp",
+        lambda limits: {
+            "maximumNodes": limits.nodes,
+            "maximumSeconds": limits.seconds,
+            "allowableGap": limits.gap,
+        },
+    ),
+    # It counts nothing that could be limited, so only the clock ends it.
     "glpk": SolverFacts(
-        "GLPK_MI", "cvxopt", lambda limit, gap: {"tm_lim": int(limit * 1000), "mip_gap": gap}
+        "GLPK_MI",
+        "cvxopt",
+        lambda limits: {"tm_lim": math.ceil(limits.seconds * 1000), "mip_gap": limits.gap},
     ),
 }
 
@@ -92,16 +156,19 @@ def solve_mixed(
     pieces: int = 1,
     cost: Cost | None = None,
     solver: str = "highs",
-    time_limit: float = 30.0,
+    meter: Meter | None = None,
     gap: float = 0.5,
 ) -> Solution:
-    """A solution of ``problem`` in ``box`` (a bound pair per column).
+    """A solution of ``problem`` in ``box`` (a bound pair per column), within what ``meter`` has left.
 
     On the inner side a solution solves the exact problem up to floating point; on the outer side
     ``infeasible`` says that the exact problem has no solution, up to the solver's tolerances. Raises
-    ``TooNonlinearError`` for facts above degree 2 and as ``find_solver`` does.
+    ``TooNonlinearError`` for facts above degree 2, ``Late``, and as ``find_solver`` does.
     """
     known = find_solver(solver)
+    meter = meter or Effort().meter()
+    if meter.is_out():
+        return Solution("unknown")
     circuit = replace_leaves(problem.circuit, lambda fact: approximate(fact, box, side, pieces))
     tableau = _Tableau(list(box))
     for row in problem.rows:
@@ -110,7 +177,7 @@ def solve_mixed(
         high = np.inf if row.high is None else float(row.high)
         tableau.add(terms, low, high)
     tableau.require(circuit)
-    return _run(tableau, len(problem.columns), cost or Cost(), known, time_limit, gap)
+    return _run(tableau, len(problem.columns), cost or Cost(), known, meter, gap)
 
 
 class _Tableau:
@@ -179,7 +246,7 @@ class _Tableau:
 
 
 def _run(
-    tableau: _Tableau, wanted: int, cost: Cost, known: SolverFacts, time_limit: float, gap: float
+    tableau: _Tableau, wanted: int, cost: Cost, known: SolverFacts, meter: Meter, gap: float
 ) -> Solution:
     import cvxpy
     from scipy.sparse import csr_array
@@ -212,19 +279,53 @@ def _run(
     if below.any():
         constraints.append(matrix[below] @ x <= high[below])
     program = cvxpy.Problem(cvxpy.Minimize(weights @ x), constraints)
+    allowed = Limits(meter.left(), meter.seconds_left(), gap)
+    status = _solve(program, known, allowed)
+    meter.spend(_spent(program.solver_stats, allowed, status))
+    if status in INFEASIBLE:
+        return Solution("infeasible")
+    if status != "optimal":
+        # What is there when the clock ends the search depends on the machine, so nobody may see it.
+        meter.seconds_left()
+    if x.value is None or not _fits(x.value, limits, matrix, low, high):
+        return Solution("unknown")
+    return Solution("found", tuple(float(v) for v in x.value[:wanted]))
+
+
+def _solve(program: Any, known: SolverFacts, allowed: Limits) -> str:
+    """cvxpy's status: only those of ``INFEASIBLE`` say that there is no solution; "" is any failure."""
+    import cvxpy
+
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an answer that may be inaccurate is judged anyway
-            program.solve(  # type: ignore[no-untyped-call]
-                solver=known.cvxpy_name, **known.options(time_limit, gap)
-            )
+            program.solve(solver=known.cvxpy_name, **known.options(allowed))
     except cvxpy.error.SolverError:
-        return Solution("unknown")
-    if program.status in ("infeasible", "infeasible_or_unbounded"):
-        return Solution("infeasible")
-    if x.value is None:
-        return Solution("unknown")
-    return Solution("found", tuple(float(v) for v in x.value[:wanted]))
+        return ""
+    except ValueError as error:
+        if "Cannot unpack invalid solution" in str(error):  # a status of the solver that cvxpy does not know
+            return ""
+        raise
+    return str(program.status)
+
+
+def _spent(stats: Any, allowed: Limits, status: str) -> float:
+    """The units that a solver has worked; all that were allowed where it came to no end."""
+    if status != "optimal" and status not in INFEASIBLE:
+        return allowed.units
+    found = stats.extra_stats if stats is not None else None
+    if isinstance(found, dict):
+        return float((found.get("mip_node_count") or 0) / NODES_A_UNIT)
+    iterations = getattr(found, "simplex_iteration_count", 0) / ITERATIONS_A_UNIT
+    return float(max(iterations, getattr(found, "mip_node_count", 0) / NODES_A_UNIT))
+
+
+def _fits(x: Any, limits: Any, matrix: Any, low: Any, high: Any) -> bool:
+    """Whether ``x`` is a solution at all: solvers that reach a limit may hand out what they have."""
+    rows = matrix @ x
+    within = np.concatenate([x - limits[:, 0], limits[:, 1] - x, rows - low, high - rows])
+    size = np.concatenate([np.abs(limits).T.ravel(), np.abs(low), np.abs(high)])
+    return bool(np.all(within >= -TOLERANCE * (1 + np.where(np.isfinite(size), size, 0))))
 
 
 def prepare() -> None:

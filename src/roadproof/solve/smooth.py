@@ -96,6 +96,8 @@ def minimise(
     cones = [clarabel.ZeroConeT(len(equal.right)), clarabel.NonnegativeConeT(len(below.right))]
     settings = clarabel.DefaultSettings()
     settings.verbose = False
+    settings.max_threads = 1
+    settings.direct_solve_method = "qdldl"
     right = np.array(equal.right + below.right)
     solver = clarabel.DefaultSolver(quadratic, linear, csc_matrix(both), right, cones, settings)
     result = solver.solve()

@@ -4,11 +4,19 @@ Everything that is asked of an SMT solver passes through here as text, so that a
 written to a file and asked again of another program.
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
+from roadproof.effort import Meter
 from roadproof.errors import MissingSolverError
+
+# What z3 and cvc5 count in about a second; z3 counts up to 4 million on linear queries, 0.3 on polynomial ones.
+UNIT = 1_000_000
+UNIT_CVC5 = 200_000
+_MOST = 4_000_000_000  # both count in 32 bits
+_NEVER = 4294967295
 
 Answer: TypeAlias = Literal["sat", "unsat", "unknown"]
 SExpression: TypeAlias = "str | list[SExpression]"
@@ -21,10 +29,13 @@ class SolverError(RuntimeError):
 class Session:
     """A z3 context that keeps declarations and assertions between calls."""
 
-    def __init__(self) -> None:
+    def __init__(self, unit: int = UNIT) -> None:
+        """``unit``: how much of what z3 counts is a unit of work."""
         import z3
 
         self._z3 = z3
+        self._unit = unit
+        self._counted = 0
         self._context = z3.Context()
         self.tell("(set-option :produce-models true)(set-option :produce-unsat-cores true)")
 
@@ -38,20 +49,37 @@ class Session:
             raise SolverError(f"z3 refused: {answer.strip()}")
         return answer
 
-    def check(self, assuming: Sequence[str] = (), timeout: float | None = None) -> Answer:
-        """``check-sat`` under Boolean constants or their negations; ``timeout`` in seconds."""
-        milliseconds = 0 if timeout is None else max(1, int(timeout * 1000))
-        limit = milliseconds or 4294967295
+    def check(self, assuming: Sequence[str] = (), meter: Meter | None = None) -> Answer:
+        """``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
         query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
-        return _answer(self.tell(f"(set-option :timeout {limit}){query}"))
+        return self.answer(query, meter)
 
-    def check_plainly(self, timeout: float, seed: int = 0) -> Answer:
+    def check_plainly(self, meter: Meter, seed: int = 0) -> Answer:
         """``check-sat`` by z3's SMT core alone, without the strategies that z3 tries before it.
 
         On polynomial arithmetic with many disjunctions those spend most of a minute in vain.
         """
-        strategy = f"(using-params smt :random_seed {seed})"
-        return _answer(self.tell(f"(check-sat-using (try-for {strategy} {max(1, int(timeout * 1000))}))"))
+        return self.answer(f"(check-sat-using (using-params smt :random_seed {seed}))", meter)
+
+    def answer(self, commands: str, meter: Meter | None) -> Answer:
+        """The answer to commands that end in a check, within what ``meter`` has left.
+
+        ``unknown`` where the work is used up, or z3 gives up. Raises ``Late``.
+        """
+        if meter is None:
+            return _answer(self.tell(f"(set-option :rlimit 0)(set-option :timeout {_NEVER})\n{commands}"))
+        if meter.is_out():
+            return "unknown"
+        work, milliseconds = _limits(meter, self._unit)
+        limits = f"(set-option :rlimit {work})(set-option :timeout {milliseconds})"
+        said = self.tell(f"{limits}\n{commands}\n(get-info :rlimit)")
+        counted = int(said[said.rindex(":rlimit") + 7 :].strip(" )\n"))
+        meter.spend((counted - self._counted) / self._unit)
+        self._counted = counted
+        answer = _answer(said)
+        if answer == "unknown":
+            meter.seconds_left()
+        return answer
 
     def core(self) -> list[str]:
         """The assumptions that the last ``unsat`` used."""
@@ -66,6 +94,12 @@ class Session:
         return [read_value(pair[1]) for pair in read]
 
 
+def _limits(meter: Meter, unit: int) -> tuple[int, int]:
+    """What is left as a solver's count and as milliseconds, rounded up. Raises ``Late``."""
+    milliseconds = math.ceil(meter.seconds_left() * 1000)
+    return max(1, min(_MOST, math.ceil(min(meter.left(), _MOST) * unit))), min(_MOST, milliseconds)
+
+
 def _answer(text: str) -> Answer:
     words = text.split()
     if "unsat" in words:
@@ -73,31 +107,27 @@ def _answer(text: str) -> Answer:
     return "sat" if "sat" in words else "unknown"
 
 
-def ask(script: str, solver: str = "z3", timeout: float | None = None) -> Answer:
+def ask(script: str, solver: str = "z3", meter: Meter | None = None) -> Answer:
     """The answer of ``solver`` (z3 or cvc5) to a whole SMT-LIB script that ends in ``check-sat``.
 
-    Raises ``MissingSolverError`` where cvc5 is not installed.
+    Raises ``MissingSolverError`` where cvc5 is not installed, and ``Late``.
     """
-    if solver == "z3":
-        milliseconds = 4294967295 if timeout is None else max(1, int(timeout * 1000))
-        return _answer(Session().tell(f"(set-option :timeout {milliseconds})\n{script}"))
-    return _ask_cvc5(script, timeout)
+    return Session().answer(script, meter) if solver == "z3" else _ask_cvc5(script, meter)
 
 
-def solve(script: str, symbols: Sequence[str], timeout: float) -> Mapping[str, Fraction | bool] | None:
+def solve(script: str, symbols: Sequence[str], meter: Meter) -> Mapping[str, Fraction | bool] | None:
     """Values of ``symbols`` in a model that z3 finds for a whole script, or None where it finds none.
 
-    Numbers that are not rational are left out.
+    Numbers that are not rational are left out. Raises ``Late``.
     """
     session = Session()
-    answer = session.tell(f"(set-option :timeout {max(1, int(timeout * 1000))})\n{script}")
-    if _answer(answer) != "sat":
+    if session.answer(script, meter) != "sat":
         return None
     read = session.values(symbols)
     return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
 
 
-def _ask_cvc5(script: str, timeout: float | None) -> Answer:
+def _ask_cvc5(script: str, meter: Meter | None) -> Answer:
     try:
         import cvc5
     except ImportError:
@@ -105,17 +135,24 @@ def _ask_cvc5(script: str, timeout: float | None) -> Answer:
     solver = cvc5.Solver()
     # Without it, cvc5 finds no end to one of the cases of the RSS guarantee, and with it it takes 0.03 s.
     solver.setOption("decision", "justification")
-    if timeout is not None:
-        solver.setOption("tlimit-per", str(max(1, int(timeout * 1000))))
+    if meter is not None:
+        if meter.is_out():
+            return "unknown"
+        work, milliseconds = _limits(meter, UNIT_CVC5)
+        solver.setOption("rlimit-per", str(work))
+        solver.setOption("tlimit-per", str(milliseconds))
     symbols = cvc5.SymbolManager(solver)
     parser = cvc5.InputParser(solver, symbols)
     parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, script, "query")
     printed: list[str] = []
-    while True:
-        command = parser.nextCommand()
-        if command.isNull():
-            return _answer(" ".join(printed))
+    while not (command := parser.nextCommand()).isNull():
         printed.append(str(command.invoke(solver, symbols)))
+    if meter is not None:
+        meter.spend(solver.getStatistics().get("resource::resourceUnitsUsed")["value"] / UNIT_CVC5)
+    answer = _answer(" ".join(printed))
+    if answer == "unknown" and meter is not None:
+        meter.seconds_left()
+    return answer
 
 
 def parse_sexpression(text: str) -> list[SExpression]:

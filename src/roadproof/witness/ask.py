@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from roadproof.effort import Late
 from roadproof.encode.build import Manners
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
@@ -82,8 +83,23 @@ class Outcome:
         return data
 
 
+def answer(request: Request) -> Outcome:
+    """As ``ask``, but UNKNOWN with that reason where the clock cuts it off."""
+    begun = time.perf_counter()
+    try:
+        return ask(request)
+    except Late as late:
+        library = load_library(request.specs)
+        specification = library.select(request.set_name, request.options)
+        scenario, text = as_formula(specification, request.what)
+        road = pose(specification, text, request).road.name
+        seconds = {"all": time.perf_counter() - begun}
+        found = Outcome(scenario, request.set_name, text, road, Verdict.UNKNOWN, str(late), (), False, seconds, {})
+        return found
+
+
 def ask(request: Request) -> Outcome:
-    """Answer a request. Raises ``InputError``, ``UsageError``, ``MissingSolverError``."""
+    """Answer a request. Raises ``InputError``, ``UsageError``, ``MissingSolverError``, ``Late``."""
     begun = time.perf_counter()
     library = load_library(request.specs)
     specification = library.select(request.set_name, request.options)
@@ -102,8 +118,8 @@ def ask(request: Request) -> Outcome:
     )
     impossibility = None
     if first.found is None:
-        left = max(1.0, min(10.0, request.means.time_limit))
-        impossibility = show_impossible(specification, text, left)
+        effort = request.means.effort
+        impossibility = show_impossible(specification, text, effort.of(max(1.0, min(10.0, effort.units))))
     seconds = {**first.seconds, "all": time.perf_counter() - begun}
     return Outcome(
         scenario,

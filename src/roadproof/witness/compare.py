@@ -4,6 +4,7 @@ import json
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
+from roadproof.effort import Late
 from roadproof.evidence.certificate import to_json
 from roadproof.logic import syntax
 from roadproof.logic.parse import parse_claim
@@ -15,6 +16,8 @@ from roadproof.verdict import Verdict
 from roadproof.witness.ask import Outcome, Request, as_formula, ask
 
 Relation: TypeAlias = Literal["equivalent", "stronger", "weaker", "incomparable", "unknown"]
+
+PROOF = 5.0  # units of work for a proof before a drive is looked for
 
 
 @dataclass(frozen=True)
@@ -69,12 +72,21 @@ def _relation(forward: Direction, backward: Direction) -> Relation:
 
 
 def _imply(specification: Specification, request: Request, one: str, other: str) -> Direction:
-    """Ask for a proof first, which takes a moment where there is one, then for a drive."""
+    """Which of the two is so; UNKNOWN where the clock cuts the search off."""
     claim = f"({one}) -> ({other})"
-    proof = prove(specification, claim, min(5.0, request.means.time_limit))
+    try:
+        return _decide(specification, request, claim, f"({one}) and not ({other})")
+    except Late as late:
+        return Direction(claim, Verdict.UNKNOWN, str(late), None, None)
+
+
+def _decide(specification: Specification, request: Request, claim: str, against: str) -> Direction:
+    """Ask for a proof first, which takes a moment where there is one, then for a drive."""
+    effort = request.means.effort
+    proof = prove(specification, claim, effort.of(min(PROOF, effort.units)))
     if proof.verdict in (Verdict.PROVED, Verdict.VACUOUS) and proof.certificate is not None:
         return Direction(claim, Verdict.PROVED, proof.reason, to_json(proof.certificate), None)
-    found: Outcome = ask(replace(request, what=f"({one}) and not ({other})", count=1))
+    found: Outcome = ask(replace(request, what=against, count=1))
     if found.drives:
         return Direction(claim, Verdict.REFUTED, "", None, found.drives[0])
     if found.impossibility is not None:

@@ -1,11 +1,11 @@
 """No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
 
 import json
-import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from roadproof.effort import Effort
 from roadproof.evidence.certificate import to_json
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
@@ -17,6 +17,8 @@ from roadproof.prove.prover import prove
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
 from roadproof.verdict import Verdict
+
+SHORTER = 1.5  # units of work for a proof with one part less
 
 
 @dataclass(frozen=True)
@@ -31,14 +33,13 @@ class Impossibility:
     certificate: Mapping[str, Any]
 
 
-def show_impossible(specification: Specification, formula: str, timeout: float) -> Impossibility | None:
-    """A proof in dense, unbounded time that ``formula`` never holds at 0, or None. ``timeout`` in s."""
-    deadline = time.monotonic() + timeout
+def show_impossible(specification: Specification, formula: str, effort: Effort) -> Impossibility | None:
+    """A proof in dense, unbounded time that ``formula`` never holds at 0, or None. Raises ``Late``."""
     given, body = split_given(formula)
-    whole = prove(specification, f"{given}not ({body})", timeout)
+    whole = prove(specification, f"{given}not ({body})", effort)
     if whole.verdict not in (Verdict.PROVED, Verdict.VACUOUS) or whole.certificate is None:
         return None
-    core, minimal = _core(specification, formula, deadline)
+    core, minimal = _core(specification, formula, effort.of(effort.units - whole.work))
     return Impossibility(core, minimal, json.loads(to_json(whole.certificate)))
 
 
@@ -50,20 +51,21 @@ def split_given(claim: str) -> tuple[str, str]:
     return text(syntax.Claim(parsed.given, syntax.Literal_(True))).removesuffix("true"), text(parsed.body)
 
 
-def _core(specification: Specification, formula: str, deadline: float) -> tuple[tuple[str, ...], bool]:
+def _core(specification: Specification, formula: str, effort: Effort) -> tuple[tuple[str, ...], bool]:
     """Leave out one part after the other where the rest still clashes."""
     kept = [text(as_syntax(part, expand=False)) for part in parts(read_claim(specification, formula).formula)]
     kept = list(dict.fromkeys(kept))
     given, _ = split_given(formula)
     for part in tuple(kept):
         rest = [p for p in kept if p != part]
-        left = deadline - time.monotonic()
-        if left <= 0:
+        if effort.units <= 0:
             return tuple(kept), False
         if not rest:
             continue
         claim = f"{given}not ({' and '.join(f'({p})' for p in rest)})"
-        if prove(specification, claim, min(left, 1.5)).verdict in (Verdict.PROVED, Verdict.VACUOUS):
+        found = prove(specification, claim, effort.of(min(effort.units, SHORTER)))
+        effort = effort.of(effort.units - found.work)
+        if found.verdict in (Verdict.PROVED, Verdict.VACUOUS):
             kept = rest
     return tuple(kept), True
 

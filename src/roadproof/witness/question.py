@@ -6,6 +6,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Literal, TypeAlias
 
+from roadproof.effort import Effort
 from roadproof.encode.build import Manners
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
@@ -55,7 +56,7 @@ class Question:
 
 @dataclass(frozen=True)
 class Means:
-    """How to search: engine, solver, objective, seconds for one answer, finer grids to try.
+    """How to search: engine, solver, objective, work for one drive, finer grids to try.
 
     ``explain``: whether to show that there is none where none was found.
     """
@@ -63,7 +64,7 @@ class Means:
     objective: Objective = "smooth"
     engine: Engine = "milp"
     solver: str = "highs"
-    time_limit: float = 60.0
+    effort: Effort = Effort()
     refinements: int = 2
     explain: bool = True
 

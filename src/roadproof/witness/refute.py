@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from roadproof.effort import Effort
 from roadproof.logic import syntax
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text
@@ -14,14 +15,14 @@ from roadproof.witness.question import Means
 
 
 def refuting_drive(
-    claim: str, set_name: str, options: Mapping[str, str], specs: tuple[Path, ...], seconds: float
+    claim: str, set_name: str, options: Mapping[str, str], specs: tuple[Path, ...], effort: Effort
 ) -> Mapping[str, Any] | None:
     """The file of a judged drive on which ``claim`` is false at time 0, or None where none was found.
 
-    Looked for on the usual road at declared parameter values, ``seconds`` long. Raises
-    ``InputError`` and ``UsageError`` for claims that are not about drives.
+    Looked for on the usual road at declared parameter values. Raises ``InputError`` and
+    ``UsageError`` for claims that are not about drives, and ``Late``.
     """
-    means = Means("smooth", time_limit=seconds, explain=False)
+    means = Means("smooth", effort=effort, explain=False)
     values = default_values(load_library(specs))
     outcome = ask(Request(negated(claim), set_name, options, specs, values, means=means))
     return outcome.drives[0] if outcome.drives else None

@@ -25,6 +25,10 @@ from roadproof.witness.shape import reshape, violation_depths
 from roadproof.witness.variety import differ
 from roadproof.world.drive import Drive
 
+# Units of work: the least for one exact search, and the most for one way to show that there is no drive.
+LEAST_EXACT = 2.0
+REFUTING = 20.0
+
 
 @dataclass(frozen=True)
 class Answer:
@@ -42,7 +46,7 @@ def find_witness(question: Question, means: Means, unlike: tuple[Drive, ...] = (
 
     Whatever is found has been judged exactly in dense and unbounded time. NONE-WITHIN means that
     the problem on the grid has no solution for any assignment of lanes. Raises ``UsageError`` for
-    interval bounds off the grid, ``MissingSolverError``.
+    interval bounds off the grid, ``MissingSolverError``, and ``Late`` where the clock cuts it off.
     """
     if means.objective == "short":
         return _shortest(question, means, unlike)
@@ -83,18 +87,20 @@ class _Search:
         self.unlike = unlike
         self.seconds: dict[str, float] = {}
         self.sizes: dict[str, int] = {}
-        self.deadline = time.monotonic() + means.time_limit
+        self.meter = means.effort.meter()
         self.doubt = ""
         self.doubts: list[str] = []
         self.encoded: dict[tuple[Formula, Grid, Margin], Circuit[ColumnFact]] = {}
 
     def run(self) -> Answer:
         for lanes, grid, manners in self._attempts():
-            if time.monotonic() > self.deadline:
-                return self._answer(Verdict.UNKNOWN, None, f"no answer within {self.means.time_limit:g} s")
+            if self.meter.is_out():
+                return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
             found = self._attempt(lanes, grid, manners)
             if found is not None:
                 return self._answer(Verdict.WITNESSED, found, "")
+        if self.meter.is_out():
+            return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
         if self.doubts:
             return self._answer(Verdict.UNKNOWN, None, self.doubts[-1])
         if not self.means.explain:
@@ -157,12 +163,11 @@ class _Search:
         return problem, layout
 
     def _solve(self, problem: Problem) -> Solution:
-        left = max(0.1, self.deadline - time.monotonic())
         if self.means.engine == "smt":
-            exact = solve_exactly(problem, max(2.0, left / 3))
+            exact = solve_exactly(problem, self.meter.part(max(LEAST_EXACT, self.meter.left() / 3)))
             return Solution(exact.status, exact.values)
         try:
-            return solve_mixed(problem, box_of(problem), solver=self.means.solver, time_limit=left)
+            return solve_mixed(problem, box_of(problem), solver=self.means.solver, meter=self.meter)
         except TooNonlinearError:
             raise UsageError(
                 "the formula has a comparison of degree above 2, which --engine milp cannot bound: "
@@ -223,23 +228,23 @@ class _Search:
                 return self._answer(Verdict.UNKNOWN, None, complaint)
             if not by:
                 shown = ", ".join(f"{k}={v}" for k, v in lanes.items()) or self.question.road.name
-                reason = f"neither a drive nor a refutation was found in time for {shown}"
+                reason = f"neither a drive nor a refutation was found with the work given for {shown}"
                 return self._answer(Verdict.UNKNOWN, None, reason)
             how.add(by)
         return self._answer(Verdict.NONE_WITHIN, None, f"{self.question.limits()} ({', '.join(sorted(how))})")
 
     def _refute(self, problem: Problem) -> tuple[str, tuple[Fraction, ...] | None]:
         """How it was shown that ``problem`` has no solution (empty where it was not), or a solution."""
-        left = max(0.1, self.deadline - time.monotonic())
         if self.means.engine == "milp":
             try:
                 box = box_of(problem)
-                relaxed = solve_mixed(problem, box, "outer", 2, None, self.means.solver, min(20.0, left))
+                meter = self.meter.part(REFUTING)
+                relaxed = solve_mixed(problem, box, "outer", 2, None, self.means.solver, meter)
                 if relaxed.status == "infeasible":
                     return f"a relaxation is infeasible for {self.means.solver}", None
             except TooNonlinearError:
                 pass
-        exact = solve_exactly(problem, min(20.0, max(0.1, self.deadline - time.monotonic())))
+        exact = solve_exactly(problem, self.meter.part(REFUTING))
         if exact.status == "found":
             return "", exact.values
         return ("the exact encoding is unsat for z3" if exact.status == "infeasible" else ""), None

@@ -1,0 +1,75 @@
+"""Numbers on the command line: how much work, how long, how many processes; one meaning everywhere."""
+
+import argparse
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from roadproof.errors import UsageError
+
+if TYPE_CHECKING:
+    from roadproof.effort import Effort
+
+_DECIMAL = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?")
+_WHOLE = re.compile(r"[0-9]{1,12}")
+MOST = 1_000_000
+
+
+def add_effort_options(parser: argparse.ArgumentParser, units: float = 60.0, each: str = "a question") -> None:
+    """``--effort`` and ``--timeout``, which ``read_effort`` understands; ``each``: what they are given to."""
+    parser.add_argument(
+        "--effort",
+        type=decimal("--effort"),
+        default=units,
+        metavar="N",
+        help=f"units of work for {each}, each about a second of a solver; counted, so the answer is the same "
+        f"on every machine (default: {units:g})",
+    )
+    parser.add_argument(
+        "--timeout",
+        type=decimal("--timeout"),
+        metavar="S",
+        help="seconds after which the clock cuts one search off, whatever work is left; the answer then says "
+        "so (default: 20 a unit of work, at least 120)",
+    )
+
+
+def read_effort(args: argparse.Namespace) -> "Effort":
+    """What ``--effort`` and ``--timeout`` allow for one search."""
+    from roadproof.effort import Effort
+
+    return Effort(args.effort, args.timeout)
+
+
+def add_jobs_option(parser: argparse.ArgumentParser) -> None:
+    """``--jobs``: how many processes."""
+    parser.add_argument(
+        "--jobs", type=whole("--jobs", 1), metavar="N", help="processes (default: one a core)"
+    )
+
+
+def decimal(option: str) -> Callable[[str], float]:
+    """A reader of numbers greater than 0, which raises ``UsageError`` by the option's name."""
+
+    def read(text: str) -> float:
+        value = float(text) if _DECIMAL.fullmatch(text) else 0.0
+        if not 0 < value <= MOST:
+            raise UsageError(
+                f"{option} {text[:40]}: write a decimal number greater than 0 and at most {MOST}, such as 20"
+            )
+        return value
+
+    return read
+
+
+def whole(option: str, least: int) -> Callable[[str], int]:
+    """A reader of whole numbers from ``least`` on, which raises ``UsageError`` by the option's name."""
+
+    def read(text: str) -> int:
+        value = int(text) if _WHOLE.fullmatch(text) else least - 1
+        if not least <= value <= MOST:
+            rule = "greater than 0" if least == 1 else f"not below {least}"
+            raise UsageError(f"{option} {text[:40]}: write a whole number {rule} and at most {MOST}")
+        return value
+
+    return read
