@@ -122,6 +122,7 @@ def as_data(settled: Settled, file: str | None) -> dict[str, Any]:
         "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
         "seconds": round(result.seconds, 4),
         "reason": result.reason,
+        **({"limits": dict(settled.limits)} if settled.limits is not None else {}),
         "assumptions": list(result.certificate.assumptions) if result.certificate else [],
         "certificate": file if result.certificate is not None else None,
         "counterexample": counterexample(settled),

@@ -42,11 +42,15 @@ class Job:
 
 @dataclass(frozen=True)
 class Settled:
-    """A task with its result; ``drive`` is a judged drive on which the claim is false."""
+    """A task with its result; ``drive`` is a judged drive on which the claim is false.
+
+    ``limits``: within what a PROVED-BOUNDED claim holds.
+    """
 
     task: "Task"
     result: "Result"
     drive: Mapping[str, Any] | None
+    limits: Mapping[str, Any] | None = None
 
     @property
     def verdict(self) -> Verdict:
@@ -113,7 +117,8 @@ def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
     expected = Verdict.PROVED_BOUNDED if job.task.expected is Verdict.PROVED else job.task.expected
     seconds = time.monotonic() - begun
     result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
-    return Settled(replace(job.task, expected=expected), result, found.drive)
+    limits = None if found.limits is None else found.limits.as_json()
+    return Settled(replace(job.task, expected=expected), result, found.drive, limits)
 
 
 def _refuting_drive(job: Job) -> Mapping[str, Any] | None:

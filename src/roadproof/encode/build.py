@@ -1,6 +1,6 @@
 """A question to a problem: formula, road, vehicles and grid become columns, rows and a circuit."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -11,7 +11,7 @@ from roadproof.encode.facts import Quantity, facts_of
 from roadproof.encode.motion import Layout, Motions, encode_motions
 from roadproof.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.encode.polynomial import Fact, Polynomial, affine, variable
-from roadproof.encode.problem import ColumnFact, Problem
+from roadproof.encode.problem import ColumnFact, Problem, Row, row_of
 from roadproof.encode.unroll import At, Grid, unroll
 from roadproof.logic.formula import Compare, Formula
 from roadproof.world.road import Road
@@ -35,10 +35,12 @@ class Manners:
     speed; move across the road in one direction only, within the vehicles' jumps of acceleration.
     ``between``: whether to look after the time between samples too.
     ``apart``: how far boxes stay from each other, along or across.
-    ``reach``: how far from the first vehicle's start the others may start, in m.
+    ``reach``: how far apart any two vehicles may start, in m.
+    ``starts``: where fronts may be at time 0; None puts the first vehicle's at s = 0 (``encode.along``).
     ``collisions``: whether boxes may overlap. ``straight``: vehicles that do not move across the road.
     ``margin`` and ``inside``: what a search in floating
     point keeps from the facts of the formula and from the limits of the accelerations.
+    ``lasting``: what is asked of the last sample is asked for ever after, of formula and road alike.
     """
 
     natural: bool = True
@@ -50,11 +52,24 @@ class Manners:
     off_centre: Fraction = Fraction(3, 10)
     between: bool = True
     apart: tuple[Fraction, Fraction] = (Fraction(8), Fraction(7, 10))
+    starts: Range | None = None
+    lasting: bool = True
 
     def plain(self) -> "Manners":
         """Whatever the limits of the vehicles allow."""
         close = Fraction(1, 20)
         return replace(self, natural=False, straight=frozenset(), margin=NARROW, apart=(close, close))
+
+    def loosest(self) -> "Manners":
+        """No more than every drive keeps that a NONE-WITHIN speaks of: what it rests on is printed."""
+        return replace(
+            self.plain(),
+            margin=NONE,
+            inside=Fraction(0),
+            apart=(Fraction(0), Fraction(0)),
+            between=False,
+            lasting=False,
+        )
 
 
 def build_problem(
@@ -62,11 +77,10 @@ def build_problem(
 ) -> tuple[Problem, Layout]:
     """The problem whose solutions are the drives on ``grid`` that satisfy the bound ``formula``.
 
-    The first vehicle starts with its front at s = 0. Raises ``UsageError`` for interval bounds that
-    are no multiples of dt.
+    Raises ``UsageError`` for interval bounds that are no multiples of dt.
     """
     layout = Layout(tuple(vehicles), grid)
-    wanted = encode_formula(formula, vehicles, layout, manners.margin)
+    wanted = encode_formula(formula, vehicles, layout, manners)
     return frame(wanted, road, vehicles, layout, manners), layout
 
 
@@ -80,31 +94,42 @@ def frame(
     """An encoded formula put among motions, road and manners."""
     motions = _motions(road, vehicles, layout.grid, manners)
     around = surroundings(road, vehicles, layout, manners)
-    return Problem(motions.columns, motions.rows, all_of([wanted, *around]))
+    rows = (*motions.rows, *_starts_within(layout, manners))
+    return Problem(motions.columns, rows, all_of([wanted, *around]))
 
 
 def encode_formula(
-    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, margin: Margin
+    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, manners: Manners
 ) -> Circuit[ColumnFact]:
     """The formula as a circuit over the columns of ``layout``."""
-    return ground(unroll(formula, layout.grid), vehicles, layout, margin)
+    return ground(unroll(formula, layout.grid), vehicles, layout, manners.margin, manners.lasting)
 
 
 def _motions(road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, manners: Manners) -> Motions:
     right, left = span(road)
-    starts: dict[str, Range] = {
-        name: (-manners.reach, manners.reach) if k else (Fraction(0), Fraction(0))
-        for k, name in enumerate(vehicles)
-    }
+    starts: dict[str, Range] = dict.fromkeys(vehicles, manners.starts or (-manners.reach, manners.reach))
+    if manners.starts is None:
+        starts[next(iter(vehicles))] = Fraction(0), Fraction(0)
     across: dict[str, Range] = {name: (right + v.width, left) for name, v in vehicles.items()}
     return encode_motions(vehicles, grid, starts, across, manners.natural, manners.inside, manners.straight)
+
+
+def _starts_within(layout: Layout, manners: Manners) -> Iterator[Row]:
+    """No two vehicles start farther apart than the reach, where the bounds of columns do not say so."""
+    held = layout.vehicles[1:] if manners.starts is None else layout.vehicles
+    for a, b in combinations(held, 2):
+        ends = [(layout.column(a, "s", 0), Fraction(1)), (layout.column(b, "s", 0), Fraction(-1))]
+        yield row_of(affine(ends), -manners.reach, manners.reach)
 
 
 def surroundings(
     road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, manners: Manners
 ) -> list[Circuit[ColumnFact]]:
     """Conditions on where vehicles are that do not come from the formula."""
-    parts = [stay_on_road(layout, road, name, vehicle, manners.between) for name, vehicle in vehicles.items()]
+    parts = [
+        stay_on_road(layout, road, name, vehicle, manners.between, manners.lasting)
+        for name, vehicle in vehicles.items()
+    ]
     if not manners.collisions:
         parts += [
             stay_apart(layout, a, b, manners.apart, manners.between)
@@ -121,9 +146,16 @@ def surroundings(
 
 
 def ground(
-    circuit: Circuit[At], vehicles: Mapping[str, Vehicle], layout: Layout, margin: Margin
+    circuit: Circuit[At],
+    vehicles: Mapping[str, Vehicle],
+    layout: Layout,
+    margin: Margin,
+    lasting: bool = True,
 ) -> Circuit[ColumnFact]:
-    """A circuit of comparisons at samples as one of facts about columns."""
+    """A circuit of comparisons at samples as one of facts about columns.
+
+    Where ``lasting``, one at the last sample is asked for from there on for ever.
+    """
     sizes = {(name, "length"): v.length for name, v in vehicles.items()}
     sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
     known: dict[Compare, Circuit[Fact[Quantity]]] = {}
@@ -133,7 +165,7 @@ def ground(
             known[leaf.atom] = replace_leaves(
                 facts_of(leaf.atom, sizes), lambda fact: Leaf(replace(fact, margin=margin[fact.strict]))
             )
-        if leaf.step < layout.grid.steps:
+        if leaf.step < layout.grid.steps or not lasting:
             return replace_leaves(known[leaf.atom], lambda fact: Leaf(fact_at(fact, layout, leaf.step)))
         return replace_leaves(known[leaf.atom], lambda fact: fact_for_ever(fact, layout))
 

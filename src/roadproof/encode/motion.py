@@ -31,12 +31,24 @@ class Layout:
         )
 
     def state(self, vehicle: str, signal: str, step: int) -> Polynomial[int]:
-        """A signal at a sample; an acceleration is that of the piece which begins there."""
-        if signal in SIGNALS:
-            return variable(self.column(vehicle, signal, step))
+        """A signal at a sample; an acceleration is that of the piece which begins there.
+
+        Raises ``ValueError`` for a signal that a drive of samples does not have.
+        """
+        match signal:
+            case "s" | "d" | "v_lon" | "v_lat":
+                return variable(self.column(vehicle, signal, step))
+            case "a_lon":
+                return self._change("v_lon", vehicle, step)
+            case "a_lat":
+                return self._change("v_lat", vehicle, step)
+            case _:
+                raise ValueError(f"signal={signal}: a vehicle has {', '.join(SIGNALS)}, a_lon, a_lat")
+
+    def _change(self, speed: str, vehicle: str, step: int) -> Polynomial[int]:
+        """The acceleration from a sample to the next; after the last there is none."""
         if step == self.grid.steps:
             return constant(Fraction(0))
-        speed = "v" + signal[1:]
         before, after = self.column(vehicle, speed, step), self.column(vehicle, speed, step + 1)
         return affine([(after, 1 / self.grid.dt), (before, -1 / self.grid.dt)])
 

@@ -68,21 +68,23 @@ def _inside(small: Rectangle, large: Rectangle) -> bool:
 
 
 def stay_on_road(
-    layout: Layout, road: Road, name: str, vehicle: Vehicle, between: bool
+    layout: Layout, road: Road, name: str, vehicle: Vehicle, between: bool, lasting: bool = True
 ) -> Circuit[ColumnFact]:
-    """The box is inside one rectangle of the road at each sample; after the last one, for ever along.
+    """The box is inside one rectangle of the road at each sample.
 
-    Where ``between``, it is in the same one at both ends of a step, and so all the way.
+    Where ``between``, it is in the same one at both ends of a step, and so all the way; where
+    ``lasting``, at the last sample in one without end along, unless the whole road ends.
     """
     allowed = rectangles(road.lanelets)
+    endless = [r for r in allowed if r[0][1] is None]
     last = layout.grid.steps
-    conditions = []
-    for step in (*_spells(last, between), (last,)):
-        lasting = [r for r in allowed if step != (last,) or r[0][1] is None]
-        conditions.append(
-            any_of(all_of(_box_inside(layout, name, vehicle, r, e) for e in step) for r in lasting)
-        )
-    return all_of(conditions)
+    spells = [(spell, allowed) for spell in _spells(last, between)]
+    if lasting and endless:
+        spells.append(((last,), endless))
+    return all_of(
+        any_of(all_of(_box_inside(layout, name, vehicle, r, e) for e in spell) for r in places)
+        for spell, places in spells
+    )
 
 
 def _box_inside(

@@ -4,7 +4,8 @@
 the exact problem. ``outer``: conditions that hold wherever the fact does, so that when a solver
 finds nothing there is nothing. Squares are convex: a tangent is below, a secant above on its window;
 a product is the difference of two squares (McCormick's relaxation in other words: Math.
-Programming 10, 1976). All in floating point: solutions are judged exactly elsewhere.
+Programming 10, 1976). All in floating point: solutions are judged exactly elsewhere, and conditions on
+the outer side are loosened by more than rounding and a solver's tolerance can take away.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,11 @@ from roadproof.encode.problem import ColumnFact
 Side: TypeAlias = Literal["inner", "outer"]
 # Lower and upper bound of each column.
 Box: TypeAlias = Sequence[tuple[float, float]]
+
+
+# What outer conditions are loosened by: solvers call a row kept or broken that is so by 1e-6 or less,
+# and a sum of doubles is off by less than this share of its parts.
+TOLERANCE, ROUNDING = 1e-5, 1e-12
 
 
 class TooNonlinearError(Exception):
@@ -48,6 +54,11 @@ class Affine:
             one, other = factor * box[column][0], factor * box[column][1]
             low, high = low + min(one, other), high + max(one, other)
         return low, high
+
+    def looseness(self, box: Box) -> float:
+        """What an outer condition on this has to be loosened by."""
+        parts = (abs(factor) * max(abs(end) for end in box[column]) for column, factor in self.terms)
+        return TOLERANCE + ROUNDING * (abs(self.constant) + sum(parts))
 
     def value(self, values: Sequence[float]) -> float:
         return self.constant + sum(factor * values[column] for column, factor in self.terms)
@@ -99,8 +110,19 @@ def approximate(fact: ColumnFact, box: Box, side: Side, pieces: int = 1) -> Circ
         totals = [linear]
         for bounds, _ in chosen:
             totals = [total + bound for total in totals for bound in bounds]
-        cases.append(all_of([*(Leaf(c) for c in conditions), *(_leaf(t, fact, box) for t in totals)]))
+        bounds = [_leaf(total, fact, box, side) for total in totals]
+        cases.append(all_of([*(Leaf(c) for c in conditions), *bounds]))
     return any_of(cases)
+
+
+def loosened(box: Box) -> list[tuple[float, float]]:
+    """A box with every point of ``box`` well inside it, but for columns that have one value only."""
+    return [
+        (low, high)
+        if low == high
+        else (low - TOLERANCE - ROUNDING * abs(low), high + TOLERANCE + ROUNDING * abs(high))
+        for low, high in box
+    ]
 
 
 # Affine bounds that are all valid, and the window in which they are.
@@ -123,14 +145,18 @@ def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> l
     windows: list[Piece] = []
     for a, b in pairwise(cuts):
         secant = (form.scaled(a + b) + Affine((), -a * b)).scaled(factor)
-        inside = (Bound(form + Affine((), -a)), Bound(form.scaled(-1) + Affine((), b)))
+        slack = form.looseness(box) if side == "outer" else 0.0
+        inside = (Bound(form + Affine((), -a), -slack), Bound(form.scaled(-1) + Affine((), b), -slack))
         windows.append(((secant,), inside if pieces > 1 else ()))
     return windows
 
 
-def _leaf(affine: Affine, fact: ColumnFact, box: Box) -> Circuit[Bound]:
+def _leaf(affine: Affine, fact: ColumnFact, box: Box, side: Side) -> Circuit[Bound]:
     """The condition, or true or false where the box decides it."""
     low, high = affine.range(box)
+    if side == "outer":
+        slack = affine.looseness(box)
+        return All(()) if low >= 0 else AnyOf(()) if high < -slack else Leaf(Bound(affine, -slack))
     if low > 0 or (low == 0 and not fact.strict):
         return All(())
     if high < 0 or (high == 0 and fact.strict):

@@ -19,7 +19,7 @@ from roadproof.effort import Effort, Meter
 from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, nodes, replace_leaves
 from roadproof.encode.problem import Problem
 from roadproof.errors import MissingSolverError, UsageError
-from roadproof.solve.bounds import Affine, Bound, Box, Side, approximate
+from roadproof.solve.bounds import Affine, Bound, Box, Side, approximate, loosened
 
 Status: TypeAlias = Literal["found", "infeasible", "unknown"]
 
@@ -162,20 +162,23 @@ def solve_mixed(
     """A solution of ``problem`` in ``box`` (a bound pair per column), within what ``meter`` has left.
 
     On the inner side a solution solves the exact problem up to floating point; on the outer side
-    ``infeasible`` says that the exact problem has no solution, up to the solver's tolerances. Raises
+    ``infeasible`` says that the exact problem has no solution: whatever is no equation is loosened by
+    more than the solver's tolerances, and equations leave room to keep them. Raises
     ``TooNonlinearError`` for facts above degree 2, ``Late``, and as ``find_solver`` does.
     """
     known = find_solver(solver)
     meter = meter or Effort().meter()
     if meter.is_out():
         return Solution("unknown")
+    box = loosened(box) if side == "outer" else box
     circuit = replace_leaves(problem.circuit, lambda fact: approximate(fact, box, side, pieces))
     tableau = _Tableau(list(box))
     for row in problem.rows:
-        terms = tuple((c, float(k)) for c, k in row.terms.items())
-        low = -np.inf if row.low is None else float(row.low)
-        high = np.inf if row.high is None else float(row.high)
-        tableau.add(terms, low, high)
+        affine = Affine(tuple((c, float(k)) for c, k in row.terms.items()), 0.0)
+        slack = affine.looseness(box) if side == "outer" and row.low != row.high else 0.0
+        low = -np.inf if row.low is None else float(row.low) - slack
+        high = np.inf if row.high is None else float(row.high) + slack
+        tableau.add(affine.terms, low, high)
     tableau.require(circuit)
     return _run(tableau, len(problem.columns), cost or Cost(), known, meter, gap)
 

@@ -19,6 +19,7 @@ from roadproof.spec.elaborate import read_claim, signature
 from roadproof.spec.library import Library, Specification, load_library
 from roadproof.verdict import Verdict
 from roadproof.witness.impossible import Impossibility, show_impossible
+from roadproof.witness.limits import Limits
 from roadproof.witness.question import Found, Means, Question, assignments, usual_road
 from roadproof.witness.search import Answer, find_witness
 from roadproof.world.drive import Drive
@@ -71,12 +72,16 @@ class Outcome:
     seconds: Mapping[str, float]
     sizes: Mapping[str, int]
     impossibility: Impossibility | None = None
+    limits: Limits | None = None
 
     def as_json(self) -> dict[str, Any]:
         """The outcome as plain data."""
         data: dict[str, Any] = {"scenario": self.scenario, "set": self.set_name, "formula": self.formula}
-        data |= {"road": self.road, "verdict": str(self.verdict), "view": "dense", "reason": self.reason}
+        data |= {"road": self.road, "verdict": str(self.verdict)}
+        data |= {"view": "dense" if self.limits is None else "grid", "reason": self.reason}
         data |= {"natural": self.natural, "drives": list(self.drives)}
+        if self.limits is not None:
+            data["limits"] = self.limits.as_json()
         if self.impossibility is not None:
             data |= {"core": list(self.impossibility.core), "certificate": self.impossibility.certificate}
         data |= {"seconds": {k: round(v, 4) for k, v in self.seconds.items()}, "sizes": dict(self.sizes)}
@@ -133,6 +138,7 @@ def ask(request: Request) -> Outcome:
         seconds,
         first.sizes,
         impossibility,
+        None if impossibility else first.limits,
     )
 
 

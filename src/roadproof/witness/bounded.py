@@ -6,6 +6,7 @@ from typing import Any
 from roadproof.spec.library import load_library
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request, as_formula, ask
+from roadproof.witness.limits import PROVE_OPTIONS, Limits
 from roadproof.witness.refute import negated
 
 
@@ -21,13 +22,14 @@ class BoundedResult:
     reason: str
     drive: dict[str, Any] | None
     certificate: Any | None
+    limits: Limits | None = None
 
 
 def check_bounded(request: Request) -> BoundedResult:
     """Check the claim ``request.what`` with dynamics, on the request's road, vehicles, grid and engine.
 
-    A counterexample is searched on the samples, settled by the horizon, with accelerations constant
-    between samples (grid view); one that is found has been judged in dense time. Raises as ``ask``.
+    PROVED-BOUNDED speaks of the drives within ``limits`` (grid view); a counterexample that is found has
+    been judged in dense time. Raises as ``ask``.
     """
     specification = load_library(request.specs).select(request.set_name, request.options)
     claim = as_formula(specification, request.what)[1]
@@ -37,6 +39,7 @@ def check_bounded(request: Request) -> BoundedResult:
     if outcome.impossibility is not None:
         certificate = outcome.impossibility.certificate
         return BoundedResult(claim, Verdict.PROVED, "", None, certificate)
-    if outcome.verdict is Verdict.NONE_WITHIN:
-        return BoundedResult(claim, Verdict.PROVED_BOUNDED, outcome.reason, None, None)
+    if outcome.verdict is Verdict.NONE_WITHIN and outcome.limits is not None:
+        reason = outcome.limits.text(PROVE_OPTIONS)
+        return BoundedResult(claim, Verdict.PROVED_BOUNDED, reason, None, None, outcome.limits)
     return BoundedResult(claim, Verdict.UNKNOWN, outcome.reason, None, None)

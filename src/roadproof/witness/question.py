@@ -1,22 +1,26 @@
 """What is asked for, how to look for it, and what was found: plain data."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from itertools import product
 from typing import Literal, TypeAlias
 
 from roadproof.effort import Effort
+from roadproof.encode.along import starting_range
 from roadproof.encode.build import Manners
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.bind import bind
 from roadproof.spec.query import Query
+from roadproof.witness.limits import Limits
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
-from roadproof.world.vehicle import Vehicle
+from roadproof.world.vehicle import Range, Vehicle
 
 Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
 Engine: TypeAlias = Literal["milp", "smt"]
@@ -43,14 +47,26 @@ class Question:
         """The formula under one assignment of lanes."""
         return bind(self.query.formula, self.road, lanes, self.values)
 
-    def limits(self) -> str:
-        """Within what a NONE-WITHIN says that there is none, and what to widen."""
-        models = ", ".join(f"{name}={v.name}" for name, v in self.vehicles.items())
-        return (
-            f"no drive on road {self.road.name} with samples every {float(self.grid.dt):g} s up to "
-            f"{float(self.grid.horizon):g} s, settled by then, accelerations constant between samples, "
-            f"vehicles {models}, starts within {float(self.manners.reach):g} m; widen with --horizon, "
-            "--dt, --road, --vehicle, --reach"
+    @cached_property
+    def starts(self) -> Range | None:
+        """Where fronts may be at time 0; None where every place along the road is as good as another."""
+        formulas = [self.bound(lanes) for lanes in self.lanes]
+        return starting_range(formulas, self.road, self.vehicles, self.grid, self.manners.reach)
+
+    def limits(self, shown: Iterable[str] = ()) -> Limits:
+        """Within what a NONE-WITHIN says that there is none; ``shown``: how that was shown."""
+        options = {name: {lanes[name] for lanes in self.lanes} for name in self.query.lanes}
+        spoken = parameters_of(self.query.formula)
+        return Limits(
+            self.road.name,
+            self.grid,
+            {name: vehicle.name for name, vehicle in self.vehicles.items()},
+            {n: next(iter(found)) for n, found in options.items() if len(found) < len(self.road.lanes)},
+            {name: value for name, value in self.values.items() if name in spoken},
+            self.manners.reach,
+            self.starts,
+            self.manners.collisions,
+            tuple(sorted(set(shown))),
         )
 
 

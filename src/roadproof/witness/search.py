@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import combinations, product
 
-from roadproof.encode.build import NONE, Manners, Margin, encode_formula, frame
+from roadproof.encode.build import Manners, Margin, encode_formula, frame
 from roadproof.encode.circuit import Circuit
 from roadproof.encode.motion import Layout
 from roadproof.encode.problem import ColumnFact, Problem
@@ -19,6 +19,7 @@ from roadproof.solve.bounds import TooNonlinearError
 from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import Solution, box_of, solve_mixed
 from roadproof.verdict import Verdict
+from roadproof.witness.limits import Limits
 from roadproof.witness.question import Found, Means, Question
 from roadproof.witness.rounding import round_drive
 from roadproof.witness.shape import reshape, violation_depths
@@ -32,13 +33,17 @@ REFUTING = 20.0
 
 @dataclass(frozen=True)
 class Answer:
-    """WITNESSED with a drive, NONE-WITHIN or UNKNOWN with a reason; ``seconds`` by stage."""
+    """WITNESSED with a drive, NONE-WITHIN with limits, or UNKNOWN; the last two with a reason.
+
+    ``seconds`` by stage.
+    """
 
     verdict: Verdict
     found: Found | None
     reason: str
     seconds: Mapping[str, float] = field(default_factory=dict)
     sizes: Mapping[str, int] = field(default_factory=dict)
+    limits: Limits | None = None
 
 
 def find_witness(question: Question, means: Means, unlike: tuple[Drive, ...] = ()) -> Answer:
@@ -90,7 +95,7 @@ class _Search:
         self.meter = means.effort.meter()
         self.doubt = ""
         self.doubts: list[str] = []
-        self.encoded: dict[tuple[Formula, Grid, Margin], Circuit[ColumnFact]] = {}
+        self.encoded: dict[tuple[Formula, Grid, Margin, bool], Circuit[ColumnFact]] = {}
 
     def run(self) -> Answer:
         for lanes, grid, manners in self._attempts():
@@ -111,11 +116,11 @@ class _Search:
         return Answer(verdict, found, reason, self.seconds, self.sizes)
 
     def _attempts(self) -> Iterator[tuple[Mapping[str, str], Grid, Manners]]:
-        """Natural drives first, on the grid and on finer ones; then whatever the limits allow."""
-        groups = [[self.question.manners.plain()]]
-        if self.question.manners.natural:
-            groups.insert(0, [*self._straightest(), self.question.manners])
-        for group in groups:
+        """Natural drives first, on the grid and on finer ones; then whatever the limits allow.
+
+        Where a start at s = 0 does not stand for all, other starts come after it.
+        """
+        for group in self._groups():
             for lanes, manners in product(self.question.lanes, group):
                 for halvings in range(self.means.refinements + 1):
                     self.doubt = ""
@@ -123,6 +128,14 @@ class _Search:
                     if not self.doubt:
                         break
                     self.doubts.append(self.doubt)
+
+    def _groups(self) -> Iterator[list[Manners]]:
+        natural = [*self._straightest(), self.question.manners] if self.question.manners.natural else []
+        if natural:
+            yield natural
+            if self.question.starts is not None:
+                yield [replace(manners, starts=self.question.starts) for manners in natural]
+        yield [replace(self.question.manners.plain(), starts=self.question.starts)]
 
     def _straightest(self) -> Iterator[Manners]:
         """The fewer vehicles change lanes, the easier a drive is to read, and to find."""
@@ -154,9 +167,9 @@ class _Search:
     def _problem(self, formula: Formula, grid: Grid, manners: Manners) -> tuple[Problem, Layout]:
         vehicles = self.question.vehicles
         layout = Layout(tuple(vehicles), grid)
-        key = (formula, grid, manners.margin)
+        key = (formula, grid, manners.margin, manners.lasting)
         if key not in self.encoded:
-            self.encoded[key] = encode_formula(formula, vehicles, layout, manners.margin)
+            self.encoded[key] = encode_formula(formula, vehicles, layout, manners)
         problem = frame(self.encoded[key], self.question.road, vehicles, layout, manners)
         for other in self.unlike:
             problem = problem.also(differ(layout, other))
@@ -206,13 +219,7 @@ class _Search:
     def none(self) -> Answer:
         """Show that there is none on the grid: by a relaxation, else by the exact encoding."""
         start = time.perf_counter()
-        manners = replace(
-            self.question.manners.plain(),
-            margin=NONE,
-            inside=Fraction(0),
-            apart=(Fraction(0), Fraction(0)),
-            between=False,
-        )
+        manners = replace(self.question.manners.loosest(), starts=self.question.starts)
         how = set()
         for lanes in self.question.lanes:
             formula = self.question.bound(lanes)
@@ -231,7 +238,8 @@ class _Search:
                 reason = f"neither a drive nor a refutation was found with the work given for {shown}"
                 return self._answer(Verdict.UNKNOWN, None, reason)
             how.add(by)
-        return self._answer(Verdict.NONE_WITHIN, None, f"{self.question.limits()} ({', '.join(sorted(how))})")
+        limits = self.question.limits(how)
+        return replace(self._answer(Verdict.NONE_WITHIN, None, limits.text()), limits=limits)
 
     def _refute(self, problem: Problem) -> tuple[str, tuple[Fraction, ...] | None]:
         """How it was shown that ``problem`` has no solution (empty where it was not), or a solution."""

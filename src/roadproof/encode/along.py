@@ -1,0 +1,73 @@
+"""Does it matter where along the road a question is asked? Where not, one start stands for all.
+
+A drive moved along the road by some distance has the same speeds, accelerations and places across,
+and the same differences of s. So where a formula compares such things only, and no lanelet begins or
+ends, the moved drive is a drive of the same question: the first vehicle may start at s = 0.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
+
+from roadproof.encode.circuit import Leaf, nodes
+from roadproof.encode.facts import Quantity, facts_of
+from roadproof.encode.polynomial import Polynomial
+from roadproof.encode.unroll import Grid
+from roadproof.logic.formula import Compare, Formula, subformulas
+from roadproof.world.road import Road
+from roadproof.world.vehicle import Range, Vehicle
+
+# Places farther from s = 0 are no places to start from: numbers of that size drown those of a drive.
+FARTHEST = Fraction(10_000)
+
+
+def is_same_everywhere(formula: Formula, road: Road, vehicles: Mapping[str, Vehicle]) -> bool:
+    """Whether a drive moved along ``road`` satisfies the bound ``formula`` exactly where it did unmoved."""
+    endless = all(bound is None for lanelet in road.lanelets for bound in lanelet.s)
+    return endless and all(not slope_along(p).terms for p in _polynomials(formula, vehicles))
+
+
+def slope_along(polynomial: Polynomial[Quantity]) -> Polynomial[Quantity]:
+    """By how much a polynomial grows for each metre that all vehicles are moved along together."""
+    total: Polynomial[Quantity] = Polynomial({})
+    for monomial, factor in polynomial.terms.items():
+        for k, (_, signal) in enumerate(monomial):
+            if signal == "s":
+                total = total + Polynomial({monomial[:k] + monomial[k + 1 :]: factor})
+    return total
+
+
+def starting_range(
+    formulas: Iterable[Formula], road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, reach: Fraction
+) -> Range | None:
+    """Where fronts may be at time 0 (m along ``road``); None where every start is as good as another.
+
+    From where all that road and formulas name along the road is still ahead throughout the horizon, to
+    where it is behind, and ``reach`` more on both sides.
+    """
+    asked = tuple(formulas)
+    if all(is_same_everywhere(formula, road, vehicles) for formula in asked):
+        return None
+    named = [bound for lanelet in road.lanelets for bound in lanelet.s if bound is not None]
+    named += [place for formula in asked for place in _places(formula, vehicles)]
+    near = [Fraction(0), *(place for place in named if abs(place) <= FARTHEST)]
+    driven = max(v.v_lon[1] for v in vehicles.values()) * grid.horizon
+    longest = max(v.length for v in vehicles.values())
+    return min(near) - driven - reach, max(near) + longest + reach
+
+
+def _places(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[Fraction]:
+    """Where comparisons that are affine in s and in nothing else of a place change their truth."""
+    for polynomial in _polynomials(formula, vehicles):
+        slope = slope_along(polynomial)
+        if polynomial.degree == 1 and slope.constant:
+            yield -polynomial.constant / slope.constant
+
+
+def _polynomials(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[Polynomial[Quantity]]:
+    sizes = {(name, "length"): v.length for name, v in vehicles.items()}
+    sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
+    for part in subformulas(formula):
+        if isinstance(part, Compare):
+            for node in nodes(facts_of(part, sizes)):
+                if isinstance(node, Leaf):
+                    yield node.content.polynomial
