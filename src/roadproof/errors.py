@@ -32,6 +32,12 @@ class MissingSolverError(RoadproofError):
     exit_code = 4
 
 
+class LostError(RoadproofError):
+    """A part of the work ended its process each time it was tried, so that its answer is not known."""
+
+    exit_code = 20
+
+
 @dataclass(frozen=True)
 class Position:
     """A place in a text; line and column count from 1."""

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from roadproof.cli.numbers import add_effort_options, add_jobs_option, read_effort
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import add_json_option, write_json
-from roadproof.cli.working import work_in_order
+from roadproof.cli.progress import clear
+from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.effort import Effort
 from roadproof.errors import InputError, RoadproofError
 from roadproof.verdict import ExitCode
@@ -44,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a specification file that the claims were made with; may be repeated",
     )
-    add_jobs_option(parser)
+    add_working_options(parser)
     add_json_option(parser)
 
 
@@ -72,17 +73,17 @@ class Finding:
 def run(args: argparse.Namespace) -> int:
     given, effort = tuple(args.specs), read_effort(args)
     beside = {folder: names for path in args.paths for folder, names in _specifications(path, given).items()}
-    jobs = [
-        Job(path, (*given, *_around(path, beside)), args.solver, effort) for path in _files(args.paths)
-    ]
+    jobs = [Job(path, (*given, *_around(path, beside)), args.solver, effort) for path in _files(args.paths)]
     if args.json != "-":
         for name in dict.fromkeys(name for names in beside.values() for name in names):
             print(f"read with {name}", flush=True)
     findings: list[Finding] = []
-    for finding in work_in_order(examine, jobs, args.jobs):
+    for finding in work_in_order(examine, jobs, args.jobs, "files", undecided):
         findings.append(finding)
         if not finding.accepted and args.json != "-":
-            print(f"rejected  {finding.path}: {finding.reason}", flush=True)
+            clear()
+            said = "undecided" if finding.what == "undecided" else "rejected "
+            print(f"{said} {finding.path}: {finding.reason}", flush=True)
     accepted = sum(finding.accepted for finding in findings)
     if args.json != "-":
         print(f"{accepted} of {len(findings)} accepted by {args.solver} and the exact judge")
@@ -94,6 +95,8 @@ def run(args: argparse.Namespace) -> int:
         write_json({"schema": SCHEMA, "solver": args.solver, "findings": entries}, args.json)
     if accepted == len(findings):
         return ExitCode.AS_EXPECTED
+    if any(x.what == "undecided" for x in findings):
+        return ExitCode.UNKNOWN
     rejected = any(not x.accepted and x.what in ("certificate", "drive") for x in findings)
     return ExitCode.UNEXPECTED if rejected else ExitCode.BAD_INPUT
 
@@ -157,6 +160,11 @@ def _check_adds_only(names: Sequence[Path], given: Sequence[Path]) -> None:
 def _around(path: Path, beside: Mapping[Path, tuple[Path, ...]]) -> tuple[Path, ...]:
     """The specification files of the nearest folder around ``path`` that has some."""
     return next((beside[folder] for folder in path.parents if folder in beside), ())
+
+
+def undecided(job: Job, reason: str) -> Finding:
+    """The finding on a file that nothing is known of."""
+    return Finding(job.path, "undecided", reason)
 
 
 def examine(job: Job) -> Finding:

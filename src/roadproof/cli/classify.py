@@ -17,7 +17,8 @@ from roadproof.cli.options import (
     load_library_of,
     parameter_values,
 )
-from roadproof.cli.working import tell, work, work_in_order
+from roadproof.cli.progress import tell
+from roadproof.cli.working import add_working_options, work, work_in_order
 from roadproof.errors import UsageError
 from roadproof.files import make_folder
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -62,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--timeout", type=float, default=60.0, metavar="S", help="seconds for a drive or proof (default: 60)"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="write classes.spec, claims, evidence, picture"
     )
@@ -201,10 +202,9 @@ def _divide(
         Refining(asked, axis, *cell) for axis, made in zip(axes, outlines, strict=True) for cell in made.cells
     ]
     cells: list[Cell] = []
-    with closing(work_in_order(refine_one, jobs, processes)) as answers:
+    with closing(work_in_order(refine_one, jobs, processes, "cells")) as answers:
         for cell in answers:
             cells.append(cell)
-            tell(f"{len(cells)} of {len(jobs)} cells", len(cells) == len(jobs))
     waiting = iter(cells)
     by_axis = [tuple(next(waiting) for _ in made.cells) for made in outlines]
     count = len(plan.groups)
@@ -236,14 +236,25 @@ def _settle(
     jobs += [Settling(asked, text, classes.plan, (), those) for those in few]
     examples: dict[str, Example] = {}
     proofs: dict[str, tuple[Claim, Result]] = {}
-    every = len(claims) + len(classes.all())
-    with closing(work(settle, jobs, processes)) as answers:
+    with closing(work(settle, jobs, processes, "groups of drives and claims", undecided)) as answers:
         for settled in answers:
             examples |= {example.name: example for example in settled.examples}
             proofs |= {claim.name: (claim, result) for claim, result in settled.proofs}
-            done = len(examples) + len(proofs)
-            tell(f"{done} of {every} drives and claims", done == every)
     return examples, [proofs[claim.name] for claim in claims]
+
+
+def undecided(job: Settling, reason: str) -> Settled:
+    """What is said of classes and claims that nothing is known of."""
+    from roadproof.analysis.classify.drives import Example
+    from roadproof.prove.prover import Result
+
+    return Settled(
+        tuple(Example(one.name, Verdict.UNKNOWN, reason, None) for one in job.classes),
+        tuple(
+            (claim, Result(claim.text, job.asked.sets[0], Verdict.UNKNOWN, reason, 0.0))
+            for claim in job.claims
+        ),
+    )
 
 
 def settle(job: Settling) -> Settled:

@@ -19,7 +19,7 @@ from roadproof.cli.options import (
     parameter_values,
     write_json,
 )
-from roadproof.cli.working import tell, work, work_in_order
+from roadproof.cli.working import add_working_options, work, work_in_order
 from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode, Verdict
 
@@ -77,7 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--on", type=Path, metavar="DIR", help="count the classes in recordings, as roadproof simulate makes"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     add_json_option(parser)
@@ -202,7 +202,7 @@ def _prove(asked: "Asked", processes: int | None) -> "list[Covered]":
     from roadproof.analysis.coverage.claims import claims_of
 
     jobs = [ClaimJob(asked, claim) for claim in claims_of(asked.load()[1])]
-    with closing(work_in_order(prove_one, jobs, processes)) as answers:
+    with closing(work_in_order(prove_one, jobs, processes, "claims", unproved)) as answers:
         return list(answers)
 
 
@@ -213,16 +213,21 @@ def prove_one(job: ClaimJob) -> "Covered":
     return prove_claim(job.asked, job.claim)
 
 
+def unproved(job: ClaimJob, reason: str) -> "Covered":
+    """The answer to a claim that nothing is known of."""
+    from roadproof.analysis.coverage.claims import Covered
+
+    return Covered(job.claim, Verdict.UNKNOWN, None, reason)
+
+
 def _find_needs(asked: "Asked", processes: int | None) -> "list[Need]":
     from roadproof.analysis.coverage.needed import replaced_by
 
     jobs = [NeedJob(asked, name) for name in replaced_by(asked)]
     needs: list[Need] = []
-    with closing(work(find_one_need, jobs, processes)) as answers:
+    with closing(work(find_one_need, jobs, processes, "definitions", unknown_need)) as answers:
         for need in answers:
             needs.append(need)
-            tell(f"{len(needs)} of {len(jobs)} definitions")
-    tell(f"{len(jobs)} of {len(jobs)} definitions", last=True)
     return sorted(needs, key=lambda need: need.definition)
 
 
@@ -231,6 +236,13 @@ def find_one_need(job: NeedJob) -> "Need":
     from roadproof.analysis.coverage.needed import find_need
 
     return find_need(job.asked, job.name)
+
+
+def unknown_need(job: NeedJob, reason: str) -> "Need":
+    """The answer for a definition that nothing is known of."""
+    from roadproof.analysis.coverage.needed import Need
+
+    return Need(job.name, "", Verdict.UNKNOWN)
 
 
 def _settle(survey: "Survey", evidence: Evidence, processes: int | None) -> None:
@@ -243,16 +255,13 @@ def _settle(survey: "Survey", evidence: Evidence, processes: int | None) -> None
         return
     catalogue = [CatalogueJob(survey, road, k) for road in survey.roads for k in range(CHUNKS)]
     known: list[Found] = []
-    with closing(work_in_order(look_up, catalogue, processes)) as chunks:
-        for number, found in enumerate(chunks, 1):
+    with closing(work_in_order(look_up, catalogue, processes, "parts of the catalogue")) as chunks:
+        for found in chunks:
             known += found
-            tell(f"catalogue: {number} of {len(catalogue)} parts, {len(known)} gaps")
     jobs = [GroupJob(survey, group, _concerning(group, known)) for group in left]
-    with closing(work(settle, jobs, processes)) as results:
+    with closing(work(settle, jobs, processes, "components", undecided, len(groups) - len(left))) as results:
         for group, answers in results:
             evidence.keep(group, answers)
-            tell(f"{sum(map(evidence.has, groups))} of {len(groups)} components")
-    tell(f"{len(groups)} of {len(groups)} components", last=True)
 
 
 def _concerning(group: "Group", known: "Sequence[Found]") -> "tuple[Found, ...]":
@@ -272,6 +281,14 @@ def settle(job: GroupJob) -> "tuple[Group, list[Answer]]":
     from roadproof.analysis.coverage.settling import settle_group
 
     return job.group, settle_group(job.survey, job.group, job.known)
+
+
+def undecided(job: GroupJob, reason: str) -> "tuple[Group, list[Answer]]":
+    """The answers for a group of classes that nothing is known of."""
+    from roadproof.analysis.coverage.classes import Answer
+
+    parts = job.group.parts
+    return job.group, [Answer(part, Verdict.UNKNOWN, reason=reason) for part in parts]
 
 
 def _print(data: dict[str, Any]) -> None:

@@ -102,7 +102,7 @@ class Evidence:
                 drive = json.loads(path.read_text("utf-8"))
                 jobs.append(PictureJob(entry, drive, path, self.asked.specs))
         if jobs:
-            with closing(work(draw_one, jobs, processes)) as done:
+            with closing(work(draw_one, jobs, processes, "pictures")) as done:
                 list(done)
 
     def _entry(self, answer: "Answer", stem: str) -> Entry:

@@ -4,7 +4,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.working import tell
+from roadproof.cli.progress import tell
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:

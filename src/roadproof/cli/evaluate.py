@@ -3,6 +3,7 @@
 import argparse
 import os
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +18,8 @@ from roadproof.cli.options import (
     select_specification,
     write_json,
 )
-from roadproof.cli.progress import tell
+from roadproof.cli.progress import note
+from roadproof.cli.working import add_working_options
 from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode, Verdict
 
@@ -65,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_reading_options(parser)
     add_parameter_option(parser)
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
     parser.add_argument("--keep-going", action="store_true", help="leave out recordings that cannot be used")
     parser.add_argument("--check", action="store_true", help="ask the plain recursive evaluator again (slow)")
     parser.add_argument("--no-detectors", action="store_true", help="leave out those of earlier works")
@@ -87,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
     if jobs < 1:
         raise UsageError(f"--jobs {jobs}: at least one process is needed")
     experiment = Experiment(args.path, args.out, _settings(args), jobs, args.keep_going)
-    outcome = run_experiment(experiment, tell)
+    outcome = run_experiment(experiment, note)
     totals, failed = outcome.totals, outcome.failed
     denied = list(_recheck(experiment, outcome)) if args.check else []
     write_report(args.out, totals, failed, not args.no_pictures)
@@ -104,9 +106,9 @@ def run(args: argparse.Namespace) -> int:
             print(f"… {len(facts) - MOST_FACTS} more in {args.out / 'answers.md'}")
     _sweep(args.out)
     for name, reason in failed.items():
-        tell(f"left out: recording {name}: {reason}")
-    tell(f"written to {args.out}: " + ", ".join(sorted(x.name for x in args.out.iterdir())))
-    return _verdict(totals.broken, denied)
+        print(f"left out: recording {name}: {reason}", file=sys.stderr)
+    note(f"written to {args.out}: " + ", ".join(sorted(x.name for x in args.out.iterdir())))
+    return max(_verdict(totals.broken, denied), ExitCode.UNKNOWN if outcome.lost else ExitCode.AS_EXPECTED)
 
 
 def _sweep(out: Path) -> None:
@@ -181,5 +183,5 @@ def _recheck(experiment: "Experiment", outcome: "Outcome") -> Iterator[str]:
     for source, findings in saved_findings(experiment, outcome):
         recording = source.read()
         denied = list(recheck(recording, ask(experiment.settings, recording.rate), findings))
-        tell(f"checked {source.name}: {len(denied)} answers denied")
+        note(f"checked {source.name}: {len(denied)} answers denied")
         yield from denied

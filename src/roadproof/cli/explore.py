@@ -12,8 +12,9 @@ from roadproof.cli.evidence import evidence_folder
 from roadproof.cli.explore_files import draw_all, with_evidence
 from roadproof.cli.explore_options import read_knobs, read_precision, read_steps
 from roadproof.cli.options import add_json_option, load_library_of, write_json
+from roadproof.cli.progress import clear, tell
 from roadproof.cli.search_options import add_search_options, read_request
-from roadproof.cli.working import count_workers, tell, work_in_order
+from roadproof.cli.working import add_working_options, count_workers, work_in_order
 from roadproof.errors import UsageError
 from roadproof.verdict import Verdict, exit_code
 
@@ -69,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="width of a bracket, in SI units (default: range/60; of a measure 0.1)",
     )
     add_search_options(parser, 6.0)
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, JSON, pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     add_json_option(parser)
@@ -96,10 +97,10 @@ def run(args: argparse.Namespace) -> int:
     if len(jobs) > 1:
         jobs = [replace(job, processes=1, asked=replace(job.asked, width=1)) for job in jobs]
     explored: list[dict[str, Any]] = []
-    for number, data in enumerate(work_in_order(carry_out, jobs, args.jobs), 1):
+    for number, data in enumerate(work_in_order(carry_out, jobs, args.jobs, "formulas"), 1):
         explored.append(with_evidence(data, number, folder))
-        tell(f"{number} of {len(jobs)} formulas explored", last=number == len(jobs))
         if args.json != "-":
+            clear()
             print(as_text(data), flush=True)
     seconds = round(time.monotonic() - begun, 1)
     whole = {"schema": SCHEMA, "view": "dense", "seconds": seconds, "explored": explored}
@@ -183,7 +184,7 @@ def carry_out(job: Job) -> dict[str, Any]:
     asked, request = job.asked, job.asked.request
 
     def look_all(tasks: "Sequence[Task]") -> "Iterable[Reply]":
-        return work_in_order(look, tasks, job.processes)
+        return work_in_order(look, tasks, job.processes, lost=undecided)
 
     data: dict[str, Any] = {"scenario": job.scenario, "set": request.set_name, "formula": request.what}
     data["vary"] = [
@@ -210,6 +211,13 @@ def carry_out(job: Job) -> dict[str, Any]:
         data["extremes"] += [_extreme(one, found) for one, found in zip(sought, extremes, strict=True)]
     data["searches"] += sum(x["searches"] for x in data["extremes"])
     return data | {"seconds": round(time.monotonic() - begun, 1)}
+
+
+def undecided(task: "Task", reason: str) -> "Reply":
+    """The reply to a search that nothing is known of."""
+    from roadproof.analysis.explore.search import Reply
+
+    return Reply(Verdict.UNKNOWN, reason)
 
 
 def _seek(sought: "Sought") -> "Extreme":

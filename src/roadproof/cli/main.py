@@ -6,6 +6,7 @@ Only the module that is asked for is imported. Each module has ``SUMMARY: str`` 
 
 import argparse
 import ast
+import contextlib
 import os
 import sys
 from collections.abc import Iterator, Sequence
@@ -14,6 +15,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NoReturn
 
+from roadproof.cli.progress import be_quiet, clear
+from roadproof.cli.streams import FULL, forget_output, make_streams_lenient
+from roadproof.cli.supervising import supervise
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.verdict import ExitCode
 
@@ -45,7 +49,7 @@ examples:
   roadproof show 'F danger(SV,POV)' --format latex
 
 exit codes: 0 as expected, 10 refuted or unexpected, 20 unknown, 30 cross-check failed,
-            2 usage, 3 bad input, 4 missing solver, 70 our fault, 130 interrupted
+            2 usage, 3 bad input, 4 missing solver, 70 our fault, 130 interrupted, 143 ended
 """
 
 
@@ -57,21 +61,35 @@ class _Parser(argparse.ArgumentParser):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command line and return its exit code; results on stdout, complaints on stderr."""
-    arguments = list(sys.argv[1:] if argv is None else argv)
+    """Run one command line and return its exit code; results on stdout, complaints on stderr.
+
+    Without ``argv`` it is that of this process, which then watches over a child that does the work.
+    """
+    if argv is None:
+        return supervise(lambda: answer(sys.argv[1:]))
+    return answer(list(argv))
+
+
+def answer(arguments: list[str]) -> int:
+    """As ``main``, in this process."""
+    make_streams_lenient()
     try:
         code = _run(arguments)
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
         return code
     except RoadproofError as error:
         return _complain(str(error), error.exit_code)
     except KeyboardInterrupt:
         return _complain("interrupted", ExitCode.INTERRUPTED)
     except BrokenPipeError:
-        # The reader has gone away; keep the interpreter from complaining when it flushes at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        forget_output()  # the reader has gone away
         return _READER_GONE
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in FULL:
+            forget_output()
+            reason = os.strerror(error.errno).replace("No space", "no space")
+            return _complain(f"cannot write the answer: {reason}; make room there", ExitCode.BAD_INPUT)
         if os.environ.get(TRACEBACK):
             raise
         reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
@@ -112,6 +130,7 @@ def _run(arguments: list[str]) -> int:
         return _print_version()
     if parsed.command is None:
         raise UsageError("name a sub-command; see roadproof --help")
+    be_quiet(getattr(parsed, "quiet", False))
     code: int = import_module(COMMANDS[parsed.command]).run(parsed)
     return code
 
@@ -144,7 +163,9 @@ def _print_version() -> int:
 
 
 def _complain(message: str, code: int) -> int:
-    print(f"roadproof: {message}", file=sys.stderr)
+    with contextlib.suppress(OSError):
+        clear()
+        print(f"roadproof: {message}", file=sys.stderr)
     return int(code)
 
 

@@ -9,6 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.streams import takes_everything
 from roadproof.errors import InputError, UsageError
 from roadproof.files import whole_file
 
@@ -159,16 +160,15 @@ def _assignments(option: str, texts: Iterable[str]) -> list[tuple[str, str]]:
 
 def write_json(data: Mapping[str, Any], target: str) -> None:
     """``data`` as JSON to the file ``target``, or to stdout where it is ``-``. Raises ``InputError``."""
-    text = json_text(data)
     if target == "-":
-        sys.stdout.write(text)
+        print(json_text(data, plain=not takes_everything(sys.stdout)), end="")
     else:
-        write_text(Path(target), text)
+        write_text(Path(target), json_text(data))
 
 
-def json_text(data: Mapping[str, Any]) -> str:
-    """``data`` as the text of a JSON file."""
-    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+def json_text(data: Mapping[str, Any], plain: bool = False) -> str:
+    """``data`` as the text of a JSON file; with ``plain``, in ASCII."""
+    return json.dumps(data, indent=2, ensure_ascii=plain) + "\n"
 
 
 def write_text(path: Path, text: str) -> None:

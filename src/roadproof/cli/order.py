@@ -20,7 +20,8 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
-from roadproof.cli.working import tell, work
+from roadproof.cli.progress import tell
+from roadproof.cli.working import add_working_options, work
 from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode
 
@@ -53,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--timeout", type=float, default=120.0, metavar="S", help="seconds for one drive (default: 120)"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives, DOT and SVG")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
     add_json_option(parser)
@@ -123,19 +124,17 @@ def _settle(
     known = {x["family"]: x for x in (journal.answers() if journal is not None else [])}
     jobs = [Job(asked, kinds, family) for name, family in families.items() if name not in known]
     doubtful: dict[str, Decided] = {}
-    with closing(work(settle, jobs, processes)) as answers:
+    with closing(work(settle, jobs, processes, "families of scenarios", known=len(known))) as answers:
         for family, decided in answers:
             if decided.doubts:
                 doubtful[family] = decided
             else:
                 known[family] = _record(family, decided, journal)
-            tell(f"{len(known) + len(doubtful)} of {len(families)} families of scenarios")
     if doubtful:
         tell(f"{len(doubtful)} families in doubt: trying the drives of the others")
         drives = [*_drives(known.values()), *(x.data for d in doubtful.values() for x in d.drives)]
         for family, decided in doubtful.items():
             known[family] = _record(family, settle_doubts(asked, decided, drives), journal)
-    tell(f"{len(families)} families of scenarios", last=True)
     return [known[name] for name in families]
 
 

@@ -21,7 +21,7 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
-from roadproof.cli.working import tell, work
+from roadproof.cli.working import add_working_options, work
 from roadproof.errors import UsageError
 from roadproof.verdict import Verdict, exit_code
 
@@ -63,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--horizon", metavar="S", help="seconds of driving searched (default: 6; 9 with --start any)"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write evidence, CSV, JSON and heat map")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no heat map")
     add_json_option(parser)
@@ -147,13 +147,11 @@ def _settle(
     wanted = [(a.number, a.set_name, b.number, b.set_name) for a, b in pairs]
     left = [pair for pair, name in zip(pairs, wanted, strict=True) if name not in known]
     jobs = [Job(asked, seed, tuple(group)) for seed, group in groups_of(asked, left)]
-    with closing(work(settle, jobs, processes)) as answers:
+    with closing(work(settle, jobs, processes, "groups of pairs", undecided)) as answers:
         for entries in answers:
             for entry in entries:
                 verdict = _record(entry, journal)
                 known[key(verdict)] = verdict
-            tell(f"{sum(name in known for name in wanted)} of {len(wanted)} pairs")
-    tell(f"{len(wanted)} of {len(wanted)} pairs", last=True)
     return [known[name] for name in wanted]
 
 
@@ -162,6 +160,13 @@ def settle(job: Job) -> "list[Entry]":
     from roadproof.analysis.overlap import decide_group
 
     return decide_group(job.asked, job.seed, job.pairs)
+
+
+def undecided(job: Job, reason: str) -> "list[Entry]":
+    """The answers for a group of pairs that nothing is known of."""
+    from roadproof.analysis.overlap import Entry
+
+    return [Entry(a, b, Verdict.UNKNOWN, "", reason) for a, b in job.pairs]
 
 
 def _record(entry: "Entry", journal: "Journal | None") -> dict[str, Any]:

@@ -1,8 +1,90 @@
-"""Progress on stderr: a line for each thing that is done."""
+"""How far a run is, on stderr: on a terminal one line that changes, else one every half minute.
 
+The lines of every half minute are printed by the process that watches this one (``cli.supervising``), so
+they come also while a solver keeps this one busy.
+"""
+
+import contextlib
+import os
 import sys
+from dataclasses import dataclass
+
+QUIET = "ROADPROOF_QUIET"
+_BE_QUIET = "quiet"
 
 
-def tell(line: str) -> None:
-    """Say ``line`` to whoever watches; results go to stdout."""
+@dataclass
+class _Listeners:
+    """Where word of the progress goes: ``pipe`` leads to the process that watches."""
+
+    pipe: int | None = None
+    quiet: bool = False
+
+
+_listeners = _Listeners()
+
+
+def report_to(pipe: int) -> None:
+    """Tell the process at the other end of ``pipe``, too."""
+    _listeners.pipe = pipe
+
+
+def be_quiet(quiet: bool = True) -> None:
+    """Say nothing from now on."""
+    _listeners.quiet = quiet or bool(os.environ.get(QUIET))
+    if _listeners.quiet:
+        _report(_BE_QUIET)
+
+
+def tell(text: str, last: bool = False) -> None:
+    """How far it is now, in one line; with ``last`` the line is left standing on a terminal."""
+    if _listeners.quiet:
+        return
+    _report(text)
+    if _is_terminal():
+        print(f"\r\033[K{text}", end="\n" if last else "", file=sys.stderr, flush=True)
+
+
+def note(line: str) -> None:
+    """A line of its own for something that is done."""
+    if _listeners.quiet:
+        return
+    _report(line)
+    clear()
     print(line, file=sys.stderr, flush=True)
+
+
+def clear() -> None:
+    """Make room for a line of results on a terminal."""
+    if not _listeners.quiet and _is_terminal():
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def _is_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _report(text: str) -> None:
+    if _listeners.pipe is not None:
+        with contextlib.suppress(OSError):
+            os.write(_listeners.pipe, text.replace("\n", " ").encode()[:1000] + b"\n")
+
+
+def wants_quiet(text: str) -> bool:
+    """Whether a line that came through the pipe asks for silence."""
+    return text == _BE_QUIET
+
+
+def time_left(seconds: float, done: int, total: int) -> str:
+    """``, about 3 min left`` after so many seconds for ``done`` of ``total`` jobs; empty where unknown."""
+    if not 0 < done < total:
+        return ""
+    return f", about {duration(seconds / done * (total - done))} left"
+
+
+def duration(seconds: float) -> str:
+    """Seconds in words: 40 s, 3 min, 2 h 10 min."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"

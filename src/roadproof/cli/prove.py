@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.numbers import add_effort_options, add_jobs_option, read_effort
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
     add_specification_options,
@@ -16,9 +16,10 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
+from roadproof.cli.progress import clear
 from roadproof.cli.prove_answers import as_data, counterexample, details, line, table
-from roadproof.cli.prove_settle import Bounded, Job, Settled, settle
-from roadproof.cli.working import tell, work_in_order
+from roadproof.cli.prove_settle import Bounded, Job, Settled, settle, undecided
+from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import UsageError
 from roadproof.files import make_folder
 from roadproof.verdict import Verdict, exit_code
@@ -69,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--dt", metavar="S", default="3/5", help="with smt, milp: seconds a sample (default: 3/5)"
     )
     parser.add_argument("--road", metavar="R", help="with smt, milp: a reference road or a .toml file")
-    add_jobs_option(parser)
+    add_working_options(parser)
     parser.add_argument(
         "--no-drive", action="store_true", help="do not look for a drive that refutes a claim"
     )
@@ -86,12 +87,12 @@ def run(args: argparse.Namespace) -> int:
     own = not jobs[0].task.title
     settled: list[Settled] = []
     files: dict[str, str] = {}
-    for number, answer in enumerate(work_in_order(settle, jobs, args.jobs), 1):
+    for answer in work_in_order(settle, jobs, args.jobs, "claims", undecided):
         settled.append(answer)
         if args.out is not None:
             files |= _write_evidence(answer, args.out)
-        tell(f"{number} of {len(jobs)} claims", number == len(jobs))
         if args.json != "-" and (own or args.verbose):
+            clear()
             print(details(answer) if own else line(answer), flush=True)
     if args.out is not None:
         index = [_index_entry(s, files.get(s.task.name)) for s in settled]

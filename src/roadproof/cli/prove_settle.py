@@ -90,6 +90,13 @@ def _settle(job: Job) -> Settled:
     return Settled(task, result, drive)
 
 
+def undecided(job: Job, reason: str) -> Settled:
+    """What is said of a claim that nothing is known of."""
+    from roadproof.prove.prover import Result
+
+    return Settled(job.task, Result(job.task.claim, job.task.set_name, Verdict.UNKNOWN, reason, 0.0), None)
+
+
 def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
     """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
     from roadproof.prove.prover import Result

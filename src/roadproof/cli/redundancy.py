@@ -18,7 +18,7 @@ from roadproof.cli.options import (
     parameter_values,
     write_json,
 )
-from roadproof.cli.working import tell, work
+from roadproof.cli.working import add_working_options, work
 from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode, Verdict
 
@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--timeout", type=float, default=20.0, metavar="S", help="seconds for one drive (default: 20)"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and drives")
     add_json_option(parser)
 
@@ -140,14 +140,12 @@ def _settle(
             Job(asked, Node(n, specification.set_name), whole, learned.get(likes[n], Learned()))
             for n in chosen
         ]
-        with closing(work(settle, jobs, processes)) as answers:
+        with closing(work(settle, jobs, processes, "scenarios", known=len(known))) as answers:
             for number, findings in answers:
                 known[number] = _record(number, findings, journal)
-                tell(f"{sum(n in known for n in numbers)} of {len(numbers)} scenarios")
 
     settle_all(leaders, {})
     settle_all(followers, {kind: _learned(asked, known[leader]) for kind, leader in first.items()})
-    tell(f"{len(numbers)} scenarios", last=True)
     return [verdict for number in numbers for verdict in known[number]]
 
 

@@ -3,16 +3,15 @@
 import argparse
 import csv
 import io
-import os
 import re
+import sys
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.cli.progress import tell
+from roadproof.cli.progress import note
+from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import InputError, UsageError
 from roadproof.verdict import ExitCode
 
@@ -76,7 +75,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plant-set", metavar="S", default="base", help="spec set of --plant N,N (default: base)"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_working_options(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -100,8 +99,8 @@ def run(args: argparse.Namespace) -> int:
     orders = [Order(traffic, args.seed, k, args.out, drives) for k in range(1, args.recordings + 1)]
     truths: list[Truth] = []
     left_out: dict[str, None] = {}
-    for order, (made, missing) in zip(orders, _make_all(orders, args.jobs), strict=True):
-        tell(f"[{order.number}/{args.recordings}] recording {order.number:02d}")
+    for number, (made, missing) in enumerate(work_in_order(make_one, orders, args.jobs, fresh=True), 1):
+        note(f"[{number}/{args.recordings}] recording {number:02d}")
         truths += made
         left_out |= dict.fromkeys(missing)
     if args.plant:
@@ -111,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
         writer.writerows(rows_of(truths))
         write_whole(args.out / "planted.csv", out.getvalue().encode())
         for line in left_out:
-            tell(f"not planted: {line}")
+            _warn(f"not planted: {line}")
         if not truths:
             raise InputError(
                 "--plant: no drive could be planted; simulate more seconds, or find other drives"
@@ -152,7 +151,7 @@ def _read(path: Path) -> "Iterator[DriveFile]":
         file = load_drive(name)
         reason = plantable(file) or judge_file(file, bundled_library()).reason
         if reason:
-            tell(f"not planted: {name}: {reason}")
+            _warn(f"not planted: {name}: {reason}")
         else:
             yield file
 
@@ -189,16 +188,11 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
                 file = from_json(outcome.drives[0], f"the drive of scenario {number}")
                 yield replace(file, scenario=number, formula=claim)
             else:
-                tell(f"not planted: scenario {number}, {set_name}: {outcome.verdict}: {outcome.reason}")
+                _warn(f"not planted: scenario {number}, {set_name}: {outcome.verdict}: {outcome.reason}")
 
 
-def _make_all(orders: Sequence[Order], jobs: int | None) -> "Iterator[tuple[list[Truth], list[str]]]":
-    workers = min(jobs or os.cpu_count() or 1, len(orders))
-    if workers <= 1:
-        yield from map(make_one, orders)
-        return
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(make_one, orders)
+def _warn(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
 
 
 def make_one(order: Order) -> "tuple[list[Truth], list[str]]":

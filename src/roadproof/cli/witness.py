@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.cli.numbers import add_jobs_option, whole
+from roadproof.cli.numbers import whole
 from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
+from roadproof.cli.progress import clear
 from roadproof.cli.search_options import add_search_options, read_request
-from roadproof.cli.working import count_workers, work_in_order
+from roadproof.cli.working import add_working_options, count_workers, work_in_order
 from roadproof.errors import InputError, UsageError
 from roadproof.files import write_whole
 from roadproof.verdict import Verdict, exit_code
@@ -44,8 +45,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="smooth",
         help="what the drive should be like (default: smooth)",
     )
-    parser.add_argument("--count", type=whole("--count", 1), default=1, metavar="K", help="K clearly different drives")
-    add_jobs_option(parser)
+    parser.add_argument(
+        "--count", type=whole("--count", 1), default=1, metavar="K", help="K clearly different drives"
+    )
+    add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drive files, CSV and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     parser.add_argument("--verbose", action="store_true", help="print sizes and seconds by stage")
@@ -62,9 +65,10 @@ def run(args: argparse.Namespace) -> int:
     tasks = [Task(r, k + 1, args.out, not args.no_pictures) for k, r in enumerate(requests)]
     if count_workers(tasks, args.jobs) > 1:
         _warm_up()
-    for outcome in work_in_order(fulfil, tasks, args.jobs):
+    for outcome in work_in_order(fulfil, tasks, args.jobs, "questions", undecided):
         outcomes.append(outcome)
         if args.json != "-":
+            clear()
             print(_line(outcome, args.verbose), flush=True)
     if args.json:
         verdicts = [outcome.as_json() for outcome in outcomes]
@@ -141,6 +145,15 @@ def make_folder(folder: Path) -> None:
         raise InputError(f"cannot make the folder {folder}: {error.strerror}") from None
     if not os.access(folder, os.W_OK):
         raise InputError(f"cannot write into {folder}: choose another --out")
+
+
+def undecided(task: Task, reason: str) -> "Outcome":
+    """The outcome of a request that nothing is known of."""
+    from roadproof.witness.ask import Outcome
+
+    request = task.request
+    told = (request.what, request.road or "", Verdict.UNKNOWN, reason)
+    return Outcome(None, request.set_name, *told, drives=(), natural=False, seconds={"all": 0.0}, sizes={})
 
 
 def fulfil(task: Task) -> "Outcome":

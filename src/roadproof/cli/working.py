@@ -1,44 +1,69 @@
 """Work for several processes, its results as they come, and a word about how far it is."""
 
+import argparse
 import os
-import sys
-from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+import time
+from collections.abc import Callable, Generator, Sequence
 from typing import TypeVar
 
-from roadproof.errors import UsageError
+from roadproof.cli.numbers import add_jobs_option
+from roadproof.cli.progress import tell, time_left
+from roadproof.errors import LostError, UsageError
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
 
+def add_working_options(parser: argparse.ArgumentParser) -> None:
+    """``--jobs`` and ``--quiet``."""
+    add_jobs_option(parser)
+    add_quiet_option(parser)
+
+
+def add_quiet_option(parser: argparse.ArgumentParser) -> None:
+    """``--quiet``, which the command line sees to for all sub-commands."""
+    parser.add_argument("--quiet", action="store_true", help="no word about how far it is")
+
+
 def work(
-    function: Callable[[Job], Answer], jobs: Sequence[Job], processes: int | None
+    function: Callable[[Job], Answer],
+    jobs: Sequence[Job],
+    processes: int | None,
+    what: str = "",
+    lost: Callable[[Job, str], Answer] | None = None,
+    known: int = 0,
 ) -> Generator[Answer, None, None]:
     """``function`` of every job, in the order in which they are done; ``processes`` None is one a core.
 
-    The iterator is to be used up or closed. An error in a job, or an interruption, ends the others.
+    ``what`` is the word for many jobs, and ``known`` how many of them need no work, for the word about
+    how far it is. ``lost`` makes the answer, a doubt, of a job whose process ended twice (see
+    ``workers``) out of the reason; without it ``LostError`` is raised when all others are done. The
+    iterator is to be used up or closed. An error in a job, or an interruption, ends the others.
     """
-    workers = count_workers(jobs, processes)
-    if workers <= 1:
-        yield from map(function, jobs)
-        return
-    with _pool(workers) as pool:
-        for future in as_completed([pool.submit(function, job) for job in jobs]):
-            yield future.result()
+    for _, answer in _answers(function, jobs, processes, what, lost, known):
+        yield answer
 
 
 def work_in_order(
-    function: Callable[[Job], Answer], jobs: Sequence[Job], processes: int | None
+    function: Callable[[Job], Answer],
+    jobs: Sequence[Job],
+    processes: int | None,
+    what: str = "",
+    lost: Callable[[Job, str], Answer] | None = None,
+    fresh: bool = False,
 ) -> Generator[Answer, None, None]:
-    """As ``work``, but in the order of ``jobs``."""
-    workers = count_workers(jobs, processes)
-    if workers <= 1:
-        yield from map(function, jobs)
-        return
-    with _pool(workers) as pool:
-        yield from pool.map(function, jobs, chunksize=4 if len(jobs) > 100 else 1)
+    """As ``work``, but in the order of ``jobs``; in ``fresh`` processes, see ``workers``."""
+    early: dict[int, Answer] = {}
+    place = 0
+    try:
+        for found, answer in _answers(function, jobs, processes, what, lost, fresh=fresh):
+            early[found] = answer
+            while place in early:
+                yield early.pop(place)
+                place += 1
+    except LostError:
+        yield from (early[found] for found in sorted(early))
+        raise
 
 
 def count_workers(jobs: Sequence[object], processes: int | None) -> int:
@@ -48,21 +73,42 @@ def count_workers(jobs: Sequence[object], processes: int | None) -> int:
     return min(processes or os.cpu_count() or 1, len(jobs))
 
 
-@contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    pool = ProcessPoolExecutor(workers)
+def _answers(
+    function: Callable[[Job], Answer],
+    jobs: Sequence[Job],
+    processes: int | None,
+    what: str,
+    lost: Callable[[Job, str], Answer] | None,
+    known: int = 0,
+    fresh: bool = False,
+) -> Generator[tuple[int, Answer], None, None]:
+    workers = count_workers(jobs, processes)
+    if len(jobs) > 1:
+        from roadproof.workers import Lost, answers_of, is_worker
+    if len(jobs) <= 1 or is_worker():
+        yield from enumerate(map(function, jobs))
+        return
+    begun = time.monotonic()
+    total = known + len(jobs)
+    reasons: list[str] = []
+    _tell_count(known, total, what, "")
+    found = answers_of(function, jobs, workers, fresh)
     try:
-        yield pool
-    except BaseException:
-        # Without this, a run that failed or was interrupted would wait for every job still queued.
-        for process in list((pool._processes or {}).values()):
-            process.kill()
-        raise
+        for done, (place, answer) in enumerate(found, 1):
+            left = time_left(time.monotonic() - begun, done, len(jobs))
+            _tell_count(known + done, total, what, left)
+            if not isinstance(answer, Lost):
+                yield place, answer
+            elif lost is not None:
+                yield place, lost(jobs[place], answer.reason)
+            else:
+                reasons.append(f"{place + 1} of {len(jobs)} {what or 'jobs'}: {answer.reason}")
     finally:
-        pool.shutdown(cancel_futures=True)
+        found.close()
+    if reasons:
+        raise LostError("left out: " + "; ".join(reasons))
 
 
-def tell(text: str, last: bool = False) -> None:
-    """Progress on stderr: one line that changes, and nothing where nobody looks."""
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="\n" if last else "", file=sys.stderr, flush=True)
+def _tell_count(done: int, total: int, what: str, left: str) -> None:
+    if what:
+        tell(f"{done} of {total} {what}{left}", last=done == total)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
+from roadproof.effort import Meter
 from roadproof.encode.circuit import All, AnyOf, Leaf, nodes
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import ColumnFact, Problem, Row
-from roadproof.effort import Meter
 from roadproof.solve.smt import Answer, Session
 
 UNIT = 300_000  # what z3 counts in about a second on polynomial arithmetic

@@ -1,8 +1,7 @@
 """The highD experiment over many recordings: resumable, and in memory one recording a process."""
 
-import multiprocessing
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from roadproof.traffic.evaluate import Findings, evaluate_recording
 from roadproof.traffic.questions import Questions, Settings, ask
 from roadproof.traffic.results import Totals, fingerprint, load_findings, save_findings, write_results
 from roadproof.traffic.sources import RecordingSource, find_sources
+from roadproof.workers import Lost, answers_of
 
 
 @dataclass(frozen=True)
@@ -26,10 +26,14 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The totals, and the recordings that could not be used, with the reason."""
+    """The totals, and the recordings that could not be used, with the reason.
+
+    ``lost`` are those among them whose process ended twice, which may be the machine's fault.
+    """
 
     totals: Totals
     failed: dict[str, str]
+    lost: tuple[str, ...] = ()
 
 
 def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda line: None) -> Outcome:
@@ -43,8 +47,12 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
     if len(waiting) < len(sources):
         tell(f"{len(sources) - len(waiting)} of {len(sources)} recordings are already evaluated")
     failed: dict[str, str] = {}
+    lost: list[str] = []
     for done, (source, error) in enumerate(_evaluate_all(experiment, waiting), start=1):
-        if error is not None and not experiment.keep_going:
+        if isinstance(error, Lost):
+            lost.append(source.name)
+            error = error.reason
+        elif error is not None and not experiment.keep_going:
             raise InputError(error)
         if error is not None:
             failed[source.name] = error
@@ -65,7 +73,8 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
                 yield found
 
     in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
-    return Outcome(write_results(experiment.out, experiment.settings, findings(), in_order), in_order)
+    totals = write_results(experiment.out, experiment.settings, findings(), in_order)
+    return Outcome(totals, in_order, tuple(lost))
 
 
 def saved_findings(experiment: Experiment, outcome: Outcome) -> Iterator[tuple[RecordingSource, Findings]]:
@@ -87,25 +96,21 @@ def _known(experiment: Experiment, source: RecordingSource) -> Findings | None:
 
 def _evaluate_all(
     experiment: Experiment, sources: list[RecordingSource]
-) -> Iterator[tuple[RecordingSource, str | None]]:
+) -> Iterator[tuple[RecordingSource, str | Lost | None]]:
     """Evaluate and save each; the second part is why a recording could not be used."""
     if experiment.jobs == 1 or len(sources) < 2:
         for source in sources:
-            yield source, _evaluate(experiment.settings, experiment.out, source)
+            yield source, _evaluate((experiment.settings, experiment.out, source))
         return
+    tasks = [(experiment.settings, experiment.out, source) for source in sources]
     # Threads of a library may hold locks while a process forks, so workers start afresh.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(experiment.jobs, len(sources)), mp_context=context) as pool:
-        tasks = {pool.submit(_evaluate, experiment.settings, experiment.out, s): s for s in sources}
-        try:
-            for task in as_completed(tasks):
-                yield tasks[task], task.result()
-        finally:
-            for task in tasks:
-                task.cancel()
+    with closing(answers_of(_evaluate, tasks, min(experiment.jobs, len(sources)), fresh=True)) as answers:
+        for place, error in answers:
+            yield sources[place], error
 
 
-def _evaluate(settings: Settings, out: Path, source: RecordingSource) -> str | None:
+def _evaluate(task: tuple[Settings, Path, RecordingSource]) -> str | None:
+    settings, out, source = task
     mark = fingerprint(settings, source.stamp())
     try:
         recording = source.read()

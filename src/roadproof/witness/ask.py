@@ -99,7 +99,9 @@ def answer(request: Request) -> Outcome:
         scenario, text = as_formula(specification, request.what)
         road = pose(specification, text, request).road.name
         seconds = {"all": time.perf_counter() - begun}
-        found = Outcome(scenario, request.set_name, text, road, Verdict.UNKNOWN, str(late), (), False, seconds, {})
+        found = Outcome(
+            scenario, request.set_name, text, road, Verdict.UNKNOWN, str(late), (), False, seconds, {}
+        )
         return found
 
 
