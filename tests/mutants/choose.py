@@ -1,0 +1,64 @@
+"""Which faults are tried: a number of them, by a seed, spread over files by size and over operators."""
+
+from hashlib import sha256
+from itertools import zip_longest
+from math import sqrt
+from pathlib import Path
+
+from mutants.edits import Edit, edits_of, is_fault
+from mutants.spec_edits import spec_edits_of
+
+FOLDERS = ("judge", "monitor", "encode", "solve", "evidence", "prove", "witness", "traffic")
+SPECS = "spec/library"
+SPEC_WEIGHT = 3  # a definition says in a line what takes Python a page
+
+
+def targets(package: Path) -> list[Path]:
+    """The files that faults are made in, relative to the package."""
+    python = [path for folder in FOLDERS for path in sorted((package / folder).rglob("*.py"))]
+    specs = sorted((package / SPECS).glob("*.spec"))
+    return [path.relative_to(package) for path in (*python, *specs)]
+
+
+def faults_of(package: Path, file: Path) -> list[Edit]:
+    text = (package / file).read_text("utf-8")
+    return spec_edits_of(str(file), text) if file.suffix == ".spec" else edits_of(str(file), text)
+
+
+def choose(package: Path, number: int, seed: int, only: str = "") -> list[Edit]:
+    """About ``number`` faults of all targets, and of them those whose file begins with ``only``.
+
+    A file's share goes by the square root of how many faults it could have, so that long files do not
+    crowd out short ones. Each fault has its rank by seed and key, so a change elsewhere moves no other.
+    """
+    every = {file: faults_of(package, file) for file in targets(package)}
+    every = {file: faults for file, faults in every.items() if faults}
+    weights = {file: sqrt(len(faults)) for file, faults in every.items()}
+    weights |= {file: SPEC_WEIGHT * weight for file, weight in weights.items() if file.suffix == ".spec"}
+    whole = sum(weights.values())
+    chosen: list[Edit] = []
+    for file, faults in every.items():
+        share = max(1, round(number * weights[file] / whole))
+        if str(file).startswith(only):
+            chosen += _best(faults, share, seed, (package / file).read_text("utf-8"))
+    return chosen
+
+
+def _best(faults: list[Edit], number: int, seed: int, text: str) -> list[Edit]:
+    """The first ``number`` by rank, one of each operator in turns."""
+    by_operator: dict[str, list[Edit]] = {}
+    for fault in sorted(faults, key=lambda x: rank(x, seed)):
+        by_operator.setdefault(fault.operator, []).append(fault)
+    found: list[Edit] = []
+    for turn in zip_longest(*by_operator.values()):
+        for fault in turn:
+            usable = fault is not None and (fault.file.endswith(".spec") or is_fault(text, fault.apply(text)))
+            if usable and len(found) < number:
+                found.append(fault)
+        if len(found) >= number:
+            break
+    return found
+
+
+def rank(fault: Edit, seed: int) -> str:
+    return sha256(f"{seed}:{fault.key}".encode()).hexdigest()
