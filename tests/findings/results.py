@@ -1,0 +1,97 @@
+"""Commands are run once, in a folder of their own, and what they did is kept for the same program."""
+
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+import time
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import IO
+
+from console import environment, run
+from findings.figures import Outcome
+
+ROOT = Path(__file__).parents[2]
+PROGRAM = ("src", "models", "proofs")
+US101 = "../shared/data/us101"  # as pages name it, beside the checkout
+
+
+@cache
+def digest_of_program() -> str:
+    """A short text that changes with any file that answers depend on."""
+    digest = hashlib.sha256()
+    for path in sorted(p for top in PROGRAM for p in (ROOT / top).rglob("*") if p.is_file()):
+        if path.suffix != ".pyc":
+            digest.update(f"{path.relative_to(ROOT)}\0".encode() + path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+class Results:
+    """A folder with a folder for each chain of commands; of another program, all are asked again."""
+
+    def __init__(self, folder: Path, us101: Path = ROOT / US101) -> None:
+        self.folder = folder.resolve() / digest_of_program()
+        self.us101 = us101.resolve()
+
+    def lacks_data(self, commands: Sequence[str]) -> bool:
+        """Whether the commands need recordings that are not there."""
+        return any(US101 in c for c in commands) and not self.us101.is_dir()
+
+    def has(self, commands: Sequence[str]) -> bool:
+        """Whether all of the commands have been run."""
+        return (self.folder_of(commands) / f"{len(commands)}.json").is_file()
+
+    def folder_of(self, commands: Sequence[str]) -> Path:
+        words = re.sub(r"[^\w]+", "-", commands[-1])[:60].strip("-")
+        return self.folder / f"{words}-{hashlib.sha256(chr(10).join(commands).encode()).hexdigest()[:8]}"
+
+    def ask(self, commands: Sequence[str]) -> Outcome:
+        """What the last command does; one that was broken off goes on in its folder."""
+        folder = self.folder_of(commands)
+        work = folder / "work"
+        work.mkdir(parents=True, exist_ok=True)
+        for number, command in enumerate(commands, start=1):
+            if not (folder / f"{number}.json").is_file():
+                with (folder / f"{number}.complaints").open("wb") as complaints:
+                    self._run(command, work, folder / f"{number}.json", complaints)
+        data = json.loads((folder / f"{len(commands)}.json").read_text("utf-8"))
+        return Outcome(data["printed"], data["exit"], work)
+
+    def _run(self, command: str, work: Path, target: Path, complaints: IO[bytes]) -> None:
+        begun = time.monotonic()
+        done = subprocess.run(
+            ["bash", "-c", command.replace(US101, str(self.us101))],
+            cwd=work,
+            env=environment(),
+            stdout=subprocess.PIPE,
+            stderr=complaints,
+        )
+        data = {
+            "command": command,
+            "exit": done.returncode,
+            "seconds": round(time.monotonic() - begun, 1),
+            "printed": done.stdout.decode("utf-8").replace(str(self.us101), US101),
+        }
+        target.write_text(json.dumps(data, indent=1, ensure_ascii=False), "utf-8")
+
+    def session(
+        self, commands: Sequence[str], files: Mapping[str, str], beside: Sequence[Path]
+    ) -> list[list[str]]:
+        """What each command of a page prints, all in one folder with the page's files and those beside it."""
+        folder = self.folder_of(commands)
+        target = folder / f"{len(commands)}.json"
+        if not target.is_file():
+            shutil.rmtree(folder, ignore_errors=True)
+            work = folder / "work"
+            work.mkdir(parents=True)
+            for path in beside:
+                (shutil.copytree if path.is_dir() else shutil.copy)(path, work / path.name)
+            for name, text in files.items():
+                (work / name).write_text(text, "utf-8")
+            printed = [run(command, work) for command in commands]
+            target.write_text(json.dumps(printed, indent=1, ensure_ascii=False), "utf-8")
+        lines: list[list[str]] = json.loads(target.read_text("utf-8"))
+        return lines
