@@ -72,9 +72,7 @@ class Finding:
 def run(args: argparse.Namespace) -> int:
     given, effort = tuple(args.specs), read_effort(args)
     beside = {folder: names for path in args.paths for folder, names in _specifications(path, given).items()}
-    jobs = [
-        Job(path, (*given, *_around(path, beside)), args.solver, effort) for path in _files(args.paths)
-    ]
+    jobs = [Job(path, (*given, *_around(path, beside)), args.solver, effort) for path in _files(args.paths)]
     if args.json != "-":
         for name in dict.fromkeys(name for names in beside.values() for name in names):
             print(f"read with {name}", flush=True)

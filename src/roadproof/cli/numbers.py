@@ -15,7 +15,9 @@ _WHOLE = re.compile(r"[0-9]{1,12}")
 MOST = 1_000_000
 
 
-def add_effort_options(parser: argparse.ArgumentParser, units: float = 60.0, each: str = "a question") -> None:
+def add_effort_options(
+    parser: argparse.ArgumentParser, units: float = 60.0, each: str = "a question"
+) -> None:
     """``--effort`` and ``--timeout``, which ``read_effort`` understands; ``each``: what they are given to."""
     parser.add_argument(
         "--effort",

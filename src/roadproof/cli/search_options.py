@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_parameter_option,
     add_specification_options,
@@ -11,7 +12,6 @@ from roadproof.cli.options import (
     read_seconds,
     select_specification,
 )
-from roadproof.cli.numbers import add_effort_options, read_effort
 
 if TYPE_CHECKING:
     from roadproof.spec.library import Library

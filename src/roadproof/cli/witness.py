@@ -44,7 +44,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="smooth",
         help="what the drive should be like (default: smooth)",
     )
-    parser.add_argument("--count", type=whole("--count", 1), default=1, metavar="K", help="K clearly different drives")
+    parser.add_argument(
+        "--count", type=whole("--count", 1), default=1, metavar="K", help="K clearly different drives"
+    )
     add_jobs_option(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drive files, CSV and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
