@@ -11,6 +11,7 @@ import time
 from dataclasses import replace
 from fractions import Fraction
 
+from roadproof.effort import Effort
 from roadproof.encode.build import NONE, build_problem
 from roadproof.encode.unroll import Grid
 from roadproof.solve.exact import solve_exactly

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.cli.numbers import add_jobs_option
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -65,7 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_reading_options(parser)
     add_parameter_option(parser)
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_jobs_option(parser)
     parser.add_argument("--keep-going", action="store_true", help="leave out recordings that cannot be used")
     parser.add_argument("--check", action="store_true", help="ask the plain recursive evaluator again (slow)")
     parser.add_argument("--no-detectors", action="store_true", help="leave out those of earlier works")

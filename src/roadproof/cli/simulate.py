@@ -12,6 +12,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.cli.numbers import add_jobs_option, decimal, whole
 from roadproof.cli.progress import tell
 from roadproof.errors import InputError, UsageError
 from roadproof.verdict import ExitCode
@@ -52,18 +53,32 @@ class Order:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the files go")
-    parser.add_argument("--recordings", metavar="N", type=int, default=1, help="how many (default: 1)")
-    parser.add_argument("--seconds", metavar="S", type=float, default=990.0, help="length (default: 990)")
-    parser.add_argument("--seed", metavar="K", type=int, default=1, help="default: 1")
-    parser.add_argument("--lanes", metavar="N", type=int, default=3, help="each way (default: 3)")
     parser.add_argument(
-        "--flow", metavar="F", type=float, default=3350.0, help="vehicles an hour and way (default: 3350)"
+        "--recordings", metavar="N", type=whole("--recordings", 1), default=1, help="how many (default: 1)"
+    )
+    parser.add_argument(
+        "--seconds", metavar="S", type=decimal("--seconds"), default=990.0, help="length (default: 990)"
+    )
+    parser.add_argument("--seed", metavar="K", type=whole("--seed", 0), default=1, help="default: 1")
+    parser.add_argument(
+        "--lanes", metavar="N", type=whole("--lanes", 1), default=3, help="each way (default: 3)"
+    )
+    parser.add_argument(
+        "--flow",
+        metavar="F",
+        type=decimal("--flow"),
+        default=3350.0,
+        help="vehicles an hour and way (default: 3350)",
     )
     parser.add_argument(
         "--truck-share", metavar="P", type=float, default=0.18, help="share of trucks (default: 0.18)"
     )
     parser.add_argument(
-        "--section", metavar="M", type=float, default=420.0, help="length of the road in m (default: 420)"
+        "--section",
+        metavar="M",
+        type=decimal("--section"),
+        default=420.0,
+        help="length of the road in m (default: 420)",
     )
     parser.add_argument(
         "--plant",
@@ -76,7 +91,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plant-set", metavar="S", default="base", help="spec set of --plant N,N (default: base)"
     )
-    parser.add_argument("--jobs", type=int, metavar="N", help="processes (default: one a core)")
+    add_jobs_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
