@@ -11,6 +11,7 @@ import time
 from dataclasses import replace
 from fractions import Fraction
 
+from roadproof.effort import Effort
 from roadproof.encode.build import NONE, build_problem
 from roadproof.encode.unroll import Grid
 from roadproof.solve.exact import solve_exactly
@@ -72,7 +73,7 @@ def plainly(request: Request, lanes: dict[str, str], limit: float) -> tuple[floa
     grid = Grid(request.dt, int(request.horizon / request.dt))
     begun = time.perf_counter()
     problem, _ = build_problem(question.bound(lanes), question.road, question.vehicles, grid, manners)
-    status = solve_exactly(problem, limit).status
+    status = solve_exactly(problem, Effort(limit).meter()).status
     return time.perf_counter() - begun, {"found": "sat", "infeasible": "unsat"}.get(status, "gave up")
 
 

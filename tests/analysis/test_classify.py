@@ -20,6 +20,7 @@ from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.text import claims_of, ranges, with_classes, write_classes
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.witness import from_json, judge_file, load_drive
 from roadproof.logic.rewrite import with_values, without_names
@@ -190,7 +191,7 @@ def test_another_run_leaves_nothing_of_the_first(tmp_path: Path) -> None:
 
 def test_a_doubt_is_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
     """A class without a drive stays, and no verdict is without evidence."""
-    line = ["classify", "--among", "5", "--no-shares", "--timeout", "0.05", "--jobs", "1", "--json", "-"]
+    line = ["classify", "--among", "5", "--no-shares", "--effort", "0.05", "--jobs", "1", "--json", "-"]
     assert main(line) == 20
     data = json.loads(capsys.readouterr().out)
     ((one,), (claim,)) = data["classes"], data["claims"]
@@ -212,7 +213,7 @@ def test_classes_that_recordings_contradict(
 
 def claims_that_fail(text: str, classes: Classes) -> dict[str, Verdict]:
     specification = with_classes(text, BASE)
-    verdicts = {x.name: prove(specification, x.text, 20.0).verdict for x in claims_of(classes, {})}
+    verdicts = {x.name: prove(specification, x.text, Effort(20)).verdict for x in claims_of(classes, {})}
     return {name: verdict for name, verdict in verdicts.items() if verdict is not Verdict.PROVED}
 
 
@@ -331,7 +332,7 @@ def test_a_road_of_one_zone_where_the_usual_one_is_too_long() -> None:
     cell = Cell((12,), (12,), ("behaviourSV_16(SV, POV, L)",))
     classes = Classes(plan_of(BASE, (12, 16)), ((cell,),), ())
     text = write_classes(classes, BASE)
-    [example] = find_examples(Asked(timeout=30.0), text, classes.plan, classes.all())
+    [example] = find_examples(Asked(effort=Effort(30)), text, classes.plan, classes.all())
     assert (example.name, example.verdict) == ("class_12", Verdict.WITNESSED)
     file = from_json(dict(example.drive or {}), "drive")
     assert {lanelet.zone for lanelet in file.road.lanelets} == {"merge"}

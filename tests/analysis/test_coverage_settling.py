@@ -11,6 +11,7 @@ from roadproof.analysis.coverage.classes import Classes, Found, Group, Survey, g
 from roadproof.analysis.coverage.settling import find_in_catalogue, settle_group
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.errors import UsageError
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.judge.replay import first_breach
@@ -21,7 +22,7 @@ from roadproof.world.drive import Drive
 from roadproof.world.models import load_vehicle
 
 LIBRARY = bundled_library()
-EXT = Asked(("ext",), timeout=0.1)
+EXT = Asked(("ext",), effort=Effort(0.1))
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +112,7 @@ def test_a_set_that_is_not_extended() -> None:
 
 
 def test_where_no_search_is_possible_the_answer_says_so() -> None:
-    off_the_grid = Asked(("ext",), values={"minDanger": F(1, 7)}, timeout=0.1)
+    off_the_grid = Asked(("ext",), values={"minDanger": F(1, 7)}, effort=Effort(0.1))
     survey = survey_of(off_the_grid, "", ("main-2",))
     part = next(x.component for x in groups_of(survey) if x.name == "behaviourPOV_8")
     (answer,) = settle_group(survey, Group(part))

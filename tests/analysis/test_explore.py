@@ -30,6 +30,7 @@ from roadproof.analysis.explore.search import (
 )
 from roadproof.analysis.explore.values import Asked, Explored, Finding, explore
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim, read_term
@@ -46,7 +47,7 @@ POSITIVE = st.fractions(F(1, 100), F(50), max_denominator=100)
 
 
 def request(what: str, **values: F) -> Request:
-    means = Means(time_limit=6.0, explain=False)
+    means = Means(effort=Effort(6), explain=False)
     return Request(what, values={**default_values(LIBRARY), **values}, means=means)
 
 

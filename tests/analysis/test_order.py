@@ -13,6 +13,7 @@ from roadproof.analysis.order.kinds import families_of, kinds_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.report.order import as_dot
 from roadproof.spec.bind import default_values
 from roadproof.witness.ask import Request, ask
@@ -79,7 +80,7 @@ def call(name: str) -> str:
 
 
 def test_scenarios_of_different_size_are_compared() -> None:
-    asked = Asked(timeout=60.0)
+    asked = Asked(effort=Effort(60))
     kinds = kinds_of(asked, (2, 4))
     refuted = set()
     for family in families_of(kinds):
@@ -112,7 +113,7 @@ def test_a_run_that_was_broken_off_goes_on(tmp_path: Path, capsys: pytest.Captur
 def test_a_family_in_doubt_is_asked_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     line = ["order", "--set", "base", "--among", "1,6", "--out", str(out), "--no-pictures", "--jobs", "1"]
-    assert main([*line, "--timeout", "0.01"]) == 20
+    assert main([*line, "--effort", "0.01"]) == 20
     assert "in doubt: 1@base -> 6@base" in capsys.readouterr().out
     assert main(line) == 0
 

@@ -13,6 +13,7 @@ from roadproof.analysis.meeting import Node
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.redundancy import Change, Finding, _Examining, changes_of, learn
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.evidence.certificate import read_certificate, refusal
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.judge.exact import judge
@@ -63,7 +64,7 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
 
 def decide(number: int, part: str, value: bool) -> Finding:
     """The finding on the first change of ``part`` in a scenario of base."""
-    examining = _Examining(Asked(timeout=30.0), Node(number, "base"))
+    examining = _Examining(Asked(effort=Effort(30)), Node(number, "base"))
     found = changes_of(read_claim(BASE, examining.text).formula)
     change = next(x for x in found if x.part == part and x.value is value)
     return examining._decide(change)
@@ -83,7 +84,7 @@ def test_adjacent_lanes_are_redundant_in_scenario_3(tmp_path: Path) -> None:
 
 def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
     found = [x for x in changes("scenario_8(SV,POV,L)") if x.part == "aheadOf(SV, POV)" and not x.value]
-    examining = _Examining(Asked(timeout=30.0), Node(8, "base"))
+    examining = _Examining(Asked(effort=Effort(30)), Node(8, "base"))
     examining._collect()
     finding = examining._decide(found[0])
     assert finding.verdict is Verdict.REFUTED
@@ -135,7 +136,7 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
 
 
 def test_what_was_looked_for_in_vain_is_not_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = Asked(timeout=30.0)
+    asked = Asked(effort=Effort(30))
     (change,) = (x for x in changes("scenario_3(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
     learned = learn(asked, [], [change.changed])
     monkeypatch.setattr(redundancy, "ask", lambda request: pytest.fail("searched again"))
@@ -150,7 +151,7 @@ def test_what_motion_makes_redundant_is_proved_for_motion() -> None:
     """SV need not be asked to keep its lane until it or POV1 has left it: one of them leaves first."""
     part = "laneKeep(SV, L) U not sameLane(SV, POV1, L)"
     (change,) = (x for x in changes("scenario_2(SV,POV1,POV2,L)") if x.part == part and x.value)
-    finding = _Examining(Asked(proof_seconds=10.0), Node(2, "base"))._redundant_in_motion(change)
+    finding = _Examining(Asked(proof=10.0), Node(2, "base"))._redundant_in_motion(change)
     assert finding is not None
     assert finding.verdict is Verdict.PROVED
     assert finding.assuming.count(" U not atLane(") == 3

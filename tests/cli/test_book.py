@@ -5,6 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+
 from console import agree, files_of, matches, run, sessions_of
 
 ROOT = Path(__file__).parents[2]

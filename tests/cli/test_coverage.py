@@ -37,7 +37,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def run(out: Path, *more: str) -> int:
-    command = ["coverage", "--set", "ext", "--jobs", "1", "--timeout", "0.2", "--out", str(out), *more]
+    command = ["coverage", "--set", "ext", "--jobs", "1", "--effort", "0.2", "--out", str(out), *more]
     return main(command)
 
 

@@ -10,10 +10,11 @@ import sys
 import time
 from pathlib import Path
 
+from findings.statements import PICTURES, SESSIONS, STATEMENTS
+
 from findings.checking import Item, Sessions, Wrong, check_picture, check_sessions, check_statement
 from findings.figures import Picture, Statement
 from findings.results import ROOT, Results
-from findings.statements import PICTURES, SESSIONS, STATEMENTS
 
 
 def main() -> int:

@@ -14,6 +14,7 @@ from prove.claims import (
     speaks_of_all_lanes,
     specification,
 )
+from roadproof.effort import Effort
 from roadproof.evidence.certificate import refusal
 from roadproof.solve.smt import ask
 from roadproof.verdict import Verdict
@@ -27,7 +28,7 @@ def test_proves_what_is_valid(claim):
     assert result.verdict in PROVED, result.reason
     assert refusal(result.certificate, library, ask) is None
     for title, query in result.certificate.queries:
-        assert ask(query, "cvc5", 10) == "unsat", title
+        assert ask(query, "cvc5", Effort(10).meter()) == "unsat", title
 
 
 @pytest.mark.parametrize("claim", INVALID)

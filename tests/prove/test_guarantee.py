@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from prove.claims import specification
+from roadproof.effort import Effort
 from roadproof.judge import judge
 from roadproof.logic.rewrite import with_values
 from roadproof.prove.properties import Task, template_properties
@@ -49,7 +50,7 @@ def task(name: str) -> Task:
 
 
 def test_the_refuted_control_is_a_crash():
-    result = prove(specification(), task("C5").claim, 30)
+    result = prove(specification(), task("C5").claim, Effort(30))
     assert result.verdict is Verdict.REFUTED, result.reason
     assert result.countermodel is not None
     parameters = dict(result.countermodel.parameters)

@@ -82,7 +82,7 @@ def wishes_as_clauses(monkeypatch):
         ground = self.grounding
         return ground.session.check([*ground.switches, *ground.wishes], meter=meter)
 
-    def shrink(self):
+    def shrink(self, meter):
         ground = self.grounding
         wanted = {switch for switch in ground.session.core() if switch in ground.switches}
         ground.switches = {switch: ground.switches[switch] for switch in ground.switches if switch in wanted}
@@ -90,7 +90,7 @@ def wishes_as_clauses(monkeypatch):
         core = ground.session.core
         ground.session.core = lambda: list(ground.switches)
         try:
-            return true_shrink(self)
+            return true_shrink(self, meter)
         finally:
             ground.session.core = core
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from evidence.probe import probe
 from prove.claims import PROVED, P, Q, R, _opaquely, _with_numbers, is_false_on, settle, specification
+from roadproof.effort import Effort
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import refusal
 from roadproof.judge import judge
@@ -146,7 +147,7 @@ def test_verdicts_of_random_claims(claim, tried):
 
 
 def by_cvc5(query: str) -> str:
-    return ask(query, "cvc5", 20)
+    return ask(query, "cvc5", Effort(20).meter())
 
 
 def test_random_claims_were_mostly_decided():

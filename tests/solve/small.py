@@ -3,6 +3,7 @@
 import random
 from fractions import Fraction
 
+from roadproof.effort import Effort
 from roadproof.encode.circuit import Leaf, all_of, any_of, evaluate
 from roadproof.encode.polynomial import Fact, affine, variable
 from roadproof.encode.problem import Column, Problem, Row
@@ -42,7 +43,7 @@ def fact(dice, quadratic):
 
 
 def exactly(problem):
-    return solve_exactly(problem, 20).status
+    return solve_exactly(problem, Effort(20).meter()).status
 
 
 def grid_of(box, count=9):

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+from roadproof.effort import Effort
 from roadproof.encode.circuit import All, AnyOf, Leaf
 from roadproof.encode.polynomial import Fact, affine, variable
 from roadproof.encode.problem import Column, Problem
@@ -40,7 +41,7 @@ def test_affine_problems_have_the_same_answer_as_z3():
 def test_quadratic_problems_are_answered_on_the_safe_side():
     found, none = 0, 0
     for problem in small.problems(16, quadratic=True, seed=2):
-        truth = solve_exactly(problem, 5).status
+        truth = solve_exactly(problem, Effort(5).meter()).status
         inner = solve_mixed(problem, box_of(problem), "inner", 3)
         outer = solve_mixed(problem, box_of(problem), "outer", 3)
         if inner.status == "found":

@@ -15,6 +15,7 @@ from typing import Any
 
 from roadproof.analysis.meeting import Meeting, Node, conjunctions, scenario_numbers
 from roadproof.analysis.placing import Shown, show_elsewhere
+from roadproof.effort import Effort, Late
 from roadproof.evidence.certificate import to_json
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, transform
@@ -31,9 +32,9 @@ from roadproof.witness.question import Means
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of every pair, and within which limits; ``horizon`` and ``timeout`` in s.
+    """What is asked of every pair, and within which limits; ``horizon`` in s.
 
-    ``proof_seconds``: how long a proof is looked for before a drive is.
+    ``effort`` is for one drive; ``proof``: units of work for a proof before a drive is looked for.
     """
 
     sets: tuple[str, ...] = ("base",)
@@ -42,8 +43,8 @@ class Asked:
     specs: tuple[Path, ...] = ()
     values: Mapping[str, Fraction] = field(default_factory=dict)
     horizon: Fraction = Fraction(6)
-    timeout: float = 60.0
-    proof_seconds: float = 3.0
+    effort: Effort = field(default_factory=Effort)
+    proof: float = 3.0
 
     def load(self) -> tuple[Library, Specification]:
         """The library, and the definitions of the first set."""
@@ -149,10 +150,10 @@ def decide_group(asked: Asked, seed: Pair, pairs: Sequence[Pair]) -> list[Entry]
     library, specification = asked.load()
     deciding = _Deciding(asked, library, specification)
     begun = time.monotonic()
-    first = deciding.decide(seed)
+    first = deciding.answer(seed)
     entries: list[Entry] = []
     for pair in pairs:
-        entry = first if pair == seed else deciding.follow(pair, seed, first) or deciding.decide(pair)
+        entry = first if pair == seed else deciding.answer(pair, seed, first)
         a, b = sorted(pair, key=lambda node: (asked.sets.index(node.set_name), node.number))
         entries.append(replace(entry, a=a, b=b, seconds=time.monotonic() - begun))
         begun = time.monotonic()
@@ -168,10 +169,18 @@ class _Deciding:
     def texts(self, pair: Pair) -> tuple[str, ...]:
         return conjunctions(self.specification, *pair, self.asked.meeting)
 
+    def answer(self, pair: Pair, seed: Pair | None = None, first: Entry | None = None) -> Entry:
+        """The answer for a pair, with the help of that for its group's seed; a doubt where it is late."""
+        try:
+            followed = None if seed is None or first is None else self.follow(pair, seed, first)
+            return followed or self.decide(pair)
+        except Late as late:
+            return _doubt(pair, self.texts(pair), str(late))
+
     def decide(self, pair: Pair) -> Entry:
         """Proofs first, which are quick where they exist; then drives for what is left."""
         texts = self.texts(pair)
-        left = [x for x in texts if not _proved(self._prove(f"not ({x})", self.asked.proof_seconds))]
+        left = [x for x in texts if not _proved(self._prove(f"not ({x})"))]
         if not left:
             cores = tuple(self._core(x) for x in texts)
             return self._impossible(pair, texts, cores) or _doubt(pair, texts, "a proof was lost")
@@ -196,7 +205,7 @@ class _Deciding:
     def _impossible(self, pair: Pair, texts: Sequence[str], cores: tuple[Core, ...]) -> Entry | None:
         claim = " and ".join(f"not ({x})" for x in texts)
         label = f"overlap-{pair[0]}-{pair[1]}"
-        result = prove(self.specification, claim, 10 * self.asked.proof_seconds, label)
+        result = prove(self.specification, claim, self._longer(), label)
         if not _proved(result) or result.certificate is None:
             return None
         return Entry(*pair, Verdict.IMPOSSIBLE, claim, "", cores, to_json(result.certificate))
@@ -219,11 +228,15 @@ class _Deciding:
         verdict = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
         return Entry(*pair, verdict, " or ".join(f"({x})" for x in left), "; ".join(dict.fromkeys(reasons)))
 
-    def _prove(self, claim: str, seconds: float) -> Result:
-        return prove(self.specification, claim, seconds)
+    def _prove(self, claim: str) -> Result:
+        return prove(self.specification, claim, self.asked.effort.of(self.asked.proof))
+
+    def _longer(self) -> Effort:
+        """For proofs that are known to be there."""
+        return self.asked.effort.of(10 * self.asked.proof)
 
     def _core(self, formula: str) -> Core:
-        shown = show_impossible(self.specification, formula, 10 * self.asked.proof_seconds)
+        shown = show_impossible(self.specification, formula, self._longer())
         return Core(formula, shown.core if shown is not None else (formula,))
 
     def _core_like(self, formula: str, core: Core) -> Core:
@@ -243,7 +256,7 @@ class _Deciding:
             self.asked.specs,
             {**default_values(self.library), **self.asked.values},
             horizon=self.asked.horizon,
-            means=Means("smooth", time_limit=self.asked.timeout, explain=explain),
+            means=Means("smooth", effort=self.asked.effort, explain=explain),
         )
 
 

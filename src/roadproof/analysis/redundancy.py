@@ -12,6 +12,7 @@ from typing import Any
 from roadproof.analysis.meeting import Node, applied, vehicles_of
 from roadproof.analysis.overlap import Asked, without_sectors
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.effort import Effort, Late
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.witness import from_json, judge_file
@@ -52,6 +53,7 @@ class Finding:
 
     ``trace`` is a judged countermodel over points in time, where no drive was found. ``assuming``: a
     condition on the trace under which the change may be made, part of ``claim``; empty where it always may.
+    ``late``: cut off by the clock, so that nothing was looked for in vain.
     """
 
     node: Node
@@ -63,6 +65,7 @@ class Finding:
     trace: Mapping[str, Any] | None = None
     reason: str = ""
     assuming: str = ""
+    late: bool = False
 
 
 def changes_of(formula: Formula, whole: bool = False) -> Iterator[Change]:
@@ -160,12 +163,22 @@ class _Examining:
     def run(self, whole: bool) -> Iterator[Finding]:
         formula = read_claim(self.specification, self.text).formula
         changes = list(changes_of(formula, whole))
-        self._collect()
         known: dict[str, Finding] = {}
+        try:
+            self._collect()
+        except Late as late:
+            known = {x.changed: self._doubt(x, late) for x in changes}
         for change in changes:
             if change.changed not in known:
-                known[change.changed] = self._decide(change)
+                try:
+                    known[change.changed] = self._decide(change)
+                except Late as late:
+                    known[change.changed] = self._doubt(change, late)
             yield replace(known[change.changed], change=change)
+
+    def _doubt(self, change: Change, late: Late) -> Finding:
+        claim = f"{self.text} <-> ({change.changed})"
+        return Finding(self.node, change, Verdict.UNKNOWN, claim, reason=str(late), late=True)
 
     def _collect(self) -> None:
         """Drives of this scenario, and drives for earlier ones put on a road of its sector."""
@@ -197,7 +210,7 @@ class _Examining:
             if told is not None:
                 return Finding(self.node, change, Verdict.REFUTED, apart, None, told.data)
         claim = f"{self.text} <-> ({change.changed})"
-        result = prove(self.specification, claim, self.asked.proof_seconds, f"redundancy-{self.node}")
+        result = prove(self.specification, claim, self._proof(), f"redundancy-{self.node}")
         if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
             return Finding(self.node, change, Verdict.PROVED, claim, to_json(result.certificate))
         moving = self._redundant_in_motion(change)
@@ -208,14 +221,16 @@ class _Examining:
         if found is not None:
             self.mine.append(found)
             return Finding(self.node, change, Verdict.REFUTED, apart, None, found.data)
-        within = f"no drive was found within {self.asked.timeout:g} s, {self.asked.horizon} s ahead"
+        within = (
+            f"no drive was found with {self.asked.effort.units:g} units of work, {self.asked.horizon} s ahead"
+        )
         within += ", for the same scenario on another road" if vain else ""
         if result.countermodel is not None:
             model = result.countermodel
             instants = [(i.time, i.values, i.atoms) for i in model.instants]
             trace = trace_data(instants, model.parameters, model.held)
             return Finding(self.node, change, Verdict.REFUTED, claim, trace=trace, reason=within)
-        reason = f"{within}, and no proof within {self.asked.proof_seconds:g} s: {result.reason}"
+        reason = f"{within}, and no proof with {self.asked.proof:g}: {result.reason}"
         return Finding(self.node, change, Verdict.UNKNOWN, claim, reason=reason)
 
     def _redundant_in_motion(self, change: Change) -> Finding | None:
@@ -228,7 +243,7 @@ class _Examining:
         there = f"({assuming} and {self.text} -> ({change.changed}))"
         back = f"({assuming} and ({change.changed}) -> {self.text})"
         claim, label = f"{there} and {back}", f"redundancy-{self.node}"
-        result = prove(self.specification, claim, self.asked.proof_seconds, label)
+        result = prove(self.specification, claim, self._proof(), label)
         if result.verdict is not Verdict.PROVED or result.certificate is None:
             return None
         certificate = to_json(result.certificate)
@@ -248,8 +263,11 @@ class _Examining:
         ruling = judge_file(file, self.library)
         return Shown(formula, as_data(file, ruling)) if ruling.accepted else None
 
+    def _proof(self) -> Effort:
+        return self.asked.effort.of(self.asked.proof)
+
     def _ask(self, formula: str) -> Shown | None:
-        means = Means("smooth", time_limit=self.asked.timeout, explain=False)
+        means = Means("smooth", effort=self.asked.effort, explain=False)
         options, specs, horizon = self.asked.options, self.asked.specs, self.asked.horizon
         road = usual_road(read_claim(self.specification, self.text).formula)
         request = Request(

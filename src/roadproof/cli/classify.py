@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.cli.evidence import evidence_folder
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -19,6 +20,7 @@ from roadproof.cli.options import (
 )
 from roadproof.cli.progress import tell
 from roadproof.cli.working import add_working_options, work, work_in_order
+from roadproof.effort import Late
 from roadproof.errors import UsageError
 from roadproof.files import make_folder
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -60,9 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1-8")
     parser.add_argument("--on", type=Path, metavar="DIR", help="recordings (default: simulated for this)")
     parser.add_argument("--no-shares", action="store_true", help="no recordings, so no shares")
-    parser.add_argument(
-        "--timeout", type=float, default=60.0, metavar="S", help="seconds for a drive or proof (default: 60)"
-    )
+    add_effort_options(parser, 60.0, "a drive or a proof")
     add_working_options(parser)
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="write classes.spec, claims, evidence, picture"
@@ -143,8 +143,6 @@ def _for_exit(verdict: Verdict) -> Verdict:
 def _asked(args: argparse.Namespace) -> "Asked":
     from roadproof.analysis.overlap import Asked
 
-    if not args.timeout > 0:
-        raise UsageError(f"--timeout {args.timeout} must be greater than 0")
     if args.on is not None and args.no_shares:
         raise UsageError("--on and --no-shares: shares are counted on recordings; leave out one of the two")
     library = load_library_of(args)
@@ -154,7 +152,7 @@ def _asked(args: argparse.Namespace) -> "Asked":
         options=specification.options,
         specs=tuple(args.specs),
         values=parameter_values(args, library),
-        timeout=args.timeout,
+        effort=read_effort(args),
     )
 
 
@@ -197,7 +195,7 @@ def _divide(
     axes = [what_axis(plan, group, specification) for group in plan.groups]
     if plan.has_places:
         axes.append(where_axis(plan, plan.groups[0].vehicles))
-    outlines = [outline(axis, specification, asked.proof_seconds) for axis in axes]
+    outlines = [outline(axis, specification, asked.effort.of(asked.proof)) for axis in axes]
     jobs = [
         Refining(asked, axis, *cell) for axis, made in zip(axes, outlines, strict=True) for cell in made.cells
     ]
@@ -219,7 +217,7 @@ def refine_one(job: Refining) -> "Cell":
     """One cell with few words."""
     from roadproof.analysis.classify.cells import refine
 
-    return refine(job.axis, job.asked.load()[1], job.holds, job.others)
+    return refine(job.axis, job.asked.load()[1], job.holds, job.others, job.asked.effort)
 
 
 def _settle(
@@ -261,13 +259,16 @@ def settle(job: Settling) -> Settled:
     """The drives or the proofs of one job."""
     from roadproof.analysis.classify.drives import find_examples
     from roadproof.analysis.classify.text import with_classes
-    from roadproof.prove.prover import prove
+    from roadproof.prove.prover import Result, prove
 
     if job.classes:
         return Settled(examples=tuple(find_examples(job.asked, job.text, job.plan, job.classes)))
     specification = with_classes(job.text, job.asked.load()[1])
-    return Settled(
-        proofs=tuple(
-            (claim, prove(specification, claim.text, job.asked.timeout, claim.name)) for claim in job.claims
-        )
-    )
+
+    def decide(claim: "Claim") -> Result:
+        try:
+            return prove(specification, claim.text, job.asked.effort, claim.name)
+        except Late as late:
+            return Result(claim.text, specification.set_name, Verdict.UNKNOWN, str(late), late.seconds)
+
+    return Settled(proofs=tuple((claim, decide(claim)) for claim in job.claims))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.coverage_traffic import count_in_traffic
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -64,13 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         help="where to look for drives; may be repeated (default: main-2, then main-3)",
     )
-    parser.add_argument(
-        "--timeout",
-        type=float,
-        default=10.0,
-        metavar="S",
-        help="seconds for one search, half of it for one more that another set catches (default: 10)",
-    )
+    add_effort_options(parser, 10.0, "a search, half of it for one more that another set catches")
     parser.add_argument(
         "--needed", action="store_true", help="of a set that covers: a drive for each definition it needs"
     )
@@ -169,8 +164,6 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
     from roadproof.analysis.overlap import Asked
     from roadproof.world.models import load_road
 
-    if not args.timeout > 0:
-        raise UsageError(f"--timeout {args.timeout} must be greater than 0")
     library = load_library_of(args)
     specification = library.select(args.set_name, chosen_options(args))
     asked = Asked(
@@ -178,7 +171,7 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
         options=specification.options,
         specs=tuple(args.specs),
         values=parameter_values(args, library),
-        timeout=args.timeout,
+        effort=read_effort(args),
     )
     roads = args.roads or ["main-2", "main-3"]
     for road in roads:

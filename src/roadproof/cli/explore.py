@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from roadproof.cli.evidence import evidence_folder
 from roadproof.cli.explore_files import draw_all, with_evidence
 from roadproof.cli.explore_options import read_knobs, read_precision, read_steps
+from roadproof.cli.numbers import whole
 from roadproof.cli.options import add_json_option, load_library_of, write_json
 from roadproof.cli.progress import clear, tell
 from roadproof.cli.search_options import add_search_options, read_request
@@ -40,7 +41,7 @@ examples:
 
 Limits are v_lon, v_lat, a_lon and a_lat, each .min and .max. Where durations change, dt is the coarsest step
 that divides them, and --dt its upper bound. A drive that was found is judged at every other value, so
-most values take no search. A value that none is found for costs up to three times the time-out.
+most values take no search. A value that none is found for costs up to three times the --effort.
 Nothing is claimed of values between those looked at, and no extreme is called the best there is: the
 other side of the bracket is printed with what is known of it.
 
@@ -60,7 +61,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a parameter, or a limit such as POV.a_lon.min; may be given twice",
     )
-    parser.add_argument("--steps", type=int, metavar="K", help="values of each (default: 11; of two: 6)")
+    parser.add_argument(
+        "--steps", type=whole("--steps", 2), metavar="K", help="values of each (default: 11; of two: 6)"
+    )
     for sense in ("least", "greatest"):
         parser.add_argument(f"--{sense}", metavar="TERM", help=f"the {sense} value of a term")
     parser.add_argument("--when", metavar="FORMULA", help="measure at a moment at which this holds, not at 0")
@@ -95,7 +98,7 @@ def run(args: argparse.Namespace) -> int:
     folder = evidence_folder(args.out, args.json)
     _make_ready(folder, count_workers(range(1000), args.jobs))
     if len(jobs) > 1:
-        jobs = [replace(job, processes=1, asked=replace(job.asked, width=1)) for job in jobs]
+        jobs = [replace(job, processes=1) for job in jobs]
     explored: list[dict[str, Any]] = []
     for number, data in enumerate(work_in_order(carry_out, jobs, args.jobs, "formulas"), 1):
         explored.append(with_evidence(data, number, folder))
@@ -156,9 +159,8 @@ def _job(args: argparse.Namespace, what: str, request: "Request", library: "Libr
         measures.append(read_measure(specification, "least", args.least, when, names))
     if args.greatest:
         measures.append(read_measure(specification, "greatest", args.greatest, when, names))
-    width = count_workers(range(1000), args.jobs)
     steps = read_steps(args.steps, len(knobs))
-    asked = Asked(request, tuple(knobs), steps, read_precision(args.precision), width)
+    asked = Asked(request, tuple(knobs), steps, read_precision(args.precision))
     return Job(scenario, asked, tuple(measures), args.jobs)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.evidence import Evidence, read_drive
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -22,7 +23,6 @@ from roadproof.cli.options import (
 )
 from roadproof.cli.progress import tell
 from roadproof.cli.working import add_working_options, work
-from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
@@ -51,9 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser, "base, extA, ext", several=True)
     add_parameter_option(parser)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
-    parser.add_argument(
-        "--timeout", type=float, default=120.0, metavar="S", help="seconds for one drive (default: 120)"
-    )
+    add_effort_options(parser, 120.0, "a drive")
     add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives, DOT and SVG")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
@@ -90,8 +88,6 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
     library = load_library_of(args)
     sets = tuple(dict.fromkeys(args.set_names or ["base", "extA", "ext"]))
     options = chosen_options(args)
-    if not args.timeout > 0:
-        raise UsageError(f"--timeout {args.timeout} must be greater than 0")
     for name in sets:
         library.select(name, options)
     asked = Asked(
@@ -99,7 +95,7 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
         options=options,
         specs=tuple(args.specs),
         values=parameter_values(args, library),
-        timeout=args.timeout,
+        effort=read_effort(args),
     )
     numbers = read_numbers(args.among, library.select(sets[0], options)) if args.among else None
     return asked, kinds_of(asked, numbers)
@@ -132,8 +128,10 @@ def _settle(
                 known[family] = _record(family, decided, journal)
     if doubtful:
         tell(f"{len(doubtful)} families in doubt: trying the drives of the others")
-        drives = [*_drives(known.values()), *(x.data for d in doubtful.values() for x in d.drives)]
-        for family, decided in doubtful.items():
+        sure = [known[name] for name in families if name in known]
+        unsure = [(name, doubtful[name]) for name in families if name in doubtful]
+        drives = [*_drives(sure), *(x.data for _, decided in unsure for x in decided.drives)]
+        for family, decided in unsure:
             known[family] = _record(family, settle_doubts(asked, decided, drives), journal)
     return [known[name] for name in families]
 

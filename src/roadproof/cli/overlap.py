@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.evidence import Evidence, evidence_folder
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -57,9 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ):
         parser.add_argument(f"--{name}", choices=("same", "any"), default="same", help=what)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
-    parser.add_argument(
-        "--timeout", type=float, default=60.0, metavar="S", help="seconds for one drive (default: 60)"
-    )
+    add_effort_options(parser, 60.0, "a drive")
     parser.add_argument(
         "--horizon", metavar="S", help="seconds of driving searched (default: 6; 9 with --start any)"
     )
@@ -106,8 +105,6 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, list[Pair]]":
     sets = tuple(args.set_names or ["base"])
     if len(sets) > 2 or len(set(sets)) < len(sets):
         raise UsageError(f"--set {', '.join(sets)}: name one set, or two different ones")
-    if not args.timeout > 0:
-        raise UsageError(f"--timeout {args.timeout} must be greater than 0")
     library = load_library_of(args)
     specification = library.select(sets[0], chosen_options(args))
     asked = Asked(
@@ -117,7 +114,7 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, list[Pair]]":
         tuple(args.specs),
         parameter_values(args, library),
         _horizon(args),
-        args.timeout,
+        read_effort(args),
     )
     numbers = read_numbers(args.among, specification) if args.among else None
     pairs = pairs_of(asked, numbers)

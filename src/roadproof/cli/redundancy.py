@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.evidence import Evidence, read_drive
+from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -19,7 +20,6 @@ from roadproof.cli.options import (
     write_json,
 )
 from roadproof.cli.working import add_working_options, work
-from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
@@ -51,9 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_parameter_option(parser)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
     parser.add_argument("--whole", action="store_true", help="also the parts of simple predicates")
-    parser.add_argument(
-        "--timeout", type=float, default=20.0, metavar="S", help="seconds for one drive (default: 20)"
-    )
+    add_effort_options(parser, 20.0, "a drive")
     add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and drives")
     add_json_option(parser)
@@ -92,8 +90,6 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[int, ...]]":
     from roadproof.analysis.meeting import read_numbers, scenario_numbers
     from roadproof.analysis.overlap import Asked
 
-    if not args.timeout > 0:
-        raise UsageError(f"--timeout {args.timeout} must be greater than 0")
     library = load_library_of(args)
     options = chosen_options(args)
     specification = library.select(args.set_name, options)
@@ -103,7 +99,7 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[int, ...]]":
         options=options,
         specs=tuple(args.specs),
         values=parameter_values(args, library),
-        timeout=args.timeout,
+        effort=read_effort(args),
     )
     return asked, numbers
 
@@ -123,7 +119,7 @@ def _settle(
     library, specification = asked.load()
     journal = None
     if folder is not None:
-        question = {"whole": str(whole), "timeout": str(asked.timeout), **asked.question()}
+        question = {"whole": str(whole), "effort": f"{asked.effort.units:g}", **asked.question()}
         journal = Journal(folder, fingerprint(library, question))
     known: dict[int, list[dict[str, Any]]] = {
         x["scenario"]: x["verdicts"] for x in (journal.answers() if journal is not None else [])
@@ -162,7 +158,7 @@ def _learned(asked: "Asked", verdicts: Sequence[Mapping[str, Any]]) -> "Learned"
 
     told = [x for x in verdicts if x["drive"] is not None]
     drives = [(x["changed"], Shown(x["claim"], dict(read_drive(x["drive"])))) for x in told]
-    vain = [x["changed"] for x in verdicts if x["drive"] is None and not x["redundant"]]
+    vain = [x["changed"] for x in verdicts if x["drive"] is None and not x["redundant"] and not x["late"]]
     return learn(asked, drives, vain)
 
 
@@ -195,6 +191,7 @@ def _record(number: int, findings: "Sequence[Finding]", journal: "Journal | None
                 "drive": drive,
                 "trace": finding.trace,
                 "reason": finding.reason,
+                "late": finding.late,
             }
         )
     if journal is not None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadproof.cli.numbers import decimal, whole
 from roadproof.cli.progress import note
 from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import InputError, UsageError
@@ -51,18 +52,32 @@ class Order:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the files go")
-    parser.add_argument("--recordings", metavar="N", type=int, default=1, help="how many (default: 1)")
-    parser.add_argument("--seconds", metavar="S", type=float, default=990.0, help="length (default: 990)")
-    parser.add_argument("--seed", metavar="K", type=int, default=1, help="default: 1")
-    parser.add_argument("--lanes", metavar="N", type=int, default=3, help="each way (default: 3)")
     parser.add_argument(
-        "--flow", metavar="F", type=float, default=3350.0, help="vehicles an hour and way (default: 3350)"
+        "--recordings", metavar="N", type=whole("--recordings", 1), default=1, help="how many (default: 1)"
+    )
+    parser.add_argument(
+        "--seconds", metavar="S", type=decimal("--seconds"), default=990.0, help="length (default: 990)"
+    )
+    parser.add_argument("--seed", metavar="K", type=whole("--seed", 0), default=1, help="default: 1")
+    parser.add_argument(
+        "--lanes", metavar="N", type=whole("--lanes", 1), default=3, help="each way (default: 3)"
+    )
+    parser.add_argument(
+        "--flow",
+        metavar="F",
+        type=decimal("--flow"),
+        default=3350.0,
+        help="vehicles an hour and way (default: 3350)",
     )
     parser.add_argument(
         "--truck-share", metavar="P", type=float, default=0.18, help="share of trucks (default: 0.18)"
     )
     parser.add_argument(
-        "--section", metavar="M", type=float, default=420.0, help="length of the road in m (default: 420)"
+        "--section",
+        metavar="M",
+        type=decimal("--section"),
+        default=420.0,
+        help="length of the road in m (default: 420)",
     )
     parser.add_argument(
         "--plant",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
-from roadproof.effort import Meter
+from roadproof.effort import Effort, Meter
 from roadproof.encode.circuit import All, AnyOf, Leaf, nodes
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import ColumnFact, Problem, Row
@@ -25,12 +25,13 @@ class ExactSolution:
     values: tuple[Fraction, ...] = ()
 
 
-def solve_exactly(problem: Problem, meter: Meter) -> ExactSolution:
+def solve_exactly(problem: Problem, meter: Meter | None = None) -> ExactSolution:
     """Ask z3 for a solution within what ``meter`` has left; ``infeasible`` is an exact no.
 
     How long z3 takes depends on luck, so it starts again with another seed and twice the work.
     Raises ``Late``.
     """
+    meter = meter or Effort().meter()
     session = Session(UNIT)
     session.tell("\n".join(script(problem)))
     answer: Answer = "unknown"

@@ -12,7 +12,7 @@ from typing import Literal, TypeAlias
 from roadproof.effort import Meter
 from roadproof.errors import MissingSolverError
 
-# What z3 and cvc5 count in about a second; z3 counts up to 4 million on linear queries, 0.3 on polynomial ones.
+# What is counted in about a second; by z3 up to 4 million on linear queries, 0.3 on polynomial ones.
 UNIT = 1_000_000
 UNIT_CVC5 = 200_000
 _MOST = 4_000_000_000  # both count in 32 bits

@@ -99,10 +99,8 @@ def answer(request: Request) -> Outcome:
         scenario, text = as_formula(specification, request.what)
         road = pose(specification, text, request).road.name
         seconds = {"all": time.perf_counter() - begun}
-        found = Outcome(
-            scenario, request.set_name, text, road, Verdict.UNKNOWN, str(late), (), False, seconds, {}
-        )
-        return found
+        why = str(late)
+        return Outcome(scenario, request.set_name, text, road, Verdict.UNKNOWN, why, (), False, seconds, {})
 
 
 def ask(request: Request) -> Outcome:

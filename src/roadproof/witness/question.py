@@ -80,7 +80,7 @@ class Means:
     objective: Objective = "smooth"
     engine: Engine = "milp"
     solver: str = "highs"
-    effort: Effort = Effort()
+    effort: Effort = field(default_factory=Effort)
     refinements: int = 2
     explain: bool = True
 

@@ -9,11 +9,12 @@ partition of the union of the rows, whether or not every one of them can be had.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from roadproof.effort import Effort
 from roadproof.prove.prover import prove
 from roadproof.spec.library import Specification
 from roadproof.verdict import Verdict
 
-REFINING_SECONDS = 2.0
+REFINING = 2.0  # units of work for one proof
 
 
 @dataclass(frozen=True)
@@ -51,14 +52,17 @@ def text_of(axis: Axis, cell: Cell) -> str:
     return " and ".join([*axis.context, *said, *(f"not {part}" for part in cell.denied)])
 
 
-def outline(axis: Axis, specification: Specification, seconds: float) -> Outline:
-    """The cells of an axis but for those that are proved empty; ``seconds`` are given to each proof."""
+def outline(axis: Axis, specification: Specification, effort: Effort) -> Outline:
+    """The cells of an axis but for those that are proved empty; ``effort`` is for each proof.
+
+    Raises ``Late``: a proof that the clock cut off would make other classes.
+    """
     empty: list[str] = []
 
     def never(holds: Sequence[int], others: Sequence[int] = ()) -> bool:
         cell = Cell(tuple(holds), tuple(holds), tuple(axis.rows[n] for n in others))
         claim = f"not ({text_of(axis, cell)})"
-        if not _proves(specification, claim, seconds):
+        if not _proves(specification, claim, effort):
             return False
         if len(holds) != 2 or others:  # that two rows exclude each other is said by their cells
             empty.append(claim)
@@ -89,15 +93,17 @@ def _larger(level: Sequence[tuple[int, ...]], possible: set[tuple[int, ...]]) ->
                 yield larger
 
 
-def refine(axis: Axis, specification: Specification, holds: Sequence[int], others: Sequence[int]) -> Cell:
+def refine(
+    axis: Axis, specification: Specification, holds: Sequence[int], others: Sequence[int], effort: Effort
+) -> Cell:
     """The cell where ``holds`` hold and ``others`` do not, without what is proved to follow from the rest.
 
-    A part of a row stands in its place where the two are proved to be the same there.
+    A part of a row stands in its place where the two are proved to be the same there. Raises ``Late``.
     """
 
     def follows(said: Sequence[int], denied: Iterable[str], conclusion: str) -> bool:
         premise = text_of(axis, Cell((), tuple(said), tuple(denied)))
-        return _proves(specification, f"{premise} -> {conclusion}", REFINING_SECONDS)
+        return _proves(specification, f"{premise} -> {conclusion}", effort.of(REFINING))
 
     rows = axis.rows
     said, denied = list(holds), {n: rows[n] for n in others}
@@ -118,5 +124,5 @@ def refine(axis: Axis, specification: Specification, holds: Sequence[int], other
     return Cell(tuple(holds), tuple(said), tuple(denied.values()))
 
 
-def _proves(specification: Specification, claim: str, seconds: float) -> bool:
-    return prove(specification, claim, seconds).verdict in (Verdict.PROVED, Verdict.VACUOUS)
+def _proves(specification: Specification, claim: str, effort: Effort) -> bool:
+    return prove(specification, claim, effort).verdict in (Verdict.PROVED, Verdict.VACUOUS)

@@ -12,6 +12,7 @@ from roadproof.analysis.classify.classes import SET_NAME, Class, Plan, where_axi
 from roadproof.analysis.classify.text import FILE_NAME, with_classes
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere, zones_of
+from roadproof.effort import Late
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
@@ -81,6 +82,13 @@ class _Searching:
         self.failures = 0
 
     def example(self, one: Class) -> Example:
+        """A drive of a class; UNKNOWN where none was found, or where the clock cut the search off."""
+        try:
+            return self._find(one)
+        except Late as late:
+            return Example(one.name, Verdict.UNKNOWN, str(late), None)
+
+    def _find(self, one: Class) -> Example:
         for shown in self.found:
             placed = show_elsewhere(shown, one.formula, self.library) or self._on_patched_road(shown, one)
             if placed is not None:
@@ -94,7 +102,7 @@ class _Searching:
                 self.found.append(Shown(one.formula, dict(outcome.drives[0])))
                 return Example(one.name, Verdict.WITNESSED, "", outcome.drives[0])
             told = outcome.reason or "a proof that the class is empty was found late, and is not kept"
-            reasons.append(f"{told} (road {outcome.road}, {self.asked.timeout:g} s of search)")
+            reasons.append(f"{told} (road {outcome.road}, {self.asked.effort.units:g} units of work)")
         self.failures += 1
         return Example(one.name, Verdict.UNKNOWN, "; ".join(reasons), None)
 
@@ -107,7 +115,7 @@ class _Searching:
             {**default_values(self.library), **self.asked.values},
             road,
             horizon=self.asked.horizon,
-            means=Means("smooth", time_limit=self.asked.timeout, explain=False),
+            means=Means("smooth", effort=self.asked.effort, explain=False),
         )
 
     def _roads(self, one: Class) -> Iterator[str]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from roadproof.analysis.meeting import Node, scenario_numbers, vehicles_of
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import zones_of
+from roadproof.effort import Late
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
 from roadproof.logic.formula import Formula
@@ -21,7 +22,7 @@ from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 
 STARTS = "initSafe(SV,POV) and F danger(SV,POV)"
-PROOF_SECONDS = 60.0
+PROOF = 60.0  # units of work for a claim of coverage
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,10 @@ def claims_of(specification: Specification) -> tuple[str, ...]:
 def prove_claim(asked: Asked, claim: str) -> Covered:
     """Try to prove one claim about the first set of ``asked``."""
     _, specification = asked.load()
-    result = prove(specification, claim, PROOF_SECONDS, "coverage")
+    try:
+        result = prove(specification, claim, asked.effort.of(PROOF), "coverage")
+    except Late as late:
+        return Covered(claim, Verdict.UNKNOWN, None, str(late))
     certificate = None if result.certificate is None else to_json(result.certificate)
     return Covered(claim, result.verdict, certificate, result.reason)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from roadproof.analysis.coverage.catalogue import HORIZON, ZERO, catalogue
 from roadproof.analysis.coverage.claims import (
-    PROOF_SECONDS,
+    PROOF,
     STARTS,
     claims_of,
     missed,
@@ -109,7 +109,8 @@ def _need(asked: Asked, trials: Trials, name: str, written: str, road: Road, dri
 def _spare(asked: Asked, trials: Trials, name: str, written: str) -> Need:
     specification = _select(asked, trials, written)
     claims = claims_of(specification)
-    proved = all(prove(specification, c, PROOF_SECONDS).verdict is Verdict.PROVED for c in claims)
+    effort = asked.effort.of(PROOF)
+    proved = all(prove(specification, c, effort).verdict is Verdict.PROVED for c in claims)
     verdict = Verdict.PROVED if proved else Verdict.UNKNOWN
     return Need(name, trials.asked.sets[0], verdict)
 

@@ -21,6 +21,7 @@ from roadproof.analysis.coverage.minimal import simplest
 from roadproof.analysis.coverage.parts import Part
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.effort import Late
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
@@ -36,6 +37,7 @@ from roadproof.witness.question import Means
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle
 
+# Units of work for a proof before any search, and after it.
 FIRST_PROOF = 2.0
 LONG_PROOF = 30.0
 
@@ -97,8 +99,15 @@ class _Settling:
 
     def run(self) -> list[Answer]:
         """Conditions first: a gap for one is one for its component, too."""
-        conditions = [self._settle(part) for part in self.group.conditions]
-        return [self._settle(self.group.component, self.survey.wider), *conditions]
+        conditions = [self._answer(part) for part in self.group.conditions]
+        return [self._answer(self.group.component, self.survey.wider), *conditions]
+
+    def _answer(self, part: Part | None, wider: Sequence[str] = ()) -> Answer:
+        """As ``_settle``; in doubt where the clock cuts it off."""
+        try:
+            return self._settle(part, wider)
+        except Late as late:
+            return Answer(part, Verdict.UNKNOWN, reason=str(late))
 
     def _settle(self, part: Part | None, wider: Sequence[str] = ()) -> Answer:
         """A gap for the class, or a proof; with ``wider``, a gap for each set that may be the first."""
@@ -106,12 +115,12 @@ class _Settling:
             proved = self._prove(part, FIRST_PROOF)
             if proved is not None:
                 return proved
-            reason = self._look(part, "", self.survey.roads, self.asked.timeout)
+            reason = self._look(part, "", self.survey.roads, self.asked.effort.units)
             if reason:
                 return self._prove(part, LONG_PROOF) or Answer(part, Verdict.UNKNOWN, reason=reason)
         for first in wider:
             if all(found.first != first for found in self._of(part)):
-                self._look(part, first, self.survey.roads[:1], self.asked.timeout / 2)
+                self._look(part, first, self.survey.roads[:1], self.asked.effort.units / 2)
         best: dict[str, Found] = {}
         for found in sorted(self._of(part), key=lambda found: found.effort):
             best.setdefault(found.first, found)
@@ -126,14 +135,15 @@ class _Settling:
         """The known gaps of the class."""
         return [found for found in self.known if self.classes.has(part, found.classes)]
 
-    def _prove(self, part: Part | None, seconds: float) -> Answer | None:
-        """That the class of ``part`` is empty, in every road sector; ``seconds`` for a look at the first."""
+    def _prove(self, part: Part | None, units: float) -> Answer | None:
+        """That the class of ``part`` is empty, in every road sector; ``units`` for a look at the first."""
         attempts = [self._all_are_near()] if part is None else [self._is_redundant(part), self._no_gaps(part)]
         for claims in attempts:
-            if prove(self.specification, claims[0], seconds).certificate is None:
+            if prove(self.specification, claims[0], self.asked.effort.of(units)).certificate is None:
                 continue
             claim = " and ".join(claims)
-            result = prove(self.specification, claim, max(LONG_PROOF, seconds) * len(self.sectors), "gap")
+            long = self.asked.effort.of(max(LONG_PROOF, units) * len(self.sectors))
+            result = prove(self.specification, claim, long, "gap")
             if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
                 return Answer(part, Verdict.IMPOSSIBLE, (), claim, to_json(result.certificate))
         return None
@@ -166,8 +176,8 @@ class _Settling:
             claims.append(f"({start} -> {some_scenario(sector)} or {near})")
         return claims
 
-    def _look(self, part: Part | None, first: str, roads: Sequence[str], seconds: float) -> str:
-        """Look for a gap on the roads in turn, each for so long; why none was found, or empty."""
+    def _look(self, part: Part | None, first: str, roads: Sequence[str], units: float) -> str:
+        """Look for a gap on the roads in turn, with so much work each; why none was found, or empty."""
         reasons = []
         for name in roads:
             numbers = self.trials.numbers_on(load_road(name))
@@ -180,7 +190,7 @@ class _Settling:
                     self.values,
                     name,
                     horizon=self.asked.horizon,
-                    means=Means("smooth", time_limit=seconds, explain=False),
+                    means=Means("smooth", effort=self.asked.effort.of(units), explain=False),
                 )
                 try:
                     outcome = ask(request)
@@ -192,7 +202,7 @@ class _Settling:
                     self.known.append(Found(file, self.trials.first(file), self.classes.of(file)))
                     return ""
                 reasons.append(f"{outcome.reason or 'none'} on {name}")
-        return f"{'; '.join(reasons)}; {seconds:g} s each, {self.asked.horizon} s of driving"
+        return f"{'; '.join(reasons)}; {units:g} units of work each, {self.asked.horizon} s of driving"
 
     def _on(self, part: Part | None, numbers: Sequence[int]) -> list[Part | None]:
         """The counterparts of a part among these scenarios."""

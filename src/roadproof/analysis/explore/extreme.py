@@ -26,7 +26,7 @@ from roadproof.analysis.explore.search import (
 )
 from roadproof.analysis.explore.text import conjoin
 from roadproof.analysis.explore.values import (
-    PROOF_SECONDS,
+    PROOF,
     QUICK_PROOF,
     Finding,
     LookAll,
@@ -173,8 +173,8 @@ class _Seeking:
         """A proof that no drive, of any kind, reaches ``value``."""
         return self.proved((value,), self.text(value))
 
-    def proved(self, at: Point, text: str, seconds: float = PROOF_SECONDS) -> Finding | None:
-        shown = show_impossible(self.specification, text, seconds)
+    def proved(self, at: Point, text: str, units: float = PROOF) -> Finding | None:
+        shown = show_impossible(self.specification, text, self.request.means.effort.of(units))
         if shown is None:
             return None
         reason = f"proved for all time; core: {' and '.join(shown.core)}"

@@ -12,6 +12,7 @@ from math import ceil, floor, gcd
 from typing import Any, Literal, TypeAlias
 
 from roadproof.analysis.placing import as_data
+from roadproof.effort import Late
 from roadproof.errors import UsageError
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.replay import first_overlap
@@ -37,7 +38,7 @@ PLAIN_FIRST: tuple[Stage, ...] = ("plain", "none", "natural")
 
 @dataclass(frozen=True)
 class Task:
-    """A search for a drive for ``request``, in stages that each have its time-out."""
+    """A search for a drive for ``request``, in stages that each have their own work limit."""
 
     request: Request
     stages: tuple[Stage, ...] = NATURAL_FIRST
@@ -57,10 +58,17 @@ class Reply:
 
 
 def look(task: Task) -> Reply:
-    """Go through the stages of a task until there is an answer.
+    """Go through the stages of a task until there is an answer; UNKNOWN where the clock cuts it off.
 
     Raises ``UsageError``, ``MissingSolverError``.
     """
+    try:
+        return _look(task)
+    except Late as late:
+        return Reply(Verdict.UNKNOWN, str(late))
+
+
+def _look(task: Task) -> Reply:
     library = load_library(task.request.specs)
     specification = library.select(task.request.set_name, task.request.options)
     formula = read_claim(specification, task.request.what).formula

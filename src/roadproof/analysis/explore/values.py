@@ -30,8 +30,9 @@ from roadproof.verdict import Verdict
 from roadproof.witness.ask import Request
 from roadproof.witness.impossible import Impossibility, show_impossible
 
-PROOF_SECONDS = 5.0
+PROOF = 5.0  # units of work for a proof that there is no drive
 QUICK_PROOF = 2.0  # before any search; where a formula can hold, that is mostly seen at once
+WIDTH = 2  # searches at once, however many processes there are: each answer spares others
 MOST_SEARCHES = 10  # for one boundary
 MOST_ROUNDS = 3  # of narrowing, where drives found for one boundary move another
 
@@ -44,14 +45,13 @@ class Asked:
     """The values of ``knobs`` for which ``request.what``, a formula, has a drive.
 
     ``steps``: values of each knob; ``precision``: how far boundaries are narrowed, in SI units of the
-    knob (None: a sixtieth of its range); ``width``: searches asked for at once.
+    knob (None: a sixtieth of its range).
     """
 
     request: Request
     knobs: tuple[Knob, ...]
     steps: int
     precision: Fraction | None = None
-    width: int = 1
 
 
 @dataclass(frozen=True)
@@ -129,7 +129,7 @@ def explore(asked: Asked, look_all: LookAll = look_one_by_one, say: Say = lambda
                 settled[point] = finding
         judged = len(exploring.pool.files)
         left = [point for point in points if point not in settled]
-        for finding in exploring.settle(exploring.spread(left)[: asked.width]):
+        for finding in exploring.settle(exploring.spread(left)[:WIDTH]):
             settled[finding.at] = finding
         say(f"{len(settled)} of {len(points)} values, {exploring.searches} searches")
     boundaries: list[Boundary] = []
@@ -170,7 +170,9 @@ class Exploring:
         self.searched: list[Point] = []
         self.claims: dict[Point, Claim] = {}
         what = asked.request.what
-        self.impossibility: Impossibility | None = show_impossible(self.specification, what, QUICK_PROOF)
+        self.impossibility: Impossibility | None = show_impossible(
+            self.specification, what, asked.request.means.effort.of(QUICK_PROOF)
+        )
         formula = read_claim(self.specification, asked.request.what).formula
         self.lasting = duration_parameters(formula)
 
@@ -227,7 +229,7 @@ class Exploring:
 
         left, chosen = list(points), list(self.searched)
         order: list[Point] = []
-        while left and len(order) < self.asked.width:
+        while left and len(order) < WIDTH:
             far = max(left, key=lambda point: min((distance(point, q) for q in chosen), default=Fraction(0)))
             left.remove(far)
             chosen.append(far)

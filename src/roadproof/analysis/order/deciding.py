@@ -17,6 +17,7 @@ from roadproof.analysis.meeting import Node, applied, vehicles_of
 from roadproof.analysis.order.kinds import Kind, text_of
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.effort import Late
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.exact import judge
@@ -56,16 +57,19 @@ class Refuting:
 class Doubt:
     """An implication of which no reading was proved, and those in ``open`` were not refuted either.
 
-    A reading is the two scenarios applied to vehicles and a lane, as text.
+    A reading is the two scenarios applied to vehicles and a lane, as text. ``late``: why the clock cut the
+    search off, where it did.
     """
 
     above: Node
     below: Node
     open: tuple[tuple[str, str], ...]
+    late: str = ""
 
     @property
     def reason(self) -> str:
-        return "neither a proof nor a drive against " + ", ".join(f"{a} -> {b}" for a, b in self.open)
+        readings = "neither a proof nor a drive against " + ", ".join(f"{a} -> {b}" for a, b in self.open)
+        return f"{readings}; {self.late}" if self.late else readings
 
 
 @dataclass(frozen=True)
@@ -153,7 +157,11 @@ class _Deciding:
         for kind in self.family:
             for other in self.kinds:
                 if self.open.get((kind.node, other.node)):
-                    self._decide(kind, other)
+                    try:
+                        self._decide(kind, other)
+                    except Late as late:
+                        still = tuple(sorted(self.open[kind.node, other.node]))
+                        self.doubts.append(Doubt(kind.node, other.node, still, str(late)))
         return Decided(tuple(self.edges), tuple(self.drives), tuple(self.doubts))
 
     # --- drives ----------------------------------------------------------------------------------
@@ -183,7 +191,10 @@ class _Deciding:
         text = text_of(self.asked, kind.node)
         alone = " and ".join([text, *(f"not {x}" for x in self._same_elsewhere(kind))])
         if not self.pool:
-            found = self._ask(text, text)
+            try:
+                found = self._ask(text, text)
+            except Late:  # each implication that is still open then is asked by itself
+                found = None
             if found is None:
                 return
             self.pool.append(found)
@@ -244,7 +255,7 @@ class _Deciding:
             self.values,
             usual_road(self._query(on).formula),
             horizon=self.asked.horizon,
-            means=Means("smooth", time_limit=self.asked.timeout, explain=False),
+            means=Means("smooth", effort=self.asked.effort, explain=False),
         )
         drives = ask(request).drives
         return Shown(text, drives[0]) if drives else None
@@ -259,7 +270,7 @@ class _Deciding:
         one, other = kind.node, target.node
         for text, below in sorted(self.open[one, other]):
             claim = f"{text} -> {below}"
-            result = prove(self.specification, claim, self.asked.proof_seconds)
+            result = prove(self.specification, claim, self.asked.effort.of(self.asked.proof))
             if result.verdict is Verdict.PROVED and result.certificate is not None:
                 self.edges.append(Edge(one, other, claim, to_json(result.certificate)))
                 return
