@@ -9,7 +9,7 @@ from roadproof.cli.prove_settle import Settled
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
-    from roadproof.prove.countermodel import Countermodel
+    from roadproof.evidence.refutation import Countermodel
 
 
 def line(settled: Settled) -> str:
@@ -137,4 +137,4 @@ def counterexample(settled: Settled) -> dict[str, Any] | None:
     found = settled.result.countermodel
     if found is None:
         return None
-    return trace_data([(i.time, i.values, i.atoms) for i in found.instants], found.parameters, found.held)
+    return trace_data(found)

@@ -14,7 +14,7 @@ from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence import state
-from roadproof.evidence.atoms import Atoms, is_rigid, membership
+from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.cases import split
 from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
 from roadproof.logic import formula as f
@@ -195,7 +195,7 @@ class _Derivation:
     definitions: list[str] = field(default_factory=list)
     defined: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
     atoms: set[str] = field(default_factory=set)
-    facts: set[str] = field(default_factory=set)
+    facts: set[tuple[f.Domain, str]] = field(default_factory=set)
     times: list[str] = field(default_factory=list)
     moments: set[str] = field(default_factory=set)
     instanced: set[Site] = field(default_factory=set)
@@ -322,7 +322,7 @@ class _Derivation:
     def _fact(self, domain: f.Domain, element: str) -> str:
         if domain.kind == "lanes":
             return "true"
-        self.facts.add(membership(domain, element))
+        self.facts.add((domain, element))
         return f"|{membership(domain, element)}|"
 
     def _name(self, site: Site) -> str:
@@ -381,7 +381,8 @@ class _Derivation:
             *(f"(declare-const {name} Real)" for name in parameters),
             *(f"(assert ({bounds[name]} {name} 0.0))" for name in parameters if bounds[name]),
             *(f"(declare-const {name} Real)" for name in dict.fromkeys(self.times)),
-            *(f"(declare-const |{name}| Bool)" for name in sorted(self.facts)),
+            *(f"(declare-const |{name}| Bool)" for name in sorted(membership(*x) for x in self.facts)),
+            *(f"(assert {axiom})" for axiom in sorted(true_of_roads(self.facts))),
             *(f"(declare-fun |{name}| (Real) Bool)" for name in sorted(self.atoms)),
         ]
 

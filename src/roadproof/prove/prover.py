@@ -11,7 +11,8 @@ from roadproof.evidence.certificate import Certificate, certify
 from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.prove.countermodel import Countermodel, realise
+from roadproof.evidence.refutation import Countermodel
+from roadproof.prove.countermodel import realise
 from roadproof.prove.search import GaveUp, Proof, Search
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import ask
@@ -67,7 +68,7 @@ def prove(
     defaults = default_values(specification.library)
     bounds = specification.library.bounds
     states = StateChecker(atoms, bounds, defaults)
-    attempt = _Attempt(atoms, bounds, defaults, states, query.lanes, deadline)
+    attempt = _Attempt(query, atoms, bounds, defaults, states, deadline)
 
     def result(
         verdict: Verdict,
@@ -123,11 +124,11 @@ def _premise(formula: Formula) -> Formula | None:
 
 @dataclass(frozen=True)
 class _Attempt:
+    query: Query
     atoms: Atoms
     bounds: Mapping[str, str]
     defaults: Mapping[str, Fraction]
     states: StateChecker
-    lanes: tuple[str, ...]
     deadline: float
 
     def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
@@ -138,7 +139,7 @@ class _Attempt:
             search = self._search(goal, names, wishful)
             found = search.run(until)
             while not isinstance(found, Proof | GaveUp):
-                countermodel = realise(goal, self.atoms, found, self.defaults)
+                countermodel = realise(self.query, self.atoms, found, self.defaults, self.bounds)
                 if countermodel is not None:
                     return countermodel
                 if not search.widen():
@@ -160,12 +161,12 @@ class _Attempt:
         proof = self._search(goal, names, True).run(until)
         if not isinstance(proof, Proof):
             return False
-        met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.lanes)
-        query = derive_query(goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.lanes)
+        met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
+        query = derive_query(goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.query.lanes)
         return ask(query, timeout=VACUITY_SECONDS) == "unsat"
 
     def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:
-        return Search(goal, self.atoms, self.bounds, self.states, self.lanes, names, wishful)
+        return Search(goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful)
 
 
 def _certificate(
