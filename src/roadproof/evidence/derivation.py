@@ -16,7 +16,15 @@ from roadproof.errors import InputError
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.cases import split
-from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
+from roadproof.evidence.times import (
+    ZERO,
+    Moment,
+    at,
+    bound_parameters,
+    compared_times,
+    moment_of,
+    read_moment,
+)
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
@@ -148,7 +156,8 @@ def _start(
     if len({*names.values()}) != len(names):
         raise InputError("two existentials of the certificate have the same name")
     elements = frozenset({*lanes, *road_names(claim), *names.values()})
-    return _Derivation(atoms, instances, names, elements, free_prefix("u", taken), free_prefix("q", taken))
+    prefixes = free_prefix("u", taken), free_prefix("q", taken)
+    return _Derivation(atoms, instances, names, elements, bound_parameters(claim), *prefixes)
 
 
 def free_prefix(prefix: str, taken: Collection[str]) -> str:
@@ -184,12 +193,16 @@ def derive_lemma_queries(
 
 @dataclass
 class _Derivation:
-    """``instanced`` and ``named`` are the universals and the existentials met so far."""
+    """``instanced`` and ``named`` are the universals and the existentials met so far.
+
+    ``timing`` are the parameters in interval bounds: comparisons of these are read as what they are.
+    """
 
     known: Atoms
     instances: Mapping[Site, Sequence[str]]
     names: Mapping[Site, str]
     elements: frozenset[str]
+    timing: frozenset[str]
     unnamed: str
     defining: str
     definitions: list[str] = field(default_factory=list)
@@ -222,8 +235,15 @@ class _Derivation:
                 assert_never(formula)
 
     def literal(self, name: str, positive: bool, moment: Moment) -> str:
+        meaning = self.known.meaning(name)
+        times = compared_times(meaning, self.timing)
+        if times is not None:
+            left, op, right = times
+            self.moments |= {part for side in (left, right) for part, _ in side.parts}
+            compared = f"({op} {left.smt()} {right.smt()})"
+            return compared if positive else f"(not {compared})"
         self.atoms.add(name)
-        if is_rigid(self.known.meaning(name)):
+        if is_rigid(meaning):
             moment = ZERO
         self.moments |= {part for part, _ in moment.parts}
         applied = f"(|{name}| {moment.smt()})"

@@ -84,8 +84,8 @@ def when_true(formula: Formula, trace: Countermodel) -> TruthSet:
     Raises ``InputError`` and ``UsageError`` where the trace lacks a lane, a value or a signal of it.
     """
     first = trace.instants[0].values
-    bound = bind(formula, trace.road or NOWHERE, {}, trace.parameters)
-    bare = without_empty_windows(map_terms(without_names(bound), lambda term: _with_variables(term, first)))
+    numbered = map_terms(without_names(formula), lambda term: _with_variables(term, first))
+    bare = without_empty_windows(bind(numbered, trace.road or NOWHERE, {}, trace.parameters))
     times = [instant.time for instant in trace.instants]
     given: dict[Formula, TruthSet] = {}
     for part in f.subformulas(bare):

@@ -4,12 +4,14 @@ They are what quantifiers over time are instantiated with, so they must print an
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import InputError
+from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
 
 _PART = re.compile(r"([+-]?)\s*(?:(\d+(?:/\d+)?)\s*(?:\*\s*)?)?([A-Za-z_]\w*)?")
@@ -109,6 +111,34 @@ def moment_of(term: Term) -> Moment:
     if constant is not None:
         return Moment((), constant)
     raise InputError("an interval bound of a claim must be a sum of parameters and numbers")
+
+
+def compared_times(
+    formula: Formula, parameters: Collection[str]
+) -> tuple[Moment, f.Comparison, Moment] | None:
+    """What ``formula`` compares, where it is sums of numbers and some of ``parameters``; else None."""
+    if not isinstance(formula, f.Compare):
+        return None
+    leaves = [leaf for side in (formula.left, formula.right) for leaf in t.leaves(side)]
+    names = [leaf.name for leaf in leaves if isinstance(leaf, t.Parameter)]
+    if not names or not set(names) <= set(parameters):
+        return None
+    try:
+        return moment_of(formula.left), formula.op, moment_of(formula.right)
+    except InputError:
+        return None
+
+
+def bound_parameters(formula: Formula) -> frozenset[str]:
+    """The parameters in the interval bounds of ``formula``."""
+    bounds = [
+        bound
+        for part in f.subformulas(formula)
+        if isinstance(part, f.Until | f.Eventually | f.Always)
+        for bound in (part.interval.low, part.interval.high)
+        if bound is not None
+    ]
+    return frozenset(x.name for bound in bounds for x in t.leaves(bound) if isinstance(x, t.Parameter))
 
 
 def read_moment(text: str) -> Moment:

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.derivation import Lemma, Site, prefix_form
-from roadproof.evidence.times import ZERO, Moment, at, moment_of
+from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
@@ -72,7 +72,7 @@ class Grounding:
 
     ``switches`` turns instance and lemma clauses on: assumption name → what it stands for.
     ``prefixes`` begin the names of times and of lanes or lanelets; no name of the claim begins so.
-    ``origins`` tells under which switch a name was met first; '' is in the claim itself.
+    ``timing`` are the parameters in interval bounds. ``origins`` tells under which switch a name was met first; '' is in the claim itself.
     ``wishes`` are assumptions that a named time falls on a moment known before it: models in which
     they hold have few instants, so that instantiation comes to an end.
     """
@@ -80,6 +80,7 @@ class Grounding:
     atoms: Atoms
     bounds: dict[str, str]
     prefixes: tuple[str, str] = ("t", "M")
+    timing: frozenset[str] = frozenset()
     wishful: bool = False
     names: dict[Site, str] = field(default_factory=dict)
     session: Session = field(default_factory=Session)
@@ -120,6 +121,10 @@ class Grounding:
                 return self._obligation(formula, positive, moment)
 
     def atom(self, name: str, moment: Moment) -> str:
+        times = compared_times(self.atoms.meaning(name), self.timing)
+        if times is not None:
+            left, op, right = times
+            return f"({op} {self.declare_moment(left)} {self.declare_moment(right)})"
         when = ZERO if is_rigid(self.atoms.meaning(name)) else moment
         if (name, when) not in self.applied:
             self._declare(f"|{name}|", f"(declare-fun |{name}| (Real) Bool)")

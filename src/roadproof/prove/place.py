@@ -1,6 +1,6 @@
 """Where the vehicles of a model stand at each instant: as it says, and apart where it says nothing."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from roadproof.evidence import state
@@ -10,7 +10,7 @@ from roadproof.judge import TruthSet
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of, vehicles_of, without_names
+from roadproof.logic.rewrite import terms_of, without_names
 from roadproof.prove.search import Model
 
 GAP = Fraction(10)
@@ -26,9 +26,9 @@ def place(
     far from each other unless a comparison would change by that. ``fixed`` gives a value to each
     parameter, variable and size.
     """
-    vehicles = vehicles_of(formula)
+    vehicles = sorted({x.vehicle for x in f.subformulas(formula) if isinstance(x, f.Occupies)})
     states = [_standing(formula, vehicles, found, fixed) for found in model.signals.values()]
-    if len(states) == 1 or not any(isinstance(x, f.Occupies) for x in f.subformulas(formula)):
+    if len(states) == 1 or not vehicles:
         return states
     compared = _comparisons(atoms, model)
     before = _truths(compared, model, states, fixed)
@@ -47,11 +47,13 @@ def _standing(
 ) -> Values:
     """The values of one instant: those that are known, vehicles in places of their own, and 0."""
     known = {name.strip("|"): Fraction(x) for name, x in found.items() if not isinstance(x, bool)}
-    values = {name.strip("|"): x for name, x in fixed.items() if name.startswith("|")}
+    values: Values = {}
     for leaf in (leaf for side in terms_of(formula) for leaf in t.leaves(side)):
         match leaf:
             case t.Variable(name, _):
                 values[name] = fixed[name]
+            case t.Size(size, vehicle):
+                values[f"{size}({vehicle})"] = fixed[state.symbol(leaf)]
             case t.Signal(name, vehicle):
                 values[f"{name}({vehicle})"] = known.get(f"{name}({vehicle})", Fraction(0))
             case _:
@@ -60,10 +62,11 @@ def _standing(
     top = max((known[f"d({v})"] for v in vehicles if f"d({v})" in known), default=Fraction(0))
     for vehicle in sorted(vehicles, key=lambda v: (_pattern(found, v), v)):
         s, d = f"s({vehicle})", f"d({vehicle})"
-        width = values[f"width({vehicle})"]
+        length, width = (fixed[state.symbol(t.Size(size, vehicle))] for size in t.SIZE_DIMENSIONS)
+        values |= {f"length({vehicle})": length, f"width({vehicle})": width}
         values[s], values[d] = known.get(s, Fraction(0)), known.get(d, width)
         if s not in known:
-            reach += GAP + values[f"length({vehicle})"]
+            reach += GAP + length
             values[s] = reach
         elif d not in known:
             top += GAP / 2 + width
@@ -73,7 +76,9 @@ def _standing(
 
 def _pattern(found: Mapping[str, Fraction | bool], vehicle: str) -> str:
     """What is said of a vehicle's lanes; vehicles of which the same is said are to stand together."""
-    said = sorted((name.replace(f"({vehicle},", "(,"), x) for name, x in found.items() if f"({vehicle}," in name)
+    said = sorted(
+        (name.replace(f"({vehicle},", "(,"), x) for name, x in found.items() if f"({vehicle}," in name
+    )
     return str([(name, x) for name, x in said if isinstance(x, bool)])
 
 

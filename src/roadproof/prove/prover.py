@@ -9,9 +9,9 @@ from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify
 from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names
+from roadproof.evidence.refutation import Countermodel
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.evidence.refutation import Countermodel
 from roadproof.prove.countermodel import realise
 from roadproof.prove.search import GaveUp, Proof, Search
 from roadproof.prove.states import StateChecker
@@ -162,7 +162,9 @@ class _Attempt:
         if not isinstance(proof, Proof):
             return False
         met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
-        query = derive_query(goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.query.lanes)
+        query = derive_query(
+            goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.query.lanes
+        )
         return ask(query, timeout=VACUITY_SECONDS) == "unsat"
 
     def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:

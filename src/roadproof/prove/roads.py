@@ -79,13 +79,12 @@ class Route:
         """From the first on; strips of the same gap and zone as one step."""
         backwards, route = [self.step], self.before
         while route is not None:
-            last = backwards[-1]
-            if (route.step.right, route.step.left, route.step.zone) == (last.right, last.left, last.zone) and (
-                not route.step.name and not last.name
-            ):
-                backwards[-1] = replace(last, first=route.step.first)
+            step, after = route.step, backwards[-1]
+            alike = (step.right, step.left, step.zone) == (after.right, after.left, after.zone)
+            if alike and not step.name and not after.name:
+                backwards[-1] = replace(after, first=step.first)
             else:
-                backwards.append(route.step)
+                backwards.append(step)
             route = route.before
         return backwards[::-1]
 

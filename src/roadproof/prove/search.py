@@ -14,7 +14,7 @@ from fractions import Fraction
 
 from roadproof.evidence.atoms import Atoms, free_lanelets, membership
 from roadproof.evidence.derivation import Lemma, Site, free_prefix
-from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
+from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import road_names
@@ -77,7 +77,7 @@ class Search:
         wishful: bool,
     ) -> None:
         prefixes = free_prefix("t", bounds), free_prefix("M", {*lanes, *road_names(claim)})
-        self.grounding = Grounding(atoms, dict(bounds), prefixes, wishful, names)
+        self.grounding = Grounding(atoms, dict(bounds), prefixes, bound_parameters(claim), wishful, names)
         self.grounding.elements |= dict.fromkeys(lanes, f.Domain("lanes"))
         self.grounding.elements |= dict.fromkeys(free_lanelets(claim), f.Domain("lanelets"))
         self.states = states

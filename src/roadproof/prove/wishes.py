@@ -2,15 +2,15 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import cast
 
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import vehicles_of, without_names
+from roadproof.logic.rewrite import without_names
 from roadproof.prove.roads import ZONES, Box, Layout, Place
 from roadproof.prove.search import Model
+from roadproof.world.road import Zone
 
 
 def layout_of(
@@ -22,7 +22,7 @@ def layout_of(
     """
     if not any(isinstance(x, f.Occupies | f.Some | f.Every) for x in f.subformulas(formula)):
         return None
-    vehicles = vehicles_of(formula)
+    vehicles = sorted({x.vehicle for x in f.subformulas(formula) if isinstance(x, f.Occupies)})
     elements = _Elements(model)
     boxes = [
         Box(x[f"s({v})"] - x[f"length({v})"], x[f"s({v})"], x[f"d({v})"] - x[f"width({v})"], x[f"d({v})"])
@@ -93,7 +93,7 @@ class _Elements:
         of = (lane for lane in self.lanes if self.facts.get((f.Domain("lanelets", lane), name)))
         return name if name in self.lanes else next(of, name)
 
-    def zones_of(self, name: str) -> tuple[str, ...]:
+    def zones_of(self, name: str) -> tuple[Zone, ...]:
         """The zones in which the lanelet can be."""
         said = {zone: self.facts.get((f.Domain("zone", zone), name)) for zone in ZONES}
         certain = tuple(zone for zone, true in said.items() if true)
