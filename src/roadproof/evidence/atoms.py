@@ -74,7 +74,7 @@ def is_atom(formula: Formula) -> bool:
     match formula:
         case f.Compare() | f.Occupies():
             return True
-        case f.Some(_, domain, _) | f.Every(_, domain, _):
+        case f.Some() | f.Every():
             return not _is_open(formula) and f.is_state(formula)
         case Named(_, _, body):
             return (

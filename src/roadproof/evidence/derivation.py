@@ -22,6 +22,7 @@ from roadproof.evidence.times import (
     at,
     bound_parameters,
     compared_times,
+    constant,
     moment_of,
     read_moment,
 )
@@ -398,8 +399,8 @@ class _Derivation:
         if strangers:
             raise InputError(f"the moment '{min(strangers)}' is no time of the certificate and no parameter")
         return [
-            *(f"(declare-const {name} Real)" for name in parameters),
-            *(f"(assert ({bounds[name]} {name} 0.0))" for name in parameters if bounds[name]),
+            *(f"(declare-const {constant(name)} Real)" for name in parameters),
+            *(f"(assert ({bounds[name]} {constant(name)} 0.0))" for name in parameters if bounds[name]),
             *(f"(declare-const {name} Real)" for name in dict.fromkeys(self.times)),
             *(f"(declare-const |{name}| Bool)" for name in sorted(membership(*x) for x in self.facts)),
             *(f"(assert {axiom})" for axiom in sorted(true_of_roads(self.facts))),

@@ -14,6 +14,11 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
 
+# Words of SMT-LIB and its theories that are names in the language of claims.
+_RESERVED = re.compile(
+    "_|as|par|forall|exists|let|match|distinct|ite|xor|implies|abs|div|mod|to_int|to_real|is_int|select|store"
+    "|BINARY|DECIMAL|HEXADECIMAL|NUMERAL|STRING"
+)
 _PART = re.compile(r"([+-]?)\s*(?:(\d+(?:/\d+)?)\s*(?:\*\s*)?)?([A-Za-z_]\w*)?")
 
 
@@ -46,13 +51,19 @@ class Moment:
 
     def smt(self) -> str:
         """As an SMT-LIB term of sort Real."""
-        summands = [name if k == 1 else f"(* {rational(k)} {name})" for name, k in self.parts]
+        names = ((constant(name), k) for name, k in self.parts)
+        summands = [name if k == 1 else f"(* {rational(k)} {name})" for name, k in names]
         if self.constant or not summands:
             summands.append(rational(self.constant))
         return summands[0] if len(summands) == 1 else f"(+ {' '.join(summands)})"
 
 
 ZERO = Moment()
+
+
+def constant(name: str) -> str:
+    """The SMT-LIB constant for a time, a parameter or a variable: no word that a solver reads otherwise."""
+    return f"{name}." if _RESERVED.fullmatch(name) else name
 
 
 def at(name: str) -> Moment:

@@ -73,18 +73,21 @@ def _shown(found: Countermodel, atoms: Atoms) -> Countermodel:
 
 
 def _fixed_values(query: Query, model: Model, defaults: Mapping[str, Fraction]) -> dict[str, Fraction] | None:
-    """One value for every parameter, variable and size, by its symbol; None where instants disagree."""
+    """One value for every parameter and variable by its name, and for every size by its symbol.
+
+    None where instants disagree.
+    """
     fixed: dict[str, Fraction] = {}
     for found in [model.values, *model.signals.values()]:
         for name, value in found.items():
             if isinstance(value, bool) or (name.startswith("|") and not _is_size(name)):
                 continue
-            if fixed.setdefault(name, value) != value:
+            if fixed.setdefault(name.removesuffix("."), value) != value:
                 return None
     rest: dict[str, Fraction] = dict(defaults)
     for leaf in (leaf for side in terms_of(query.formula) for leaf in t.leaves(side)):
         if isinstance(leaf, t.Variable):
-            rest[state.symbol(leaf)] = Fraction(0)
+            rest[leaf.name] = Fraction(0)
     for vehicle in vehicles_of(query.formula):
         rest |= {state.symbol(t.Size(name, vehicle)): value for name, value in TYPICAL_SIZE.items()}
     return {**rest, **fixed}

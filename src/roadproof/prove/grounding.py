@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.derivation import Lemma, Site, prefix_form
-from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
+from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
@@ -72,7 +72,8 @@ class Grounding:
 
     ``switches`` turns instance and lemma clauses on: assumption name → what it stands for.
     ``prefixes`` begin the names of times and of lanes or lanelets; no name of the claim begins so.
-    ``timing`` are the parameters in interval bounds. ``origins`` tells under which switch a name was met first; '' is in the claim itself.
+    ``timing`` are the parameters in interval bounds. ``origins`` tells under which switch a name was
+    met first; '' is in the claim itself.
     ``wishes`` are assumptions that a named time falls on a moment known before it: models in which
     they hold have few instants, so that instantiation comes to an end.
     """
@@ -136,8 +137,8 @@ class Grounding:
         for name, _ in moment.parts:
             if name in self.bounds:
                 bound = self.bounds[name]
-                known = f"(assert ({bound} {name} 0.0))" if bound else ""
-                self._declare(name, f"(declare-const {name} Real){known}")
+                known = f"(assert ({bound} {constant(name)} 0.0))" if bound else ""
+                self._declare(name, f"(declare-const {constant(name)} Real){known}")
         return moment.smt()
 
     def _declare(self, name: str, command: str) -> None:

@@ -89,7 +89,10 @@ def prove(
         if isinstance(found, GaveUp):
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
-    certificate = _certificate(specification, query, atomised, atoms, proofs, names, label, scenario)
+    try:
+        certificate = _certificate(specification, query, atomised, atoms, proofs, names, label, scenario)
+    except InputError as error:
+        return result(Verdict.UNKNOWN, f"a proof was found, but no certificate can be made of it: {error}")
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
     for title, script in certificate.queries:
         if script in settled:
@@ -181,7 +184,7 @@ def _certificate(
     label: str,
     scenario: int | None,
 ) -> Certificate:
-    """The proofs of all parts as one certificate."""
+    """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit the claim."""
     instances: dict[Site, tuple[str, ...]] = {}
     lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
     for proof in proofs:
@@ -190,9 +193,6 @@ def _certificate(
         for lemma in proof.lemmas:
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
-    try:
-        met = met_names(atomised, atoms, instances, names, specification.library.bounds, query.lanes)
-        made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-        return certify(specification, query.text, instances, met, made, label, scenario)
-    except InputError as error:
-        raise AssertionError(f"the finder's instances do not fit the claim: {error}") from error
+    met = met_names(atomised, atoms, instances, names, specification.library.bounds, query.lanes)
+    made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
+    return certify(specification, query.text, instances, met, made, label, scenario)

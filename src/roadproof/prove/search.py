@@ -14,7 +14,7 @@ from fractions import Fraction
 
 from roadproof.evidence.atoms import Atoms, free_lanelets, membership
 from roadproof.evidence.derivation import Lemma, Site, free_prefix
-from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, moment_of, read_moment
+from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import road_names
@@ -148,7 +148,7 @@ class Search:
         grounding = self.grounding
         names = [name for name in grounding.names.values() if at(name) in grounding.moments]
         names += grounding.known_parameters()
-        read = grounding.session.values(names)
+        read = grounding.session.values([constant(name) for name in names])
         return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
 
     def _pool(self, values: Mapping[str, Fraction]) -> list[Moment]:
