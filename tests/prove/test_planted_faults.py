@@ -65,7 +65,7 @@ def no_guard(monkeypatch):
 
     def instantiate(self, universal, when):
         universal.done.append(when)
-        self._moment(when)
+        self.declare_moment(when)
         self._add_clause((universal.site, str(when)), f"(=> {universal.switch} {universal.body(when)})")
 
     monkeypatch.setattr(Grounding, "instantiate", instantiate)

@@ -226,9 +226,7 @@ class _Examining:
         )
         within += ", for the same scenario on another road" if vain else ""
         if result.countermodel is not None:
-            model = result.countermodel
-            instants = [(i.time, i.values, i.atoms) for i in model.instants]
-            trace = trace_data(instants, model.parameters, model.held)
+            trace = trace_data(result.countermodel)
             return Finding(self.node, change, Verdict.REFUTED, claim, trace=trace, reason=within)
         reason = f"{within}, and no proof with {self.asked.proof:g}: {result.reason}"
         return Finding(self.node, change, Verdict.UNKNOWN, claim, reason=reason)

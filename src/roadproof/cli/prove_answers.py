@@ -9,7 +9,8 @@ from roadproof.cli.prove_settle import Settled
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
-    from roadproof.prove.countermodel import Countermodel
+    from roadproof.evidence.refutation import Countermodel
+    from roadproof.world.road import Road
 
 
 def line(settled: Settled) -> str:
@@ -95,6 +96,9 @@ def _show_countermodel(countermodel: "Countermodel") -> list[str]:
     if countermodel.parameters:
         shown = ", ".join(f"{n}={_number(v)}" for n, v in sorted(countermodel.parameters.items()))
         lines.append(f"    parameters: {shown}")
+    if countermodel.road is not None:
+        lines.append("    on a road made for it:")
+        lines += [f"      {_lane(lane, countermodel.road)}" for lane in countermodel.road.lanes]
     for instant in countermodel.instants:
         true = ", ".join(name for name, holds in instant.atoms.items() if holds) or "none of the predicates"
         lines.append(f"    at {_number(instant.time)} s: {true}")
@@ -102,6 +106,20 @@ def _show_countermodel(countermodel: "Countermodel") -> list[str]:
         if values:
             lines.append(f"      {', '.join(f'{n}={_number(v)}' for n, v in sorted(values.items()))}")
     return lines
+
+
+def _lane(lane: str, road: "Road") -> str:
+    """The rectangles of a lane, in metres along and across, and the lanes beside it."""
+    shown = ", ".join(
+        f"{x.zone} [{_end(x.s[0])}, {_end(x.s[1])}] x [{_number(x.d[0])}, {_number(x.d[1])}]"
+        for x in road.lanelets_of(lane)
+    )
+    beside = road.beside(lane)
+    return f"{lane}: {shown}" + (f"; beside {', '.join(beside)}" if beside else "")
+
+
+def _end(value: Fraction | None) -> str:
+    return "" if value is None else _number(value)
 
 
 def _number(value: Fraction) -> str:
@@ -138,4 +156,4 @@ def counterexample(settled: Settled) -> dict[str, Any] | None:
     found = settled.result.countermodel
     if found is None:
         return None
-    return trace_data([(i.time, i.values, i.atoms) for i in found.instants], found.parameters, found.held)
+    return trace_data(found)

@@ -6,8 +6,9 @@ are quantifiers over lanes. Two atoms are the same when their bodies are built a
 and their bound variables are called.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
+from itertools import combinations
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -16,6 +17,8 @@ from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import rename, road_names, terms_of, without_names
 from roadproof.logic.show import text
 from roadproof.logic.terms import Signal, leaves
+
+ZONES = ("main", "merge", "depart")
 
 
 @dataclass
@@ -71,20 +74,25 @@ def is_atom(formula: Formula) -> bool:
     match formula:
         case f.Compare() | f.Occupies():
             return True
-        case f.Some(_, domain, _) | f.Every(_, domain, _):
-            return domain.kind in ("lanelets", "zone") and f.is_state(formula)
+        case f.Some() | f.Every():
+            return not _is_open(formula) and f.is_state(formula)
         case Named(_, _, body):
             return (
                 f.is_state(body)
-                and not any(_ranges_over_lanes(part) for part in f.subformulas(body))
+                and not any(_is_open(part) for part in f.subformulas(body))
                 and any(not isinstance(part, Named | f.Truth) for part in _combined(body))
             )
         case _:
             return False
 
 
-def _ranges_over_lanes(formula: Formula) -> bool:
-    return isinstance(formula, f.Some | f.Every) and formula.domain.kind in ("lanes", "adjacent")
+def _is_open(formula: Formula) -> bool:
+    """Whether ``formula`` quantifies over lanes, or over lanelets of which it says nothing."""
+    match formula:
+        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+            return domain.kind in ("lanes", "adjacent") or variable not in road_names(body)
+        case _:
+            return False
 
 
 def is_rigid(formula: Formula) -> bool:
@@ -121,3 +129,52 @@ def up_to_variables(formula: Formula) -> Formula:
 def membership(domain: f.Domain, element: str) -> str:
     """A name for the fact that ``element`` belongs to ``domain``, which time does not change."""
     return f"{element} in {domain.kind}({domain.of})"
+
+
+def true_of_roads(memberships: Collection[tuple[f.Domain, str]]) -> list[str]:
+    """What holds of ``memberships`` on every road, as SMT-LIB: their names are ``membership(…)``.
+
+    A name stands for a lanelet and for the lane that it belongs to: that of a lane stands for one of
+    its lanelets, too. Every lanelet has one zone; lanes are beside each other, and none beside itself.
+    """
+    found: list[str] = []
+    known = dict.fromkeys(memberships)
+    zones: dict[str, list[str]] = {}
+    for domain, element in known:
+        fact = f"|{membership(domain, element)}|"
+        converse = f.Domain("adjacent", element), domain.of
+        match domain.kind:
+            case "lanelets" if domain.of == element:
+                found.append(fact)
+            case "adjacent" if domain.of == element:
+                found.append(f"(not {fact})")
+            case "adjacent" if domain.of < element and converse in known:
+                found.append(f"(= {fact} |{membership(*converse)}|)")
+            case "zone":
+                zones.setdefault(element, []).append(fact)
+            case _:
+                pass
+    for facts in zones.values():
+        found += [f"(not (and {a} {b}))" for a, b in combinations(sorted(facts), 2)]
+        if len(facts) == len(ZONES):
+            found.append(f"(or {' '.join(sorted(facts))})")
+    return found
+
+
+def free_lanelets(formula: Formula) -> tuple[str, ...]:
+    """Names of lanelets that ``formula`` speaks of and no quantifier in it binds, sorted."""
+
+    def visit(current: Formula) -> frozenset[str]:
+        if current not in done:
+            inside = frozenset[str]().union(*map(visit, f.children(current)))
+            match current:
+                case f.Occupies(_, lanelet):
+                    done[current] = frozenset({lanelet})
+                case f.Some(variable, _, _) | f.Every(variable, _, _):
+                    done[current] = inside - {variable}
+                case _:
+                    done[current] = inside
+        return done[current]
+
+    done: dict[Formula, frozenset[str]] = {}
+    return tuple(sorted(visit(formula)))

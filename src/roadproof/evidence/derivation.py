@@ -14,9 +14,18 @@ from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence import state
-from roadproof.evidence.atoms import Atoms, is_rigid, membership
+from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.cases import split
-from roadproof.evidence.times import ZERO, Moment, at, moment_of, read_moment
+from roadproof.evidence.times import (
+    ZERO,
+    Moment,
+    at,
+    bound_parameters,
+    compared_times,
+    constant,
+    moment_of,
+    read_moment,
+)
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
@@ -148,7 +157,8 @@ def _start(
     if len({*names.values()}) != len(names):
         raise InputError("two existentials of the certificate have the same name")
     elements = frozenset({*lanes, *road_names(claim), *names.values()})
-    return _Derivation(atoms, instances, names, elements, free_prefix("u", taken), free_prefix("q", taken))
+    prefixes = free_prefix("u", taken), free_prefix("q", taken)
+    return _Derivation(atoms, instances, names, elements, bound_parameters(claim), *prefixes)
 
 
 def free_prefix(prefix: str, taken: Collection[str]) -> str:
@@ -184,18 +194,22 @@ def derive_lemma_queries(
 
 @dataclass
 class _Derivation:
-    """``instanced`` and ``named`` are the universals and the existentials met so far."""
+    """``instanced`` and ``named`` are the universals and the existentials met so far.
+
+    ``timing`` are the parameters in interval bounds: comparisons of these are read as what they are.
+    """
 
     known: Atoms
     instances: Mapping[Site, Sequence[str]]
     names: Mapping[Site, str]
     elements: frozenset[str]
+    timing: frozenset[str]
     unnamed: str
     defining: str
     definitions: list[str] = field(default_factory=list)
     defined: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
     atoms: set[str] = field(default_factory=set)
-    facts: set[str] = field(default_factory=set)
+    facts: set[tuple[f.Domain, str]] = field(default_factory=set)
     times: list[str] = field(default_factory=list)
     moments: set[str] = field(default_factory=set)
     instanced: set[Site] = field(default_factory=set)
@@ -222,8 +236,15 @@ class _Derivation:
                 assert_never(formula)
 
     def literal(self, name: str, positive: bool, moment: Moment) -> str:
+        meaning = self.known.meaning(name)
+        times = compared_times(meaning, self.timing)
+        if times is not None:
+            left, op, right = times
+            self.moments |= {part for side in (left, right) for part, _ in side.parts}
+            compared = f"({op} {left.smt()} {right.smt()})"
+            return compared if positive else f"(not {compared})"
         self.atoms.add(name)
-        if is_rigid(self.known.meaning(name)):
+        if is_rigid(meaning):
             moment = ZERO
         self.moments |= {part for part, _ in moment.parts}
         applied = f"(|{name}| {moment.smt()})"
@@ -322,7 +343,7 @@ class _Derivation:
     def _fact(self, domain: f.Domain, element: str) -> str:
         if domain.kind == "lanes":
             return "true"
-        self.facts.add(membership(domain, element))
+        self.facts.add((domain, element))
         return f"|{membership(domain, element)}|"
 
     def _name(self, site: Site) -> str:
@@ -378,10 +399,11 @@ class _Derivation:
         if strangers:
             raise InputError(f"the moment '{min(strangers)}' is no time of the certificate and no parameter")
         return [
-            *(f"(declare-const {name} Real)" for name in parameters),
-            *(f"(assert ({bounds[name]} {name} 0.0))" for name in parameters if bounds[name]),
+            *(f"(declare-const {constant(name)} Real)" for name in parameters),
+            *(f"(assert ({bounds[name]} {constant(name)} 0.0))" for name in parameters if bounds[name]),
             *(f"(declare-const {name} Real)" for name in dict.fromkeys(self.times)),
-            *(f"(declare-const |{name}| Bool)" for name in sorted(self.facts)),
+            *(f"(declare-const |{name}| Bool)" for name in sorted(membership(*x) for x in self.facts)),
+            *(f"(assert {axiom})" for axiom in sorted(true_of_roads(self.facts))),
             *(f"(declare-fun |{name}| (Real) Bool)" for name in sorted(self.atoms)),
         ]
 

@@ -1,27 +1,166 @@
-"""Refutations as plain data: a judged trace over points in time, or a judged drive."""
+"""Refutations as plain data: a trace over points in time on a road of rectangles, or a drive.
+
+What a trace refutes is judged here, from its numbers and its road alone: each comparison at each
+instant, lanes and lanelets as for drives, and time by the exact judge.
+"""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, Literal
+
+from roadproof.errors import RoadproofError
+from roadproof.evidence.witness import road_data
+from roadproof.judge import TruthSet, judge
+from roadproof.judge.signals import AbstractSignals
+from roadproof.judge.truth import from_switches
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
+from roadproof.spec.bind import bind
+from roadproof.world.models import check_lanelets, shared_boundaries
+from roadproof.world.road import Road
+
+Held = Literal["before", "after"]
+NOWHERE = Road("no road", (), frozenset())
 
 
-def trace_data(
-    instants: Sequence[tuple[Fraction, Mapping[str, Fraction], Mapping[str, bool]]],
-    parameters: Mapping[str, Fraction],
-    held: str,
-) -> dict[str, Any]:
-    """A countermodel: what holds at each instant; ``held`` tells which state lies between instants."""
+@dataclass(frozen=True)
+class Instant:
+    """A state: signals, sizes and variables by name, ``s(SV)``, ``length(SV)``, ``v``, in SI units.
+
+    ``atoms`` tells a reader which predicates are true; nothing rests on it.
+    """
+
+    time: Fraction
+    values: Mapping[str, Fraction]
+    atoms: Mapping[str, bool]
+
+
+@dataclass(frozen=True)
+class Countermodel:
+    """A trace on which a claim is false at time 0.
+
+    ``held`` says which of two states fills the time between their instants. ``road`` is None where
+    the claim speaks of none; its lanes and lanelets have the names that are free in the claim.
+    """
+
+    instants: tuple[Instant, ...]
+    parameters: Mapping[str, Fraction]
+    held: Held
+    road: Road | None = None
+
+
+def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, str]) -> str | None:
+    """Why ``countermodel`` does not refute ``claim``, judged; None where it does.
+
+    ``bounds`` gives the declared bound of each parameter against 0 (``>``, ``>=`` or '').
+    """
+    for name, value in countermodel.parameters.items():
+        if (bounds.get(name) and value < 0) or (bounds.get(name) == ">" and value == 0):
+            return f"{name}={value}, but it is declared {name} {bounds[name]} 0"
+    times = [instant.time for instant in countermodel.instants]
+    if not times or times[0] != 0 or times != sorted(set(times)):
+        return f"its instants are {', '.join(map(str, times))}, but must ascend from 0"
+    sizes = [_sizes(instant) for instant in countermodel.instants]
+    if any(other != sizes[0] for other in sizes) or any(value <= 0 for value in sizes[0].values()):
+        return "a length or width changes or is not greater than 0"
+    try:
+        if countermodel.road is not None:
+            check_lanelets(countermodel.road.lanelets, "its road")
+            if countermodel.road.adjacent != shared_boundaries(countermodel.road.lanelets):
+                return "its road's lanes are not beside those with which they share a boundary"
+        if when_true(claim, countermodel).at(Fraction(0)):
+            return "the claim is true on it"
+    except RoadproofError as error:
+        return str(error)
+    return None
+
+
+def when_true(formula: Formula, trace: Countermodel) -> TruthSet:
+    """When ``formula`` is true on ``trace``.
+
+    Raises ``InputError`` and ``UsageError`` where the trace lacks a lane, a value or a signal of it.
+    """
+    first = trace.instants[0].values
+    numbered = map_terms(without_names(formula), lambda term: _with_variables(term, first))
+    bare = without_empty_windows(bind(numbered, trace.road or NOWHERE, {}, trace.parameters))
+    times = [instant.time for instant in trace.instants]
+    given: dict[Formula, TruthSet] = {}
+    for part in f.subformulas(bare):
+        if isinstance(part, f.Compare):
+            truths = [_holds(part, instant) for instant in trace.instants]
+            given[part] = _spread(times, truths, trace.held)
+    return judge(bare, None, given).truth(bare)
+
+
+def without_empty_windows(formula: Formula) -> Formula:
+    """``formula`` with operators whose window ends before it begins replaced by what they then are."""
+
+    def visit(current: Formula) -> Formula:
+        if isinstance(current, f.Until | f.Eventually | f.Always):
+            low, high = bounds_of(current.interval)
+            if high is not None and high < low:
+                return f.Truth(isinstance(current, f.Always))
+        return current
+
+    return f.transform(formula, visit)
+
+
+def _with_variables(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
+    def leaf(old: t.Leaf) -> t.Term:
+        if isinstance(old, t.Variable) and old.name in values:
+            return t.Number(values[old.name], old.dimension)
+        return old
+
+    return t.replace_leaves(term, leaf)
+
+
+def _holds(part: f.Compare, instant: Instant) -> bool:
+    """Whether a comparison holds in a state, evaluated exactly."""
+    found = {leaf for side in terms_of(part) for leaf in t.leaves(side)}
+    named = {leaf: f"{leaf.name}({leaf.vehicle})" for leaf in found if isinstance(leaf, t.Signal | t.Size)}
+    signals = {
+        leaf: ((Fraction(0), instant.values[name]),)
+        for leaf, name in named.items()
+        if isinstance(leaf, t.Signal) and name in instant.values
+    }
+    sizes = {
+        leaf: instant.values[name]
+        for leaf, name in named.items()
+        if isinstance(leaf, t.Size) and name in instant.values
+    }
+    return judge(part, AbstractSignals(signals, sizes)).holds
+
+
+def _spread(times: Sequence[Fraction], values: Sequence[bool], held: Held) -> TruthSet:
+    """Truth at instants, carried over to what lies between them."""
+    after = values if held == "before" else [*values[1:], values[-1]]
+    return from_switches(zip(times, values, after, strict=True))
+
+
+def _sizes(instant: Instant) -> dict[str, Fraction]:
+    return {n: value for n, value in instant.values.items() if n.startswith(("length(", "width("))}
+
+
+# --- plain data ----------------------------------------------------------------------------------
+
+
+def trace_data(countermodel: Countermodel) -> dict[str, Any]:
+    """A countermodel: its road, and what holds at each instant."""
     return {
         "kind": "trace",
-        "between": f"the state of the instant {held}",
-        "parameters": {name: str(value) for name, value in sorted(parameters.items())},
+        "between": f"the state of the instant {countermodel.held}",
+        "parameters": {name: str(value) for name, value in sorted(countermodel.parameters.items())},
+        "road": None if countermodel.road is None else road_data(countermodel.road),
         "instants": [
             {
-                "time": str(time),
-                "true": sorted(name for name, true in atoms.items() if true),
-                "values": {name: str(value) for name, value in sorted(values.items())},
+                "time": str(instant.time),
+                "true": sorted(name for name, true in instant.atoms.items() if true),
+                "values": {name: str(value) for name, value in sorted(instant.values.items())},
             }
-            for time, values, atoms in instants
+            for instant in countermodel.instants
         ],
     }
 

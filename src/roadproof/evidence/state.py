@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import assert_never
 
-from roadproof.evidence.times import rational
+from roadproof.evidence.times import constant, rational
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -16,7 +16,7 @@ def symbol(leaf: t.Parameter | t.Variable | t.Signal | t.Size) -> str:
     """The SMT-LIB constant for a leaf of a term."""
     match leaf:
         case t.Parameter(name, _) | t.Variable(name, _):
-            return name
+            return constant(name)
         case t.Signal(name, vehicle) | t.Size(name, vehicle):
             return f"|{name}({vehicle})|"
 

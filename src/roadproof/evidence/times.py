@@ -4,14 +4,21 @@ They are what quantifiers over time are instantiated with, so they must print an
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import InputError
+from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
 
+# Words of SMT-LIB and its theories that are names in the language of claims.
+_RESERVED = re.compile(
+    "_|as|par|forall|exists|let|match|distinct|ite|xor|implies|abs|div|mod|to_int|to_real|is_int|select|store"
+    "|BINARY|DECIMAL|HEXADECIMAL|NUMERAL|STRING"
+)
 _PART = re.compile(r"([+-]?)\s*(?:(\d+(?:/\d+)?)\s*(?:\*\s*)?)?([A-Za-z_]\w*)?", re.ASCII)
 
 
@@ -44,13 +51,19 @@ class Moment:
 
     def smt(self) -> str:
         """As an SMT-LIB term of sort Real."""
-        summands = [name if k == 1 else f"(* {rational(k)} {name})" for name, k in self.parts]
+        names = ((constant(name), k) for name, k in self.parts)
+        summands = [name if k == 1 else f"(* {rational(k)} {name})" for name, k in names]
         if self.constant or not summands:
             summands.append(rational(self.constant))
         return summands[0] if len(summands) == 1 else f"(+ {' '.join(summands)})"
 
 
 ZERO = Moment()
+
+
+def constant(name: str) -> str:
+    """The SMT-LIB constant for a time, a parameter or a variable: no word that a solver reads otherwise."""
+    return f"{name}." if _RESERVED.fullmatch(name) else name
 
 
 def at(name: str) -> Moment:
@@ -109,6 +122,34 @@ def moment_of(term: Term) -> Moment:
     if constant is not None:
         return Moment((), constant)
     raise InputError("an interval bound of a claim must be a sum of parameters and numbers")
+
+
+def compared_times(
+    formula: Formula, parameters: Collection[str]
+) -> tuple[Moment, f.Comparison, Moment] | None:
+    """What ``formula`` compares, where it is sums of numbers and some of ``parameters``; else None."""
+    if not isinstance(formula, f.Compare):
+        return None
+    leaves = [leaf for side in (formula.left, formula.right) for leaf in t.leaves(side)]
+    names = [leaf.name for leaf in leaves if isinstance(leaf, t.Parameter)]
+    if not names or not set(names) <= set(parameters):
+        return None
+    try:
+        return moment_of(formula.left), formula.op, moment_of(formula.right)
+    except InputError:
+        return None
+
+
+def bound_parameters(formula: Formula) -> frozenset[str]:
+    """The parameters in the interval bounds of ``formula``."""
+    bounds = [
+        bound
+        for part in f.subformulas(formula)
+        if isinstance(part, f.Until | f.Eventually | f.Always)
+        for bound in (part.interval.low, part.interval.high)
+        if bound is not None
+    ]
+    return frozenset(x.name for bound in bounds for x in t.leaves(bound) if isinstance(x, t.Parameter))
 
 
 def read_moment(text: str) -> Moment:

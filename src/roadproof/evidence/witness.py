@@ -103,13 +103,18 @@ def as_json(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
         data["overlaps_allowed"] = True
     values = {name: str(value) for name, value in file.values.items()}
     data["parameters"] = values | dict(file.options)
-    data["road"] = {
-        "name": file.road.name,
-        "lanelets": [_lanelet_json(x) for x in file.road.lanelets],
-        "adjacent": sorted(sorted(pair) for pair in file.road.adjacent),
-    }
+    data["road"] = road_data(file.road)
     data["vehicles"] = {name: _motion_json(motion) for name, motion in file.drive.vehicles.items()}
     return data | {"verdict": dict(verdict)}
+
+
+def road_data(road: Road) -> dict[str, Any]:
+    """A road as plain data, as drive files hold it."""
+    return {
+        "name": road.name,
+        "lanelets": [_lanelet_json(x) for x in road.lanelets],
+        "adjacent": sorted(sorted(pair) for pair in road.adjacent),
+    }
 
 
 def _lanelet_json(lanelet: Lanelet) -> dict[str, Any]:

@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from roadproof.evidence.atoms import Atoms, is_rigid, membership
+from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.derivation import Lemma, Site, prefix_form
-from roadproof.evidence.times import ZERO, Moment, at, moment_of
+from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
@@ -72,6 +72,8 @@ class Grounding:
 
     ``switches`` turns instance and lemma clauses on: assumption name → what it stands for.
     ``prefixes`` begin the names of times and of lanes or lanelets; no name of the claim begins so.
+    ``timing`` are the parameters in interval bounds. ``origins`` tells under which switch a name was
+    met first; '' is in the claim itself.
     ``wishes`` are assumptions that a named time falls on a moment known before it: models in which
     they hold have few instants, so that instantiation comes to an end.
     """
@@ -79,17 +81,19 @@ class Grounding:
     atoms: Atoms
     bounds: dict[str, str]
     prefixes: tuple[str, str] = ("t", "M")
+    timing: frozenset[str] = frozenset()
     wishful: bool = False
     names: dict[Site, str] = field(default_factory=dict)
     session: Session = field(default_factory=Session)
     universals: list[Universal] = field(default_factory=list)
     road_universals: list[RoadUniversal] = field(default_factory=list)
     moments: dict[Moment, None] = field(default_factory=lambda: {ZERO: None})
-    elements: dict[str, None] = field(default_factory=dict)
-    facts: dict[str, None] = field(default_factory=dict)
+    elements: dict[str, f.Domain] = field(default_factory=dict)
+    facts: dict[tuple[f.Domain, str], None] = field(default_factory=dict)
     switches: dict[str, tuple[Site, str] | Lemma] = field(default_factory=dict)
     wishes: list[str] = field(default_factory=list)
     applied: dict[tuple[str, Moment], str] = field(default_factory=dict)
+    origins: dict[str, str] = field(default_factory=dict)
     _known: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
     _declared: set[str] = field(default_factory=set)
 
@@ -100,6 +104,7 @@ class Grounding:
     def demand(self, formula: Formula, positive: bool) -> None:
         """Assert an atomised formula, or its negation, at time 0."""
         self.session.tell(f"(assert {self.truth(formula, positive, ZERO)})")
+        self.origins = dict.fromkeys(self.origins, "")
 
     def truth(self, formula: Formula, positive: bool, moment: Moment) -> str:
         match formula:
@@ -117,18 +122,23 @@ class Grounding:
                 return self._obligation(formula, positive, moment)
 
     def atom(self, name: str, moment: Moment) -> str:
+        times = compared_times(self.atoms.meaning(name), self.timing)
+        if times is not None:
+            left, op, right = times
+            return f"({op} {self.declare_moment(left)} {self.declare_moment(right)})"
         when = ZERO if is_rigid(self.atoms.meaning(name)) else moment
         if (name, when) not in self.applied:
             self._declare(f"|{name}|", f"(declare-fun |{name}| (Real) Bool)")
-            self.applied[name, when] = f"(|{name}| {self._moment(when)})"
+            self.applied[name, when] = f"(|{name}| {self.declare_moment(when)})"
         return self.applied[name, when]
 
-    def _moment(self, moment: Moment) -> str:
+    def declare_moment(self, moment: Moment) -> str:
+        """The moment in SMT-LIB, its parameters known to the solver with their bounds."""
         for name, _ in moment.parts:
             if name in self.bounds:
                 bound = self.bounds[name]
-                known = f"(assert ({bound} {name} 0.0))" if bound else ""
-                self._declare(name, f"(declare-const {name} Real){known}")
+                known = f"(assert ({bound} {constant(name)} 0.0))" if bound else ""
+                self._declare(name, f"(declare-const {constant(name)} Real){known}")
         return moment.smt()
 
     def _declare(self, name: str, command: str) -> None:
@@ -174,7 +184,7 @@ class Grounding:
                     return self.truth(instance, positive, moment)
 
                 if isinstance(formula, f.Some) == positive:
-                    element = self._name_element(site)
+                    element = self._name_element(site, domain)
                     self._require(switch, self._fact(domain, element), at_element(element))
                 else:
                     self.road_universals.append(RoadUniversal(site, switch, domain, at_element))
@@ -190,7 +200,7 @@ class Grounding:
     def _window(self, moment: Moment, interval: f.Interval) -> Window:
         low, high = moment_of(interval.low), interval.high
         for bound in (low, ZERO if high is None else moment_of(high)):
-            self._moment(bound)
+            self.declare_moment(bound)
         return Window(moment + low, None if high is None else moment + moment_of(high))
 
     def _require(self, switch: str, *parts: str) -> None:
@@ -209,6 +219,7 @@ class Grounding:
 
     def _name_time(self, site: Site, earliest: Moment) -> Moment:
         name = self.names.setdefault(site, f"{self.prefixes[0]}{len(self.names) + 1}")
+        self.origins.setdefault(name, self._next_switch())
         self._declare(name, f"(declare-const {name} Real)")
         if self.wishful:
             wish = f"w${name}"
@@ -218,17 +229,21 @@ class Grounding:
         self.moments[at(name)] = None
         return at(name)
 
-    def _name_element(self, site: Site) -> str:
+    def _name_element(self, site: Site, domain: f.Domain) -> str:
         name = self.names.setdefault(site, f"{self.prefixes[1]}{len(self.names) + 1}")
-        self.elements[name] = None
+        self.origins.setdefault(name, self._next_switch())
+        self.elements[name] = domain
         return name
 
     def _fact(self, domain: f.Domain, element: str) -> str:
         if domain.kind == "lanes":
             return "true"
         fact = membership(domain, element)
-        self.facts[fact] = None
-        self._declare(f"|{fact}|", f"(declare-const |{fact}| Bool)")
+        if (domain, element) not in self.facts:
+            self.facts[domain, element] = None
+            self._declare(f"|{fact}|", f"(declare-const |{fact}| Bool)")
+            for axiom in true_of_roads(self.facts):
+                self._declare(f"(assert {axiom})", f"(assert {axiom})")
         return f"|{fact}|"
 
     # --- growing ---------------------------------------------------------------------------------
@@ -236,7 +251,7 @@ class Grounding:
     def instantiate(self, universal: Universal, when: Moment) -> None:
         """Demand what ``universal`` says at ``when``, under a switch of its own."""
         universal.done.append(when)
-        self._moment(when)
+        self.declare_moment(when)
         guards = " ".join([universal.switch, *universal.window.smt(when)])
         self._add_clause((universal.site, str(when)), f"(=> (and {guards}) {universal.body(when)})")
 
@@ -255,9 +270,13 @@ class Grounding:
         self._add_clause(Lemma(tuple(literals), (str(when),)), f"(or {clause})")
 
     def _add_clause(self, stands_for: tuple[Site, str] | Lemma, clause: str) -> None:
-        switch = f"i${len(self.switches) + 1}"
+        switch = self._next_switch()
         self.switches[switch] = stands_for
         self.session.tell(f"(declare-const {switch} Bool)(assert (=> {switch} {clause}))")
+
+    def _next_switch(self) -> str:
+        """The switch of the clause that is being made."""
+        return f"i${len(self.switches) + 1}"
 
 
 def _has_quantifier(formula: Formula) -> bool:

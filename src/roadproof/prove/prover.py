@@ -11,9 +11,10 @@ from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify
 from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names
+from roadproof.evidence.refutation import Countermodel
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.prove.countermodel import Countermodel, realise
+from roadproof.prove.countermodel import realise
 from roadproof.prove.search import GaveUp, Proof, Search
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import ask
@@ -73,7 +74,7 @@ def prove(
     defaults = default_values(specification.library)
     bounds = specification.library.bounds
     states = StateChecker(atoms, bounds, defaults)
-    attempt = _Attempt(atoms, bounds, defaults, states, query.lanes, meter)
+    attempt = _Attempt(query, atoms, bounds, defaults, states, meter)
 
     def result(
         verdict: Verdict,
@@ -94,7 +95,10 @@ def prove(
         if isinstance(found, GaveUp):
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
-    certificate = _certificate(specification, query, atomised, atoms, proofs, names, label, scenario)
+    try:
+        certificate = _certificate(specification, query, atomised, atoms, proofs, names, label, scenario)
+    except InputError as error:
+        return result(Verdict.UNKNOWN, f"a proof was found, but no certificate can be made of it: {error}")
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
     for title, script in certificate.queries:
         if script in settled:
@@ -129,11 +133,11 @@ def _premise(formula: Formula) -> Formula | None:
 
 @dataclass(frozen=True)
 class _Attempt:
+    query: Query
     atoms: Atoms
     bounds: Mapping[str, str]
     defaults: Mapping[str, Fraction]
     states: StateChecker
-    lanes: tuple[str, ...]
     meter: Meter
 
     def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
@@ -144,7 +148,7 @@ class _Attempt:
             search = self._search(goal, names, wishful)
             found = search.run(meter)
             while not isinstance(found, Proof | GaveUp):
-                countermodel = realise(goal, self.atoms, found, self.defaults)
+                countermodel = realise(self.query, self.atoms, found, self.defaults, self.bounds)
                 if countermodel is not None:
                     return countermodel
                 if not search.widen():
@@ -165,12 +169,14 @@ class _Attempt:
         proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
         if not isinstance(proof, Proof):
             return False
-        met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.lanes)
-        query = derive_query(goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.lanes)
+        met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
+        query = derive_query(
+            goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.query.lanes
+        )
         return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
 
     def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:
-        return Search(goal, self.atoms, self.bounds, self.states, self.lanes, names, wishful)
+        return Search(goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful)
 
 
 def _certificate(
@@ -183,7 +189,7 @@ def _certificate(
     label: str,
     scenario: int | None,
 ) -> Certificate:
-    """The proofs of all parts as one certificate."""
+    """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit the claim."""
     instances: dict[Site, tuple[str, ...]] = {}
     lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
     for proof in proofs:
@@ -192,9 +198,6 @@ def _certificate(
         for lemma in proof.lemmas:
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
-    try:
-        met = met_names(atomised, atoms, instances, names, specification.library.bounds, query.lanes)
-        made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-        return certify(specification, query.text, instances, met, made, label, scenario)
-    except InputError as error:
-        raise AssertionError(f"the finder's instances do not fit the claim: {error}") from error
+    met = met_names(atomised, atoms, instances, names, specification.library.bounds, query.lanes)
+    made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
+    return certify(specification, query.text, instances, met, made, label, scenario)

@@ -1,100 +1,294 @@
-"""What a road allows of the truth of lanelet predicates: which model is that of some road.
+"""A road on which boxes are in lanes, zones and lanelets as a model says, or None where none is found.
 
-Of anything but plain predicates, ``a is on a lanelet of D``, nothing is seen, and no answer is yes.
+Each lane is a chain of rectangles from some first to some last strip; a strip is what lies between
+two neighbouring ends of boxes along the road. In a strip, a lane goes through a gap between the
+boxes that it must not touch. Gaps are as wide as they can be, so that what a lane can reach it does.
+Nothing rests on this: the claim is judged on the road that comes out.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TypeAlias
+from heapq import heapify, heappop, heappush
+from itertools import count, pairwise
+from typing import TypeAlias, get_args
 
-from roadproof.evidence import state
-from roadproof.logic import formula as f
-from roadproof.logic import terms as t
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of
-from roadproof.prove.states import TYPICAL_SIZE
+from roadproof.world.models import shared_boundaries
+from roadproof.world.road import Lanelet, Road, Zone
 
-# rear, front, right and left
-Box: TypeAlias = tuple[Fraction, Fraction, Fraction, Fraction]
-ZONES = tuple(f.Domain("zone", name) for name in ("main", "merge", "depart"))
+ZONES: tuple[Zone, ...] = get_args(Zone)
+MARGIN = Fraction(4)
+MOST_ROUTES = 20_000
+# Of a lane, a zone ("main") or a lanelet by name; and a box by its place in the list.
+Place: TypeAlias = tuple[str, str]
+Fact: TypeAlias = tuple[Place, int]
 
 
-def is_on_some_road(truths: Mapping[Formula, bool], lanes: Sequence[str] | None) -> bool:
-    """Whether it is seen that a road allows these truth values of road predicates at one instant.
+@dataclass(frozen=True)
+class Box:
+    rear: Fraction
+    front: Fraction
+    right: Fraction
+    left: Fraction
 
-    ``a is on a lanelet of D`` can be had for each vehicle and each D alone, but for this: each
-    lanelet is of one of three zones, and of a lane. Of anything more involved it is not seen.
+
+@dataclass(frozen=True)
+class Layout:
+    """What a road is to be like.
+
+    ``inside`` and ``outside`` tell of boxes that they are in a place, ``("lane", "L")``,
+    ``("zone", "main")`` or ``("lanelet", "l")``, or not. ``lanelets`` gives each lanelet that has a
+    name its lane and its possible zones; ``adjacent`` are pairs of lanes. ``short``: lanes have no
+    lanelets but those that they need.
     """
-    road = [part for part in truths if isinstance(part, f.Occupies | f.Some | f.Every)]
-    if all(isinstance(part, f.Occupies) for part in road):
-        return True
-    on: dict[tuple[str, f.Domain], bool] = {}
-    for part in road:
-        match part:
-            case f.Some(variable, domain, f.Occupies(vehicle, lanelet)) if variable == lanelet:
-                if on.setdefault((vehicle, domain), truths[part]) != truths[part]:
-                    return False
-            case _:
-                return False
-    for vehicle in {vehicle for vehicle, _ in on}:
-        zones = [on[vehicle, zone] for zone in ZONES if (vehicle, zone) in on]
-        in_lane = any(
-            true for (who, domain), true in on.items() if who == vehicle and domain.kind == "lanelets"
-        )
-        if in_lane and len(zones) == len(ZONES) and not any(zones):
-            return False
-        lanelets = [] if lanes is None else [(vehicle, f.Domain("lanelets", lane)) for lane in lanes]
-        in_no_lane = lanes is not None and not any(on.get(where, True) for where in lanelets)
-        if any(zones) and in_no_lane:
-            return False
-    return True
+
+    boxes: tuple[Box, ...]
+    inside: frozenset[Fact]
+    outside: frozenset[Fact]
+    lanes: tuple[str, ...]
+    lanelets: Mapping[str, tuple[str, tuple[Zone, ...]]]
+    adjacent: frozenset[frozenset[str]]
+    short: bool
 
 
-def is_same_where_it_stands(
-    truths: Sequence[Mapping[Formula, bool]], boxes: Sequence[Mapping[str, Box]]
-) -> bool:
-    """Whether a box that is on a lanelet of some domain is so at each instant, for each vehicle around it."""
-    on = [
-        (domain, truth[part], box[vehicle])
-        for truth, box in zip(truths, boxes, strict=True)
-        for part in truth
-        for domain, vehicle in whose(part)
-        if vehicle in box
+@dataclass(frozen=True)
+class Step:
+    """One lanelet of a route: strips ``first`` to ``last``, and from ``right`` to ``left`` across."""
+
+    first: int
+    last: int
+    right: Fraction
+    left: Fraction
+    zone: Zone
+    name: str
+    gains: frozenset[Fact]
+
+    def meets(self, other: "Step") -> bool:
+        return self.right < other.left and other.right < self.left
+
+
+@dataclass(frozen=True)
+class Route:
+    """Steps from the first to ``step``, as a linked list, and the facts that they make true."""
+
+    step: Step
+    gains: frozenset[Fact]
+    before: "Route | None"
+
+    def steps(self) -> list[Step]:
+        """From the first on; strips of the same gap and zone as one step."""
+        backwards, route = [self.step], self.before
+        while route is not None:
+            step, after = route.step, backwards[-1]
+            alike = (step.right, step.left, step.zone) == (after.right, after.left, after.zone)
+            if alike and not step.name and not after.name:
+                backwards[-1] = replace(after, first=step.first)
+            else:
+                backwards.append(step)
+            route = route.before
+        return backwards[::-1]
+
+
+def lay_road(layout: Layout) -> Road | None:
+    """A road with the facts of ``layout``; every lane is a chain, and neighbours share a boundary."""
+    strips = _Strips(layout)
+    beside = [lane for lane in layout.lanes if any(lane in pair for pair in layout.adjacent)]
+    open_zones = frozenset(fact for fact in layout.inside if fact[0][0] == "zone")
+    routes: dict[str, Route] = {}
+    for lane in layout.lanes:
+        route = strips.route(lane, open_zones, lane in beside)
+        if route is None:
+            return None
+        open_zones -= route.gains
+        routes[lane] = route
+    while open_zones or not routes:
+        lane = _new_name(routes)
+        route = strips.route(lane, open_zones, False)
+        if route is None or (open_zones and not route.gains & open_zones):
+            return None
+        open_zones -= route.gains
+        routes[lane] = route
+    lanelets = [
+        lanelet
+        for number, (lane, route) in enumerate(routes.items())
+        for lanelet in strips.lanelets(lane, route, strips.inset(number, len(routes)))
     ]
-    inside = [(domain, box) for domain, true, box in on if true]
-    outside = [(domain, box) for domain, true, box in on if not true]
-    return not any(a == b and contains(outer, inner) for a, inner in inside for b, outer in outside)
+    lanelets += _tails(lanelets, beside, [(a, b) for a, b in map(sorted, layout.adjacent)])
+    placed = tuple(x for lane in routes for x in lanelets if x.lane == lane)
+    return Road("made for this trace", placed, shared_boundaries(placed))
 
 
-def boxes_of(
-    parts: Iterable[Formula], found: Mapping[str, Fraction | bool], fixed: Mapping[str, Fraction]
-) -> dict[str, Box]:
-    """Where each vehicle stands whose s and d are both compared; others may stand anywhere."""
-    compared = {leaf for part in parts for side in terms_of(part) for leaf in t.leaves(side)}
-    boxes: dict[str, Box] = {}
-    for vehicle in {leaf.vehicle for leaf in compared if isinstance(leaf, t.Signal)}:
-        front, left = t.Signal("s", vehicle), t.Signal("d", vehicle)
-        if front in compared and left in compared:
-            s, d = (Fraction(found.get(state.symbol(leaf), 0)) for leaf in (front, left))
-            length, width = (
-                fixed.get(state.symbol(t.Size(name, vehicle)), typical)
-                for name, typical in TYPICAL_SIZE.items()
-            )
-            boxes[vehicle] = (s - length, s, d - width, d)
-    return boxes
+def _new_name(taken: Mapping[str, object]) -> str:
+    number = 1
+    while f"other-{number}" in taken:
+        number += 1
+    return f"other-{number}"
 
 
-def whose(part: Formula) -> Iterator[tuple[f.Domain | str, str]]:
-    """The domain and the vehicle that a plain road predicate speaks of."""
-    match part:
-        case f.Some(_, domain, f.Occupies(vehicle, _)):
-            yield domain, vehicle
-        case f.Occupies(vehicle, lanelet):
-            yield lanelet, vehicle
-        case _:
-            pass
+@dataclass
+class _Strips:
+    """The strips of a layout, and the boxes in each."""
+
+    layout: Layout
+    ends: list[Fraction] = field(init=False)
+    lines: list[Fraction] = field(init=False)
+    active: list[frozenset[int]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        boxes = self.layout.boxes
+        along = sorted({end for box in boxes for end in (box.rear, box.front)}) or [Fraction(0)]
+        across = sorted({end for box in boxes for end in (box.right, box.left)}) or [Fraction(0)]
+        self.ends = [along[0] - MARGIN, *along, along[-1] + MARGIN]
+        self.lines = [across[0] - MARGIN, *across, across[-1] + MARGIN]
+        self.active = [
+            frozenset(j for j, box in enumerate(boxes) if box.rear < high and low < box.front)
+            for low, high in pairwise(self.ends)
+        ]
+
+    def route(self, lane: str, open_zones: frozenset[Fact], to_the_end: bool) -> Route | None:
+        """The best way of a lane: all that must be in it is, then most of ``open_zones``, then all strips."""
+        layout = self.layout
+        names = [name for name, (of, _) in layout.lanelets.items() if of == lane]
+        must = {fact for fact in layout.inside if fact[0] == ("lane", lane)}
+        must |= {(("lanelet", name), -1) for name in names}
+        wanted = frozenset(must) | open_zones
+        steps = [step for name in names for step in self._named_steps(lane, name, wanted)]
+        for zone in self._zones():
+            for strip in range(len(self.active)):
+                steps += self._steps(strip, strip, lane, zone, "", wanted)
+        found: list[Route] = []
+        for whole in (False,) if layout.short else (True, False):
+            found = [
+                route
+                for route in self._routes(steps, whole)
+                if must <= route.gains
+                and (not (whole or to_the_end) or route.step.last == len(self.active) - 1)
+            ]
+            if any(open_zones <= route.gains for route in found):
+                break
+        if layout.short:
+            return max(found, key=lambda route: (len(route.gains), -len(route.steps())), default=None)
+        return max(found, key=lambda route: len(route.gains), default=None)
+
+    def _zones(self) -> list[Zone]:
+        """The zones that the layout speaks of, and one that it does not, the main one first."""
+        known = {place[1] for place, _ in self.layout.inside | self.layout.outside if place[0] == "zone"}
+        others = [zone for zone in ZONES if zone not in known]
+        return [zone for zone in ZONES if zone in known or zone in others[:1]]
+
+    def _named_steps(self, lane: str, name: str, wanted: frozenset[Fact]) -> Iterator[Step]:
+        """Ways for a lanelet with a name, each no longer than it must be."""
+        place = ("lanelet", name)
+        inside = {j for where, j in self.layout.inside if where == place}
+        for zone in self.layout.lanelets[name][1]:
+            for first in range(len(self.active)):
+                met: frozenset[int] = frozenset()
+                for last in range(first, len(self.active)):
+                    met |= self.active[last]
+                    if inside <= met:
+                        yield from self._steps(first, last, lane, zone, name, wanted)
+                        break
+
+    def _steps(
+        self, first: int, last: int, lane: str, zone: Zone, name: str, wanted: frozenset[Fact]
+    ) -> Iterator[Step]:
+        """A step for each gap between the boxes that a lanelet of this lane, zone and name must not touch."""
+        boxes, layout = self.layout.boxes, self.layout
+        places = [("lane", lane), ("zone", zone), *([("lanelet", name)] if name else [])]
+        met = frozenset[int]().union(*self.active[first : last + 1])
+        shut = sorted(
+            (boxes[j].right, boxes[j].left) for j in met if any((p, j) in layout.outside for p in places)
+        )
+        begin = self.lines[0]
+        for right, left in [*shut, (self.lines[-1], self.lines[-1])]:
+            if begin < right:
+                hit = {j for j in met if boxes[j].right < right and begin < boxes[j].left}
+                gains = {(place, j) for place in places[:2] for j in hit} & wanted
+                if not name:
+                    yield Step(first, last, begin, right, zone, name, frozenset(gains))
+                elif all(j in hit for where, j in layout.inside if where == ("lanelet", name)):
+                    yield Step(first, last, begin, right, zone, name, frozenset(gains | {(places[2], -1)}))
+            begin = max(begin, left)
+
+    def _routes(self, steps: Sequence[Step], whole: bool) -> list[Route]:
+        """Routes that gain what no other to the same step does; ``whole``: from the first strip on."""
+        by_first: list[list[Step]] = [[] for _ in [*self.active, None]]
+        for step in steps:
+            by_first[step.first].append(step)
+        best: dict[Step, list[Route]] = {}
+        order = count()
+        waiting = [
+            (step.last, -len(step.gains), next(order), Route(step, step.gains, None))
+            for step in steps
+            if step.first == 0 or not whole
+        ]
+        heapify(waiting)
+        while waiting:
+            *_, number, route = heappop(waiting)
+            if number > MOST_ROUTES:
+                return []
+            known = best.setdefault(route.step, [])
+            if any(route.gains <= other.gains for other in known):
+                continue
+            known[:] = [other for other in known if not other.gains <= route.gains]
+            known.append(route)
+            end = route.step.last
+            for step in (*by_first[end], *by_first[end + 1]):
+                if step.meets(route.step) and not (step.name and (("lanelet", step.name), -1) in route.gains):
+                    gains = route.gains | step.gains
+                    heappush(waiting, (step.last, -len(gains), next(order), Route(step, gains, route)))
+        return [route for known in best.values() for route in known]
+
+    def lanelets(self, lane: str, route: Route, inset: Fraction) -> Iterator[Lanelet]:
+        """The steps of a route as rectangles, each a little narrower than its gap.
+
+        With an inset of its own, no lane shares a boundary with another.
+        """
+        steps = route.steps()
+        low = self.ends[steps[0].first]
+        number = 0
+        while steps:
+            step, *steps = steps
+            high = self.ends[step.last + 1]
+            if steps and steps[0].first == step.last:
+                here = 1 + sum(x.first == step.last for x in steps)
+                high = max(low, self.ends[step.last]) + (high - max(low, self.ends[step.last])) / here
+            number += 1
+            name = step.name or f"{lane}.{number}"
+            across = step.right + inset, step.left - inset
+            yield Lanelet(name, lane, step.zone, "main", (low, high), across)
+            low = high
+
+    def inset(self, number: int, of: int) -> Fraction:
+        """The inset of one of several lanes: no two are alike, and none closes a gap."""
+        narrowest = min(high - low for low, high in pairwise(self.lines))
+        return narrowest * (number + 1) / (8 * of)
 
 
-def contains(outer: Box, inner: Box) -> bool:
-    """Whether ``inner`` lies within ``outer``."""
-    return outer[0] <= inner[0] and inner[1] <= outer[1] and outer[2] <= inner[2] and inner[3] <= outer[3]
+def _tails(
+    lanelets: Sequence[Lanelet], lanes: Sequence[str], pairs: Sequence[tuple[str, str]]
+) -> list[Lanelet]:
+    """Where lanes lie side by side: behind all else, one pair after the other.
+
+    Between such places each lane keeps to a level of its own.
+    """
+    top = max(x.d[1] for x in lanelets) + MARGIN
+    slots = (top, top + 3), (top + 3, top + 6)
+    made: list[Lanelet] = []
+    for number, lane in enumerate(lanes, 1):
+        last = [x for x in lanelets if x.lane == lane][-1]
+        level = top + 10 * number, top + 10 * number + 3
+        ways = [last.d, level]
+        for pair in sorted(pairs):
+            ways += [slots[pair.index(lane)] if lane in pair else level, level]
+        low = last.s[1] or Fraction(0)
+        for place, (before, after) in enumerate(pairwise(ways), 1):
+            for end, across in (("a", _around(before, after)), ("b", after)):
+                name = f"{lane}.beside.{place}{end}"
+                made.append(Lanelet(name, lane, "main", "main", (low, low + 20), across))
+                low += 20
+    return made
+
+
+def _around(a: tuple[Fraction, Fraction], b: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+    return min(a[0], b[0]), max(a[1], b[1])

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.effort import Meter
-from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.atoms import Atoms, free_lanelets, membership
 from roadproof.evidence.derivation import Lemma, Site, free_prefix
-from roadproof.evidence.times import ZERO, Moment, at, moment_of
+from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import road_names
@@ -43,14 +43,15 @@ class Model:
     """A model of all clauses: when the moments are, and which atoms are true there.
 
     ``states`` gives each instant its atoms, and ``signals`` each instant a state in which they hold.
-    ``elements`` are the lanes and lanelets spoken of, and ``facts`` what is true of the road.
+    ``elements`` are the lanes and lanelets spoken of, with the domain that each was taken from, and
+    ``facts`` says which are in which domain.
     """
 
     values: Mapping[str, Fraction]
     states: Mapping[Fraction, Mapping[str, bool]]
     signals: Mapping[Fraction, Mapping[str, Fraction | bool]]
-    elements: tuple[str, ...]
-    facts: frozenset[str]
+    elements: Mapping[str, f.Domain]
+    facts: Mapping[tuple[f.Domain, str], bool]
 
 
 @dataclass(frozen=True)
@@ -76,10 +77,13 @@ class Search:
         wishful: bool,
     ) -> None:
         prefixes = free_prefix("t", bounds), free_prefix("M", {*lanes, *road_names(claim)})
-        self.grounding = Grounding(atoms, dict(bounds), prefixes, wishful, names)
-        self.grounding.elements |= dict.fromkeys(lanes)
+        self.grounding = Grounding(atoms, dict(bounds), prefixes, bound_parameters(claim), wishful, names)
+        self.grounding.elements |= dict.fromkeys(lanes, f.Domain("lanes"))
+        self.grounding.elements |= dict.fromkeys(free_lanelets(claim), f.Domain("lanelets"))
         self.states = states
         self.bound_moments = _bounds_of(claim)
+        for bound in self.bound_moments:
+            self.grounding.declare_moment(bound)
         self.spread = 0
         self.grounding.demand(claim, False)
 
@@ -104,7 +108,7 @@ class Search:
             refused = self._lemmas(states, values, meter)
             if refused is None:
                 signals = {instant: self.states.signals(state) for instant, state in states.items()}
-                return Model(values, states, signals, tuple(self.grounding.elements), self._facts())
+                return Model(values, states, signals, dict(self.grounding.elements), self._facts())
             if isinstance(refused, GaveUp):
                 return refused
         return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation")
@@ -142,7 +146,7 @@ class Search:
         grounding = self.grounding
         names = [name for name in grounding.names.values() if at(name) in grounding.moments]
         names += grounding.known_parameters()
-        read = grounding.session.values(names)
+        read = grounding.session.values([constant(name) for name in names])
         return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
 
     def _pool(self, values: Mapping[str, Fraction]) -> list[Moment]:
@@ -200,14 +204,17 @@ class Search:
         truths = self.grounding.session.values([text for _, text in applied])
         states: dict[Fraction, dict[str, bool]] = {ZERO.value(values): {}}
         for ((name, moment), _), true in zip(applied, truths, strict=True):
-            states.setdefault(moment.value(values), {})[name] = bool(true)
+            instant = moment.value(values)
+            # A time that no obligation of the model speaks of may lie before 0, where there is nothing.
+            if instant >= 0:
+                states.setdefault(instant, {})[name] = bool(true)
         return dict(sorted(states.items()))
 
-    def _facts(self) -> frozenset[str]:
-        """Memberships of lanes and lanelets that the model makes true."""
+    def _facts(self) -> dict[tuple[f.Domain, str], bool]:
+        """Memberships of lanes and lanelets in the model."""
         facts = self.grounding.facts
-        truths = self.grounding.session.values([f"|{fact}|" for fact in facts])
-        return frozenset(fact for fact, true in zip(facts, truths, strict=True) if true)
+        truths = self.grounding.session.values([f"|{membership(*fact)}|" for fact in facts])
+        return {fact: bool(true) for fact, true in zip(facts, truths, strict=True)}
 
     def _lemmas(
         self,
@@ -241,6 +248,7 @@ class Search:
             without = [s for s in needed if s != switch]
             if session.check(without, meter.apart(WISH)) == "unsat":
                 needed = without
+        needed = self._with_origins(needed)
         instances: dict[Site, list[str]] = {}
         lemmas: dict[tuple[tuple[str, bool], ...], list[str]] = {}
         for switch in sorted(needed, key=lambda s: int(s[2:])):
@@ -254,6 +262,19 @@ class Search:
             tuple(Lemma(literals, tuple(moments)) for literals, moments in lemmas.items()),
             frozenset(self.states.settled),
         )
+
+    def _with_origins(self, needed: Sequence[str]) -> list[str]:
+        """``needed``, and the clauses in which the names that they speak of were met."""
+        known, waiting = dict.fromkeys(needed), list(needed)
+        while waiting:
+            used = self.grounding.switches[waiting.pop()]
+            texts = used.moments if isinstance(used, Lemma) else (used[1],)
+            for name in (name for text in texts for name, _ in read_moment(text).parts):
+                origin = self.grounding.origins.get(name)
+                if origin and origin not in known:
+                    known[origin] = None
+                    waiting.append(origin)
+        return list(known)
 
 
 def _bounds_of(formula: Formula) -> list[Moment]:

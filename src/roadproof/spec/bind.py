@@ -7,7 +7,7 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import with_values
+from roadproof.logic.rewrite import terms_of, with_values
 from roadproof.spec.library import Library, is_within, source_of, unknown
 from roadproof.spec.quantity import UNITS
 from roadproof.world.road import Lanelet, Road
@@ -39,9 +39,20 @@ def bind(formula: Formula, road: Road, lanes: Mapping[str, str], values: Mapping
 
     Quantifiers become finite conjunctions and disjunctions and ``occ`` becomes comparisons, so the
     result has no ``Some``, ``Every``, ``Occupies`` or ``Parameter``. Raises ``InputError`` for a
-    lane that the road does not have or that ``lanes`` does not name.
+    lane that the road does not have or that ``lanes`` does not name, and for a number without value.
     """
+    refuse_variables(formula)
     return with_values(_Grounding(road, lanes).visit(formula, {}), values)
+
+
+def refuse_variables(formula: Formula) -> None:
+    """Raise ``InputError`` where a number declared with ``given`` has no value."""
+    for leaf in (leaf for side in terms_of(formula) for leaf in t.leaves(side)):
+        if isinstance(leaf, t.Variable):
+            raise InputError(
+                f"'{leaf.name}' stands for every number, and has no value on a drive or in a recording: "
+                "write a number, or declare a parameter in a --spec file"
+            )
 
 
 def occupies(vehicle: str, lanelet: Lanelet) -> Formula:

@@ -352,6 +352,7 @@ class _Elaborator:
                 return f.negation(self.formula(body, scope))
             case syntax.Prefix(_, body, _):
                 quantity = self.term(body, scope)
+                _refuse_inverse(expression.at, quantity)
                 return Quantity(t.negate(quantity.term), quantity.dimension)
             case syntax.Chain(op, parts, _):
                 made = [self.formula(p, scope) for p in parts]
@@ -392,9 +393,7 @@ class _Elaborator:
         if op in ("<", "<=", ">", ">=", "=", "!="):
             same_dimension(left, right, "compared", at)
             return _comparison(op, left.term, right.term)
-        for side in (left, right):
-            if isinstance(side.term, t.Inverse):
-                raise TextError("inverse(…) may only stand alone on one side of a comparison", at)
+        _refuse_inverse(at, left, right)
         if op == "+" or op == "-":
             dimension = same_dimension(left, right, "added", at)
             join_terms = t.Sum((left.term, right.term)) if op == "+" else t.subtract(left.term, right.term)
@@ -528,6 +527,7 @@ class _Elaborator:
             return f.Occupies(vehicle.name, self.reference(call.arguments[1], "lanelet", scope).name)
         if name in ("abs", "inverse"):
             inner = self.term(first, scope)
+            _refuse_inverse(call.at, inner)
             if name == "abs":
                 return Quantity(t.Maximum((inner.term, t.negate(inner.term))), inner.dimension)
             return Quantity(t.Inverse(inner.term), product_dimension(Quantity(inner.term, (0, 0)), inner, -1))
@@ -546,11 +546,15 @@ class _Elaborator:
         quantities = [self.term(a, scope) for a in call.arguments]
         for other in quantities[1:]:
             same_dimension(quantities[0], other, "compared", call.at)
-        if any(isinstance(q.term, t.Inverse) for q in quantities):
-            raise TextError("inverse(…) may only stand alone on one side of a comparison", call.at)
+        _refuse_inverse(call.at, *quantities)
         dimension = next((q.dimension for q in quantities if q.dimension is not None), None)
         make = t.Maximum if name == "max" else t.Minimum
         return Quantity(make(tuple(q.term for q in quantities)), dimension)
+
+
+def _refuse_inverse(at: Position, *quantities: Quantity) -> None:
+    if any(isinstance(quantity.term, t.Inverse) for quantity in quantities):
+        raise TextError("inverse(…) may only stand alone on one side of a comparison", at)
 
 
 def _sort(value: Value) -> str:
