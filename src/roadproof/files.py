@@ -1,5 +1,6 @@
 """Files that appear whole or not at all: a reader never sees half of one; and reading with a limit."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
@@ -27,7 +28,23 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
             os.unlink(temporary)
             raise
     except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}; name a folder that exists") from None
+        raise cannot_write(path, error) from None
+
+
+_ADVICE = {
+    errno.ENOENT: "name a folder that exists",
+    errno.ENOTDIR: "name a folder that exists",
+    errno.ENOSPC: "make room there, or name a folder on another disk",
+    errno.EDQUOT: "make room there, or name a folder on another disk",
+    errno.EFBIG: "raise the limit on the size of files, or name a folder on another disk",
+}
+
+
+def cannot_write(path: Path, error: OSError) -> InputError:
+    """The error for a file or folder that cannot be written: what the system says, and what helps then."""
+    told = (error.strerror or str(error)).replace("No space left", "no space left")
+    advice = _ADVICE.get(error.errno or 0, "name another folder")
+    return InputError(f"cannot write {path}: {told}; {advice}")
 
 
 def make_folder(folder: Path) -> None:
@@ -36,6 +53,36 @@ def make_folder(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot write into {folder}: {error.strerror}; name another folder") from None
+
+
+@contextmanager
+def hold_folder(folder: Path) -> Iterator[None]:
+    """Keep other runs out of a folder, which is made where there is none; the system lets go of it with us.
+
+    Raises ``InputError`` where another process holds it. Nothing is kept out where the system or the disk
+    knows no such locks.
+    """
+    make_folder(folder)
+    try:
+        import fcntl
+
+        handle = os.open(folder, os.O_RDONLY)
+    except (ImportError, OSError):
+        yield
+        return
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise InputError(
+            f"{folder}: another run is writing into this folder; wait until it is done, or name another"
+        ) from None
+    except OSError:
+        pass
+    try:
+        yield
+    finally:
+        os.close(handle)
 
 
 def write_whole(path: Path, content: bytes) -> None:

@@ -51,7 +51,7 @@ def test_both_directions_by_hand(layout: str, upper_lane: str, lower_lanes: str,
     assert r.occupancy[:4].tolist() == [1 << index[upper_lane]] * 4
     assert r.occupancy[4:7].tolist() == [1 << right] * 3
     assert r.occupancy[7:].tolist() == [1 << left, 1 << left | 1 << right, 1 << left | 1 << right]
-    assert r.lane[7:].tolist() == [left, left, right]
+    assert r.lane[7:].tolist() == [left, left, left]
     assert r.beside_mask(left) == 1 << right
     assert r.zones.tolist() == [1] * 10
 
@@ -214,9 +214,28 @@ def test_jump_and_strange_lane_are_noted(tmp_path: Path) -> None:
     files = tiny_files()
     change(TRACKS, 7, "x", "15.40")(files)
     change(TRACKS, 7, "laneId", "5")(files)
-    notes = " | ".join(read(files, tmp_path).notes)
-    assert "laneId is not the lane of the box's centre in 1 rows" in notes
-    assert "1 samples where position and velocity differ" in notes
+    lane, jump = read(files, tmp_path).notes
+    cell, rule = "01_tracks.csv, row 8, column laneId=5", "laneId is not the lane of the box's centre in 1 rows of 10"
+    assert lane == f"{cell}: {rule}"
+    cell = "01_tracks.csv, row 8, column x=15.4 of vehicle 2"
+    assert jump.startswith(f"{cell}: a position and the velocity differ by more than 1 m from one frame")
+
+
+def test_rows_are_those_of_the_file(tmp_path: Path) -> None:
+    """In shuffled files too: the truck's last row, where its centre crosses the marking, is row 2."""
+    files = tiny_files()
+    change(TRACKS, 10, "y", "24.46")(files)
+    files[TRACKS].insert(1, files[TRACKS].pop())
+    change(META, 2, "height", "-2.00")(files)
+    files[META].reverse()
+    files[META].insert(0, files[META].pop())
+    with pytest.raises(InputError, match=r"row 3, column height=-2.0"):
+        read(files, tmp_path)
+    change(META, 2, "height", "2.00")(files)
+    r = read(files, tmp_path)
+    assert [r.lanes[k].name for k in r.lane[7:]] == ["5", "5", "6"]
+    assert any(note.startswith("01_tracks.csv, row 2, column laneId=5: ") for note in r.notes)
+    assert any(note.startswith("01_tracks.csv, row 2, column y=24.46 of vehicle 3: ") for note in r.notes)
 
 
 def _spoil(files: dict[str, bytes], chance: random.Random) -> str:

@@ -14,7 +14,7 @@ LAYOUTS = {
 
 
 def tiny_files(layout: str = "2+2") -> Files:
-    """Three vehicles: 1 drives up (towards -x), 2 and 3 down (towards +x); 3, a truck, changes lanes."""
+    """Three vehicles: 1 drives up (towards -x), 2 and 3 down (towards +x); 3, a truck, begins to change lanes."""
     upper, lower = LAYOUTS[layout]
     first = 2 if layout == "2+2" else 3  # laneId of the band that holds vehicle 1
     below = len(upper.split(";")) + 2
@@ -35,7 +35,7 @@ def tiny_files(layout: str = "2+2") -> Files:
         f"4,2,12.40,25.98,4.00,2.00,30.00,-0.25,0.50,-0.75,{rest},{below + 1}",
         f"1,3,50.00,22.46,12.00,2.50,20.00,1.00,0.00,0.00,{rest},{below}",
         f"2,3,50.80,22.50,12.00,2.50,20.00,1.00,0.00,0.00,{rest},{below}",
-        f"3,3,51.60,24.46,12.00,2.50,20.00,1.00,0.00,0.00,{rest},{below + 1}",
+        f"3,3,51.60,22.54,12.00,2.50,20.00,1.00,0.00,0.00,{rest},{below}",
     ]
     return {
         "01_recordingMeta.csv": [list(RECORDING_COLUMNS), recording.split(",")],

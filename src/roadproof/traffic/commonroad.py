@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.traffic.formats import other_format
 from roadproof.traffic.lanelets import MeasuredLane, MeasuredLanelet, beside_of, lanes_of, zones_of
 from roadproof.traffic.overlaps import describe_overlaps
-from roadproof.traffic.projection import boxes_of, inside, overlap, project, triangles_of
+from roadproof.traffic.projection import boxes_of, even_line, inside, overlap, project, triangles_of
 from roadproof.traffic.recording import ZONES, Bools, Floats, Integers, Lane, Masks, Recording, offsets
 
 Element = ElementTree.Element
@@ -74,11 +75,13 @@ def _place(
     start = offsets(counts)
     direction = _carriageway(lanes, occupancy, start)
     on = np.repeat(direction, counts)
-    s, d, turned = np.empty(len(states)), np.empty(len(states)), np.empty(len(states))
+    s, d, turned, stretch = (np.empty(len(states)) for _ in range(4))
     for way in np.unique(direction):
         ours = on == way
-        along = project(_centre_line(lanelets, [x for x in lanes if x.carriageway == way]), centre[ours])
+        line = _centre_line(lanelets, [x for x in lanes if x.carriageway == way])
+        along = project(even_line(line), centre[ours])
         s[ours], d[ours], turned[ours] = along.s, along.d, heading[ours] - along.heading
+        stretch[ours] = along.stretch
     return Recording(
         name=name,
         rate=rate,
@@ -156,6 +159,9 @@ def _parse(path: Path) -> Element:
         text = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
+    other = other_format(text)
+    if other is not None:
+        raise InputError(f"{path}: the file {other}")
     if b"<!DOCTYPE" in text or b"<!ENTITY" in text:
         raise InputError(f"{path}: a CommonRoad file has no document type or entities; remove them")
     try:

@@ -12,6 +12,15 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.traffic.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_LENGTH,
+    LARGEST_SPEED,
+    LARGEST_WIDTH,
+    OFF_CENTRE,
+    SHARE,
+    find_doubts,
+)
 from roadproof.traffic.recording import (
     Floats,
     Integers,
@@ -20,8 +29,9 @@ from roadproof.traffic.recording import (
     Recording,
     beside_by_order,
     occupy_bands,
+    with_notes,
 )
-from roadproof.traffic.table import Kind, Table, read_table
+from roadproof.traffic.table import Kind, Table, read_table, sample_rows
 
 
 def _names(*lines: str) -> tuple[str, ...]:
@@ -43,6 +53,8 @@ SAMPLE_COLUMNS = _names(
 )
 UPPER, LOWER = 1, 2
 """Driving directions: on the upper lanes towards -x, on the lower ones towards +x."""
+LARGEST_PLACE = 10_000.0
+"""x and y (m) of a section that one camera sees."""
 
 _RECORDING_KINDS: Mapping[str, Kind] = {
     "id": "integer",
@@ -106,6 +118,8 @@ def read_highd(folder: Path, name: str) -> Recording:
     start = _match_vehicles(meta, tracks)
     sizes = np.diff(start)
     _check_boxes(meta, tracks, start)
+    _check_limits(tracks)
+    notes += _check_sight(meta, tracks)
 
     direction = np.repeat(meta["drivingDirection"], sizes)
     up = direction == UPPER
@@ -117,8 +131,7 @@ def read_highd(folder: Path, name: str) -> Recording:
     _check_direction(meta, tracks, s, start)
     occupancy, lane = occupy_bands(lanes, direction, d, width)
     notes += _check_lanes(tracks, lanes, lane, occupancy, start)
-    notes += _check_motion(rate, s, sign * tracks["xVelocity"], start)
-    return Recording(
+    recording = Recording(
         name=name,
         rate=rate,
         lanes=lanes,
@@ -141,6 +154,7 @@ def read_highd(folder: Path, name: str) -> Recording:
         zones=(occupancy != 0).astype(np.uint32),
         notes=notes,
     )
+    return with_notes(recording, _check_plausible(recording, tracks))
 
 
 def lanes_of_markings(upper: tuple[float, ...], lower: tuple[float, ...]) -> tuple[Lane, ...]:
@@ -210,7 +224,8 @@ def _read_vehicles(path: Path, counts: Mapping[str, int]) -> Table:
             raise InputError(
                 f"{path}: {found} vehicles of class {kind}, but the recordingMeta file counts {expected}"
             )
-    return Table(path, {name: values[order] for name, values in meta.columns.items()}, meta.rows)
+    columns = {name: values[order] for name, values in meta.columns.items()}
+    return Table(path, columns, meta.rows, order)
 
 
 def _in_order(tracks: Table) -> tuple[Table, tuple[str, ...]]:
@@ -223,9 +238,8 @@ def _in_order(tracks: Table) -> tuple[Table, tuple[str, ...]]:
     repeated = np.zeros(tracks.rows, bool)
     repeated[order[1:]] = (np.diff(ids[order]) == 0) & (np.diff(frames[order]) == 0)
     tracks.require(~repeated, "frame", "vehicle and frame occur together once")
-    ordered = Table(
-        tracks.path, {name: values[order] for name, values in tracks.columns.items()}, tracks.rows
-    )
+    columns = {name: values[order] for name, values in tracks.columns.items()}
+    ordered = Table(tracks.path, columns, tracks.rows, order)
     return ordered, (f"{tracks.path.name}: rows were not in order of id and frame; they were sorted",)
 
 
@@ -283,31 +297,82 @@ def _check_lanes(
     if outside:
         row = int(start[np.argmin(on_road)])
         where = f"{tracks.path}, vehicle id={tracks['id'][row]}, column y={tracks['y'][row]}"
-        if 2 * outside > len(on_road):
+        if outside > SHARE * len(on_road):
             raise InputError(
                 f"{where}: on no lane of its direction, like {outside} vehicles; the markings do not fit"
             )
         notes = (f"{where}: on no lane of its direction at any time, like {outside} vehicles",)
     names = np.array([int(x.name) for x in lanes] + [0])
-    differ = int(np.count_nonzero(names[lane] != tracks["laneId"]))
-    if 2 * differ > tracks.rows:
-        where = f"{tracks.path}, column laneId"
-        raise InputError(
-            f"{where}: {differ} of {tracks.rows} rows name another lane than the lane markings do"
-        )
+    other = names[lane] != tracks["laneId"]
+    differ = int(np.count_nonzero(other))
     if differ:
-        notes += (f"{tracks.path.name}: laneId is not the lane of the box's centre in {differ} rows",)
+        cell = tracks.cell(int(np.argmax(other)), "laneId")
+        rule = f"laneId is not the lane of the box's centre in {differ} rows of {tracks.rows}"
+        if differ > SHARE * tracks.rows:
+            raise InputError(f"{tracks.path}, {cell}: {rule}; do markings and positions fit?")
+        notes += (f"{tracks.path.name}, {cell}: {rule}",)
     return notes
 
 
-def _check_motion(rate: int, s: Floats, v_lon: Floats, start: Integers) -> tuple[str, ...]:
-    """Positions that run away from the velocities by more than a metre between two frames are noted."""
-    step = np.diff(s)
-    step -= (v_lon[1:] + v_lon[:-1]) / (2 * rate)
-    step[start[1:-1] - 1] = 0
-    jumps = int(np.count_nonzero(np.abs(step) > 1.0))
-    return (
-        (f"{jumps} samples where position and velocity differ by more than 1 m from frame to frame",)
-        if jumps
-        else ()
+def _check_limits(tracks: Table) -> None:
+    """No cell may say what no vehicle does; one of them would decide the pairs that are looked at."""
+    limits = {
+        "x": LARGEST_PLACE,
+        "y": LARGEST_PLACE,
+        "xVelocity": LARGEST_SPEED,
+        "yVelocity": LARGEST_SPEED,
+        "xAcceleration": LARGEST_ACCELERATION,
+        "yAcceleration": LARGEST_ACCELERATION,
+        "width": LARGEST_LENGTH,
+        "height": LARGEST_WIDTH,
+    }
+    for column, most in limits.items():
+        values = tracks[column]
+        if max(-values.min(), values.max()) > most:
+            tracks.require(np.abs(values) <= most, column, f"must lie between {-most:g} and {most:g}")
+
+
+def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
+    """x against the distance to the end of the section, which the format counts from the box's centre.
+
+    x + width/2 less that distance is one number for all vehicles, unless x is not the left edge.
+    """
+    names = ("id", "x", "width", "frontSightDistance", "backSightDistance")
+    rows = np.array(sample_rows(tracks.path, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
+    rows = rows[(rows[:, 3] > 0) & (rows[:, 4] > 0)]
+    if len(rows) < 50 or np.std(rows[:, 2]) < 0.2:
+        return ()
+    up = meta["drivingDirection"][np.searchsorted(meta["id"], rows[:, 0])] == UPPER
+    half = rows[:, 2] / 2
+    west = rows[:, 1] + half - np.where(up, rows[:, 3], rows[:, 4])
+    slope = float(np.cov(west, half)[0, 1] / np.var(half, ddof=1))
+    if abs(slope) <= OFF_CENTRE[0]:
+        return ()
+    told = (
+        f"column x: x + width/2 and the distances to the ends of the section differ by {slope:.2f} half "
+        "lengths: is x the left edge of the box?"
     )
+    if abs(slope) > OFF_CENTRE[1]:
+        raise InputError(f"{tracks.path}, {told}")
+    return (f"{tracks.path.name}, {told}",)
+
+
+_COLUMNS = {
+    "s": "x",
+    "d": "y",
+    "v_lon": "xVelocity",
+    "v_lat": "yVelocity",
+    "a_lon": "xAcceleration",
+    "length": "width",
+    "width": "height",
+}
+
+
+def _check_plausible(recording: Recording, tracks: Table) -> tuple[str, ...]:
+    notes = []
+    for doubt in find_doubts(recording):
+        cell = f"{tracks.cell(doubt.row, _COLUMNS[doubt.signal])} of vehicle {tracks['id'][doubt.row]}"
+        if doubt.refused:
+            raise InputError(f"{tracks.path}, {cell}: {doubt.told}")
+        notes.append(f"{tracks.path.name}, {cell}: {doubt.told}")
+    return tuple(notes)

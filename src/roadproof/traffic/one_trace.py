@@ -20,6 +20,7 @@ from roadproof.logic.rewrite import with_values
 from roadproof.logic.terms import SignalName, SizeName
 from roadproof.monitor.batch import Array, Batch
 from roadproof.spec.bind import occupies
+from roadproof.traffic.formats import other_table
 from roadproof.traffic.highd import read_highd
 from roadproof.traffic.pairs import row_of
 from roadproof.traffic.recording import Integers, Recording
@@ -188,9 +189,14 @@ def _rows(path: Path) -> list[dict[str, str]]:
     try:
         if path.stat().st_size > LARGEST_FILE:
             raise InputError(f"{path} is larger than {LARGEST_FILE} bytes; cut out what is to be monitored")
-        text = path.read_text("utf-8")
+        content = path.read_bytes()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path") from None
+    other = other_table(content, len(HEADER))
+    if other is not None:
+        raise InputError(f"{path}: the file {other}")
+    try:
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(f"{path}: is not UTF-8 text") from None
     lines = text.splitlines()

@@ -9,38 +9,83 @@ from roadproof.traffic.recording import Bools, Floats
 
 @dataclass(frozen=True)
 class Along:
-    """Points in the coordinates of a line: s along it, d to its left (m), and its direction there (rad)."""
+    """Points in the coordinates of a line: s along it, d to its left (m), and its direction there (rad).
+
+    ``stretch`` is how much longer a way of one metre is at the point than on the line, as a share: d times
+    the curvature, positive on the outer side.
+    """
 
     s: Floats
     d: Floats
     heading: Floats
+    stretch: Floats
+
+
+def even_line(line: Floats, step: float = 5.0) -> Floats:
+    """The polyline (m, 2) with vertices about ``step`` metres apart, so that its kinks are those of the road.
+
+    Lanelets have vertices centimetres apart, whose rounded coordinates turn the line by a degree and back.
+    """
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    at = np.linspace(0, way[-1], 1 + max(1, round(float(way[-1]) / step)))
+    return np.stack((np.interp(at, way, line[:, 0]), np.interp(at, way, line[:, 1])), axis=1)
 
 
 def project(line: Floats, points: Floats) -> Along:
     """Coordinates of ``points`` (n, 2) along the polyline ``line`` (m, 2), straight on beyond its ends.
 
-    Each point belongs to the nearest segment.
+    The direction of the line turns evenly from vertex to vertex (at a vertex it is that of the chord
+    between its neighbours), and a point belongs to the nearest place that it is square to; so s, d and
+    heading have no jumps at the kinks of the line (Héry, Xu, Bonnifait: *Map-based curvilinear coordinates
+    for autonomous vehicles*, IV 2017).
     """
     step = np.diff(line, axis=0)
     length = np.hypot(step[:, 0], step[:, 1])
     unit = step / length[:, None]
-    begin = np.concatenate(([0.0], np.cumsum(length)[:-1]))
+    direction = np.concatenate((unit[:1], line[2:] - line[:-2], unit[-1:]))
+    direction /= np.hypot(direction[:, 0], direction[:, 1])[:, None]
+    turn = np.diff(direction, axis=0)
     offset = points[:, None, :] - line[None, :-1, :]
-    along = (offset * unit).sum(axis=2)
-    low, high = np.zeros(len(length)), length.copy()
+    share = _square_to(offset, step, direction[:-1], turn)
+    straight = (offset * unit).sum(axis=2) / length
+    share[:, 0] = np.where(straight[:, 0] < 0, straight[:, 0], np.maximum(share[:, 0], 0))
+    share[:, -1] = np.where(straight[:, -1] > 1, straight[:, -1], np.minimum(share[:, -1], 1))
+    low, high = np.zeros(len(length)), np.ones(len(length))
     low[0], high[-1] = -np.inf, np.inf
-    foot = np.clip(along, low, high)
-    across = unit[:, 0] * offset[:, :, 1] - unit[:, 1] * offset[:, :, 0]
-    distance = np.hypot(along - foot, across)
-    nearest = np.argmin(distance, axis=1)
+    beyond = np.abs(share - np.clip(share, low, high)) * length
+    share = np.clip(share, low, high)
+    away = offset - share[:, :, None] * step
+    # A vertex may be nearer than the place beside it that the point is square to.
+    nearest = np.argmin(np.hypot(away[:, :, 0], away[:, :, 1]) + beyond, axis=1)
     rows = np.arange(len(points))
-    angle = np.arctan2(unit[:, 1], unit[:, 0])
-    side = np.where(across[rows, nearest] < 0, -1.0, 1.0)
+    on, off = share[rows, nearest], away[rows, nearest]
+    ahead = direction[nearest] + np.clip(on, 0, 1)[:, None] * turn[nearest]
+    ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
+    d = ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0]
+    begin = np.concatenate(([0.0], np.cumsum(length)[:-1]))
+    inside = (on >= 0) & (on <= 1)
+    angle = unit[:, 0] * turn[:, 1] - unit[:, 1] * turn[:, 0]
     return Along(
-        begin[nearest] + foot[rows, nearest],
-        side * distance[rows, nearest],
-        angle[nearest],
+        begin[nearest] + on * length[nearest],
+        d,
+        np.arctan2(ahead[:, 1], ahead[:, 0]),
+        np.where(inside, -d * (angle / length)[nearest], 0.0),
     )
+
+
+def _square_to(offset: Floats, step: Floats, direction: Floats, turn: Floats) -> Floats:
+    """Where on each segment, from 0 to 1, the line's direction is square to the way to each point.
+
+    That is (offset - x·step)·(direction + x·turn) = 0, of whose two solutions the one is taken that is there
+    for straight segments too.
+    """
+    constant = (offset * direction).sum(axis=2)
+    linear = (offset * turn).sum(axis=2) - (step * direction).sum(axis=1)
+    square = -(step * turn).sum(axis=1)
+    root = np.sqrt(np.maximum(linear**2 - 4 * square * constant, 0))
+    below = root - linear
+    share: Floats = np.divide(2 * constant, below, out=np.full_like(constant, np.inf), where=below > 0)
+    return share
 
 
 def boxes_of(centre: Floats, heading: Floats, length: Floats, width: Floats) -> Floats:

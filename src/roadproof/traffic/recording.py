@@ -6,7 +6,7 @@ Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 ``start[v]:start[v + 1]``, and its row of frame f is ``start[v] + f - first_frame[v]``.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, TypeAlias
@@ -122,6 +122,11 @@ def join_vehicles(recording: Recording, guests: Recording) -> Recording:
     }
     changed["start"] = np.concatenate((recording.start, recording.start[-1] + guests.start[1:]))
     return _replace(recording, changed)
+
+
+def with_notes(recording: Recording, notes: Iterable[str]) -> Recording:
+    """The recording with more notes."""
+    return _replace(recording, {"notes": (*recording.notes, *notes)})
 
 
 def offsets(counts: npt.NDArray[Any]) -> Integers:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from roadproof.errors import InputError, MissingSolverError
 from roadproof.files import whole_file
+from roadproof.traffic.formats import other_table
 
 Kind: TypeAlias = Literal["integer", "number", "text"]
 Column: TypeAlias = npt.NDArray[Any]
@@ -24,18 +25,27 @@ Column: TypeAlias = npt.NDArray[Any]
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of equal length by name, and the file that they came from."""
+    """Columns of equal length by name, and the file that they came from.
+
+    ``places``: for each row its place among the rows of the file, where it is another.
+    """
 
     path: Path
     columns: Mapping[str, Column]
     rows: int
+    places: Column | None = None
 
     def __getitem__(self, name: str) -> Column:
         return self.columns[name]
 
     def refuse(self, row: int, column: str, rule: str) -> InputError:
         """The error for the cell in data row ``row`` (from 0)."""
-        return cell_error(self.path, row, column, self.columns[column][row], rule)
+        return InputError(f"{self.path}, {self.cell(row, column)}: {rule}")
+
+    def cell(self, row: int, column: str) -> str:
+        """Row of the file, column and value of the cell in data row ``row`` (from 0)."""
+        place = row if self.places is None else int(self.places[row])
+        return f"row {place + 2}, column {column}={self.columns[column][row]}"
 
     def require(self, holds: npt.NDArray[np.bool_], column: str, rule: str) -> None:
         """Raise for the first row where ``holds`` is false."""
@@ -55,6 +65,9 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
     file that cannot be read, is empty or truncated, or breaks a rule above.
     """
     content = _read_bytes(path)
+    other = other_table(content, len(header))
+    if other is not None:
+        raise InputError(f"{path}: the file {other}")
     end = content.find(b"\n")
     _check_header(path, content[:end] if end >= 0 else content, header)
     rows = _check_shape(path, content, len(header))
@@ -67,6 +80,21 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
             row = int(np.argmin(np.isfinite(columns[name])))
             raise cell_error(path, row, name, columns[name][row], "a number must be finite")
     return Table(path, columns, rows)
+
+
+def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
+    """The numbers of ``names`` in about ``count`` rows, evenly over a file that ``read_table`` took."""
+    places = [header.index(name) for name in names]
+    found = []
+    with path.open("rb") as file:
+        size = file.seek(0, 2)
+        for k in range(count):
+            file.seek(size * k // count)
+            file.readline()
+            cells = file.readline().decode("ascii").strip().split(",")
+            if len(cells) == len(header):
+                found.append([float(cells[place]) for place in places])
+    return found
 
 
 def read_columns(path: Path, names: Sequence[str]) -> None:
