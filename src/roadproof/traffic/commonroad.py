@@ -7,7 +7,7 @@ at the headings of highway traffic moves its corners by a few centimetres.
 
 import math
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,8 +17,25 @@ from roadproof.errors import InputError
 from roadproof.traffic.formats import other_format
 from roadproof.traffic.lanelets import MeasuredLane, MeasuredLanelet, beside_of, lanes_of, zones_of
 from roadproof.traffic.overlaps import describe_overlaps
+from roadproof.traffic.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_LENGTH,
+    LARGEST_SPEED,
+    LARGEST_WIDTH,
+    find_doubts,
+)
 from roadproof.traffic.projection import boxes_of, even_line, inside, overlap, project, triangles_of
-from roadproof.traffic.recording import ZONES, Bools, Floats, Integers, Lane, Masks, Recording, offsets
+from roadproof.traffic.recording import (
+    ZONES,
+    Bools,
+    Floats,
+    Integers,
+    Lane,
+    Masks,
+    Recording,
+    offsets,
+    with_notes,
+)
 
 Element = ElementTree.Element
 ATTRIBUTES = {"accessRamp": "merge", "exitRamp": "departure"}
@@ -55,7 +72,7 @@ def read_commonroad(path: Path, truck_length: float = 7.0) -> Recording:
         raise InputError(f"{path}: {len(lanes)} lanes; at most 32 are supported, cut out a part of the road")
     obstacles, notes = _read_obstacles(path, root, truck_length)
     recording = _place(path.stem, rate, lanelets, lanes, obstacles, notes)
-    return _with_notes(recording)
+    return with_notes(recording, (*_check_plausible(path, recording), *_describe(recording)))
 
 
 def _place(
@@ -82,6 +99,7 @@ def _place(
         along = project(even_line(line), centre[ours])
         s[ours], d[ours], turned[ours] = along.s, along.d, heading[ours] - along.heading
         stretch[ours] = along.stretch
+    notes = (*notes, _say_stretch(stretch, start, [o.id for o in obstacles]))
     return Recording(
         name=name,
         rate=rate,
@@ -104,6 +122,17 @@ def _place(
         lane=lane,
         zones=zones,
         notes=notes,
+    )
+
+
+def _say_stretch(stretch: Floats, start: Integers, ids: Sequence[int]) -> str:
+    """How far lengths along the reference line are from those that vehicles drove."""
+    each = np.add.reduceat(stretch, start[:-1]) / np.diff(start)
+    worst = int(np.argmax(np.abs(each)))
+    return (
+        f"lengths along the reference line are off by {100 * np.abs(each).mean():.1f} % on average, by "
+        f"{100 * abs(each[worst]):.1f} % on the way of obstacle {ids[worst]}, by up to "
+        f"{100 * np.abs(stretch).max():.1f} % in a bend"
     )
 
 
@@ -142,16 +171,25 @@ def _centre_line(lanelets: Mapping[str, MeasuredLanelet], lanes: Sequence[Measur
     return max(lines, key=lambda line: float(np.hypot(*np.diff(line, axis=0).T).sum()))
 
 
-def _with_notes(recording: Recording) -> Recording:
-    """The recording with notes on overlaps, noise and vehicles beside the road."""
+def _check_plausible(path: Path, recording: Recording) -> Iterator[str]:
+    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
+    for doubt in find_doubts(recording):
+        vehicle, step = recording.row_vehicle[doubt.row], recording.row_frame[doubt.row]
+        who = f"dynamicObstacle {recording.vehicle_id[vehicle]}, time step {step}"
+        if doubt.refused:
+            raise InputError(f"{path}: {who}: {doubt.told}")
+        yield f"{path.name}: {who}: {doubt.told}"
+
+
+def _describe(recording: Recording) -> tuple[str, ...]:
+    """Notes on overlaps, noise and vehicles beside the road."""
     noisy = np.percentile(recording.a_lon, [0.5, 99.5])
     off = int(np.count_nonzero(recording.lane < 0))
     notes = list(describe_overlaps(recording))
     notes.append(f"accelerations: 99 % within {noisy[0]:.1f} and {noisy[1]:.1f} m/s²")
     if off:
         notes.append(f"{off} of {len(recording.s)} samples have the centre of the box on no lane")
-    fields = {x: getattr(recording, x) for x in Recording.__dataclass_fields__}
-    return Recording(**{**fields, "notes": (*recording.notes, *notes)})
+    return tuple(notes)
 
 
 def _parse(path: Path) -> Element:
@@ -242,6 +280,11 @@ def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) 
         raise InputError(
             f"{path}: {where} has length={length}, width={width}; both must be greater than zero"
         )
+    if length > LARGEST_LENGTH or width > LARGEST_WIDTH:
+        raise InputError(
+            f"{path}: {where} has length={length:g}, width={width:g}; no vehicle is longer than "
+            f"{LARGEST_LENGTH:g} m or wider than {LARGEST_WIDTH:g} m"
+        )
     rows = [
         _read_state(path, x, where)
         for x in (*node.findall("initialState"), *node.findall("trajectory/state"))
@@ -265,9 +308,15 @@ def _read_state(path: Path, node: Element, where: str) -> list[float]:
         "velocity": "velocity/exact",
         "acceleration": "acceleration/exact",
     }
-    return [
-        _number(path, node.findtext(place), f"{what} in a state of {where}") for what, place in places.items()
-    ]
+    state = {
+        what: _number(path, node.findtext(place), f"{what} in a state of {where}")
+        for what, place in places.items()
+    }
+    for what, most in (("velocity", LARGEST_SPEED), ("acceleration", LARGEST_ACCELERATION)):
+        if abs(state[what]) > most:
+            at = f"{what}={state[what]:g} of {where} at time step {state['time']:g}"
+            raise InputError(f"{path}: {at}: must lie between {-most:g} and {most:g}")
+    return list(state.values())
 
 
 def _number(path: Path, text: str | None, what: str) -> float:
