@@ -215,7 +215,10 @@ def test_jump_and_strange_lane_are_noted(tmp_path: Path) -> None:
     change(TRACKS, 7, "x", "15.40")(files)
     change(TRACKS, 7, "laneId", "5")(files)
     lane, jump = read(files, tmp_path).notes
-    cell, rule = "01_tracks.csv, row 8, column laneId=5", "laneId is not the lane of the box's centre in 1 rows of 10"
+    cell, rule = (
+        "01_tracks.csv, row 8, column laneId=5",
+        "laneId is not the lane of the box's centre in 1 rows of 10",
+    )
     assert lane == f"{cell}: {rule}"
     cell = "01_tracks.csv, row 8, column x=15.4 of vehicle 2"
     assert jump.startswith(f"{cell}: a position and the velocity differ by more than 1 m from one frame")
