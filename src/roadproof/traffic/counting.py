@@ -42,7 +42,7 @@ class Counted:
 
 
 def without_repeats(findings: Findings, counted: Counted) -> Findings:
-    """The findings without what an earlier recording has too: traces and their matches, violations, detections."""
+    """The findings without what an earlier recording has too: traces with matches, violations, detections."""
     if not findings.seen:
         return findings
 

@@ -115,7 +115,7 @@ def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
 
 
 def _overlapping(recording: Recording, found: Disturbances) -> Iterator[str]:
-    """Boxes that overlap violate the RSS distance, so they are among these; CommonRoad's are noted already."""
+    """Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already."""
     return describe_overlaps(recording, found.pairs) if not len(recording.moments) else iter(())
 
 

@@ -33,7 +33,7 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The totals, the recordings that could not be used, with the reason, and what marks each one's results."""
+    """The totals, the recordings that could not be used, and why, and what marks the results of each."""
 
     totals: Totals
     failed: dict[str, str]
@@ -55,10 +55,10 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
     kept = len(sources) - len(failed) - len(waiting)
     if kept:
         tell(f"{kept} of {len(sources)} recordings are already evaluated")
-    for error in failed.values():
+    for copy in failed.values():
         if not experiment.keep_going:
-            raise InputError(error)
-        tell(f"left out: {error}")
+            raise InputError(copy)
+        tell(f"left out: {copy}")
     for done, (source, error) in enumerate(_evaluate_all(experiment, question, marks, waiting), start=1):
         if error is not None and not experiment.keep_going:
             raise InputError(error)

@@ -6,6 +6,7 @@ pair by both at once, wherever the windows put time 0, the origin and the vehicl
 
 import hashlib
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,8 +23,8 @@ def moments_of(motion: Floats, start: Integers) -> Integers:
     a motion that many vehicles have: standing, steady, or at the end of what is seen.
     """
     made = np.zeros(len(motion), np.int64)
-    for begin, end in zip(start[:-1], start[1:], strict=True):
-        for k in range(int(begin), int(end) - STEPS + 1):
+    for begin, end in pairwise(start.tolist()):
+        for k in range(begin, end - STEPS + 1):
             seen = motion[k : k + STEPS]
             if len(np.unique(seen, axis=0)) > STEPS // 2:
                 made[k] = _number(seen.tobytes())

@@ -94,7 +94,7 @@ def load_findings(path: Path, mark: str) -> Findings | None:
         if told["seal"] != seal(mark, found):
             return None
         made = {name: tuple(kind(*row) for row in found[name]) for name, kind in _ROWS.items()}
-        seen = tuple(Seen(*row[:-1], keys=tuple(row[-1])) for row in found["seen"])
+        seen = tuple(Seen(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
         return Findings(**{**found, **made, "notes": tuple(found["notes"]), "seen": seen})
     except (OSError, ValueError, KeyError, TypeError):
         return None
@@ -287,14 +287,19 @@ def as_json(totals: Totals) -> dict[str, Any]:
             "broken": totals.broken,
             "scenario3And4Differ": [list(x) for x in totals.unequal_3_4],
         },
-        "repeats": [
-            {
-                **vars(x),
-                "min_danger": None if x.min_danger is None else str(totals.settings.min_danger[x.min_danger]),
-            }
-            for x in totals.repeats
-        ],
+        "repeats": [_repeat_as_json(totals, x) for x in totals.repeats],
         "notes": {name: list(notes) for name, notes in totals.notes.items()},
+    }
+
+
+def _repeat_as_json(totals: Totals, repeat: Repeat) -> dict[str, Any]:
+    danger = None if repeat.min_danger is None else str(totals.settings.min_danger[repeat.min_danger])
+    return {
+        "recording": repeat.recording,
+        "pair": [repeat.first, repeat.second],
+        "what": repeat.what,
+        "minDanger": danger,
+        "shownIn": repeat.shown_in,
     }
 
 
