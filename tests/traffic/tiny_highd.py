@@ -14,7 +14,7 @@ LAYOUTS = {
 
 
 def tiny_files(layout: str = "2+2") -> Files:
-    """Three vehicles: 1 drives up (towards -x), 2 and 3 down (towards +x); 3, a truck, begins to change lanes."""
+    """Three vehicles: 1 drives up (towards -x), 2 and 3 down (towards +x); 3 is a truck that drifts right."""
     upper, lower = LAYOUTS[layout]
     first = 2 if layout == "2+2" else 3  # laneId of the band that holds vehicle 1
     below = len(upper.split(";")) + 2

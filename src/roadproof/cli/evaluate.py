@@ -26,6 +26,7 @@ from roadproof.verdict import ExitCode, Verdict
 if TYPE_CHECKING:
     from roadproof.traffic.experiment import Experiment, Outcome
     from roadproof.traffic.questions import Settings
+    from roadproof.traffic.results import Totals
 
 SUMMARY = "find disturbances in recorded traffic and match them with the scenarios"
 
@@ -78,17 +79,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.report.answers import answer_questions
-    from roadproof.report.tables import as_text
-    from roadproof.report.traffic import comparison_table, results_table
-    from roadproof.report.write_traffic import write_report
-    from roadproof.traffic.experiment import Experiment, run_experiment
-    from roadproof.traffic.results import as_json
+    from roadproof.files import hold_folder
+    from roadproof.traffic.experiment import Experiment
+    from roadproof.traffic.sources import find_sources
 
     jobs = os.cpu_count() or 1 if args.jobs is None else args.jobs
     if jobs < 1:
         raise UsageError(f"--jobs {jobs}: at least one process is needed")
     experiment = Experiment(args.path, args.out, _settings(args), jobs, args.keep_going)
+    find_sources(args.path)
+    with hold_folder(args.out):
+        return _evaluate(args, experiment)
+
+
+def _evaluate(args: argparse.Namespace, experiment: "Experiment") -> int:
+    """The experiment, in a folder that no other run is writing into."""
+    from roadproof.report.answers import answer_questions
+    from roadproof.report.tables import as_text
+    from roadproof.report.traffic import comparison_table, results_table
+    from roadproof.report.write_traffic import remove_report, write_report
+    from roadproof.traffic.experiment import run_experiment
+    from roadproof.traffic.results import as_json
+
+    remove_report(args.out)
     outcome = run_experiment(experiment, note)
     totals, failed = outcome.totals, outcome.failed
     denied = list(_recheck(experiment, outcome)) if args.check else []
@@ -105,10 +118,20 @@ def run(args: argparse.Namespace) -> int:
         if len(facts) > MOST_FACTS:
             print(f"… {len(facts) - MOST_FACTS} more in {args.out / 'answers.md'}")
     _sweep(args.out)
+    _tell_notes(args.out, totals)
     for name, reason in failed.items():
         print(f"left out: recording {name}: {reason}", file=sys.stderr)
     note(f"written to {args.out}: " + ", ".join(sorted(x.name for x in args.out.iterdir())))
     return max(_verdict(totals.broken, denied), ExitCode.UNKNOWN if outcome.lost else ExitCode.AS_EXPECTED)
+
+
+def _tell_notes(out: Path, totals: "Totals") -> None:
+    """What is odd in the recordings, on the screen; all of it is in the results."""
+    remarks = [(name, remark) for name, each in totals.notes.items() for remark in each]
+    for name, remark in remarks[:MOST_FACTS]:
+        note(f"note: recording {name}: {remark}")
+    if len(remarks) > MOST_FACTS:
+        note(f"… {len(remarks) - MOST_FACTS} more notes in {out / 'results.json'}")
 
 
 def _sweep(out: Path) -> None:

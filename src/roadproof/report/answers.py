@@ -21,6 +21,7 @@ def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) ->
         "## RQ4: does minDanger matter?\n\n" + _min_danger(totals),
         "## RQ5: beside earlier definitions\n\n" + _earlier(totals),
         "## Facts checked on this run\n\n" + _facts(totals),
+        *_notes(totals),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -113,6 +114,12 @@ def _earlier(totals: Totals) -> str:
         ours = f"{row.scenarios[number]} [{COMPARISON[kind]['RSS']}]"
         lines.append(f"{kind}: {found}; scenario {number} of ext {ours}.")
     return _listed(lines)
+
+
+def _notes(totals: Totals) -> Iterator[str]:
+    if totals.notes:
+        each = (f"recording {name}: {note}" for name, notes in totals.notes.items() for note in notes)
+        yield "## What is odd in the recordings\n\n" + _listed(each)
 
 
 def _facts(totals: Totals) -> str:

@@ -32,6 +32,8 @@ def results_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> Ta
             "matching and recall are by scenarios of two cars, as in the paper. s2 counts pairs (SV, POV2).",
             _convention(totals),
             *_warnings(failed),
+            *_repeats(totals),
+            *_notes(totals),
         ),
     )
 
@@ -84,6 +86,24 @@ def missing(failed: Mapping[str, str]) -> str:
 
 def _warnings(failed: Mapping[str, str]) -> tuple[str, ...]:
     return (missing(failed),) if failed else ()
+
+
+def _repeats(totals: Totals) -> tuple[str, ...]:
+    if not totals.repeated:
+        return ()
+    of = totals.repeated + sum(row.traces for row in totals.rows if row.set_name == totals.settings.sets[0])
+    return (
+        f"{totals.repeated} of {of} traces are shown by an earlier recording too, so they are left out; "
+        "vehicles and samples count as often as they are shown.",
+    )
+
+
+def _notes(totals: Totals) -> tuple[str, ...]:
+    count = sum(map(len, totals.notes.values()))
+    if not count:
+        return ()
+    said = "is 1 note" if count == 1 else f"are {count} notes"
+    return (f"There {said} on {len(totals.notes)} recordings: what is odd there is in results.json.",)
 
 
 def _thresholds(totals: Totals) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from roadproof.files import write_whole
+from roadproof.files import cannot_write, write_whole
 from roadproof.report.answers import answer_questions
 from roadproof.report.tables import LOOKS
 from roadproof.report.traffic import comparison_table, results_table
@@ -29,3 +29,21 @@ def write_report(folder: Path, totals: Totals, failed: Mapping[str, str], pictur
         for name, formats in draw_figures(totals):
             for ending, content in formats.items():
                 write_whole(folder / "figures" / f"{name}.{ending}", content)
+
+
+def remove_report(folder: Path) -> None:
+    """Remove the tables of an earlier run, so that those of other recordings never outlive a run that fails.
+
+    What was found in single recordings stays.
+    """
+    names = ["matches.csv", "pairs.csv", "results.json", "answers.md"]
+    names += [f"{name}.{ending}" for name in ("results", "comparison") for ending in LOOKS]
+    try:
+        for path in (
+            *(folder / name for name in names),
+            *folder.glob("figures/*.png"),
+            *folder.glob("figures/*.svg"),
+        ):
+            path.unlink(missing_ok=True)
+    except OSError as error:
+        raise cannot_write(folder, error) from None

@@ -36,6 +36,7 @@ from roadproof.traffic.recording import (
     offsets,
     with_notes,
 )
+from roadproof.traffic.repeats import moments_of
 
 Element = ElementTree.Element
 ATTRIBUTES = {"accessRamp": "merge", "exitRamp": "departure"}
@@ -86,6 +87,7 @@ def _place(
     counts = np.array([len(o.states) for o in obstacles])
     states = np.concatenate([o.states for o in obstacles])
     length, width = (np.array([getattr(o, x) for o in obstacles]) for x in ("length", "width"))
+    sizes = np.stack((length, width), axis=1)
     centre, heading, speed, pull = states[:, :2], states[:, 2], states[:, 3], states[:, 4]
     boxes = boxes_of(centre, heading, np.repeat(length, counts), np.repeat(width, counts))
     occupancy, lane, zones = _occupy(lanelets, lanes, boxes, centre)
@@ -122,6 +124,7 @@ def _place(
         lane=lane,
         zones=zones,
         notes=notes,
+        moments=moments_of(np.column_stack((speed, pull, np.repeat(sizes, counts, axis=0))), start),
     )
 
 

@@ -16,9 +16,11 @@ from roadproof.traffic.disturbances import (
     cut_triples,
     find_disturbances,
 )
+from roadproof.traffic.overlaps import describe_overlaps
 from roadproof.traffic.pairs import triples_of
 from roadproof.traffic.questions import PAIR, TRIPLE, Questions
 from roadproof.traffic.recording import Bools, Integers, Recording
+from roadproof.traffic.repeats import Seen, see_pair
 from roadproof.traffic.traces import NEEDED, gather
 
 SIGNALS: tuple[SignalName, ...] = (*NEEDED, "a_lon")
@@ -64,7 +66,8 @@ class Findings:
     """What was found in one recording. ``violating``: pairs with an rssViolation in some frame.
 
     ``undecided`` counts questions whose answer depends on what comes after the trace, ``differing``
-    those that the other convention for the end of a trace answers otherwise.
+    those that the other convention for the end of a trace answers otherwise. ``seen``: the pairs that
+    violate or are detected, where another recording may show them too.
     """
 
     recording: str
@@ -79,6 +82,7 @@ class Findings:
     matches: tuple[Match, ...]
     detections: tuple[Detection, ...]
     notes: tuple[str, ...]
+    seen: tuple[Seen, ...] = ()
 
 
 def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
@@ -92,6 +96,7 @@ def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
     if questions.triple_start is not None:
         cut = _candidates(recording, questions, found)
         matches += _match_triples(recording, questions, cut, tally)
+    detections = find_detections(recording, questions, found.meeting)
     return Findings(
         recording=recording.name,
         vehicles=recording.vehicles,
@@ -103,9 +108,24 @@ def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
         differing=tally.differing,
         traces=tuple(_traces(recording, found)),
         matches=tuple(sorted(matches, key=_order)),
-        detections=find_detections(recording, questions, found.meeting),
-        notes=recording.notes,
+        detections=detections,
+        notes=(*recording.notes, *_overlapping(recording, found)),
+        seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),
     )
+
+
+def _overlapping(recording: Recording, found: Disturbances) -> Iterator[str]:
+    """Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already."""
+    return describe_overlaps(recording, found.pairs) if not len(recording.moments) else iter(())
+
+
+def _see(recording: Recording, found: Disturbances, detections: tuple[Detection, ...]) -> Iterator[Seen]:
+    ids = recording.vehicle_id
+    violating = set(zip(found.pairs.first.tolist(), found.pairs.second.tolist(), strict=True))
+    place = {number: v for v, number in enumerate(ids.tolist())}
+    detected = {(place[a], place[b]) for a, b in (x.pair for x in detections)}
+    for first, second in sorted(violating | detected):
+        yield see_pair(recording, first, second, (first, second) in violating)
 
 
 def _order(match: Match) -> tuple[object, ...]:

@@ -1,6 +1,6 @@
 """The highD experiment over many recordings: resumable, and in memory one recording a process."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +8,14 @@ from pathlib import Path
 from roadproof.errors import InputError
 from roadproof.traffic.evaluate import Findings, evaluate_recording
 from roadproof.traffic.questions import Questions, Settings, ask
-from roadproof.traffic.results import Totals, fingerprint, load_findings, save_findings, write_results
+from roadproof.traffic.results import (
+    Totals,
+    fingerprint,
+    load_findings,
+    question_mark,
+    save_findings,
+    write_results,
+)
 from roadproof.traffic.sources import RecordingSource, find_sources
 from roadproof.workers import Lost, answers_of
 
@@ -26,13 +33,14 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The totals, and the recordings that could not be used, with the reason.
+    """The totals, the recordings that could not be used, and why, and what marks the results of each.
 
     ``lost`` are those among them whose process ended twice, which may be the machine's fault.
     """
 
     totals: Totals
     failed: dict[str, str]
+    marks: Mapping[str, str]
     lost: tuple[str, ...] = ()
 
 
@@ -40,15 +48,23 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
     """Evaluate every recording that has no valid result yet, then write the results of all.
 
     ``tell`` gets a line for each recording that is done. Raises ``InputError`` for the first
-    recording that cannot be read, unless ``keep_going``: then it is left out, and said so.
+    recording that cannot be evaluated, unless ``keep_going``: then it is left out, and said so.
     """
     sources = find_sources(experiment.recordings)
-    waiting = [s for s in sources if _known(experiment, s) is None]
-    if len(waiting) < len(sources):
-        tell(f"{len(sources) - len(waiting)} of {len(sources)} recordings are already evaluated")
-    failed: dict[str, str] = {}
+    question = question_mark(experiment.settings)
+    digests = {source.name: source.digests() for source in sources}
+    marks = {name: fingerprint(question, found) for name, found in digests.items()}
+    failed = _copies(sources, digests)
+    waiting = [s for s in sources if s.name not in failed and not _is_kept(experiment, s, marks[s.name])]
+    kept = len(sources) - len(failed) - len(waiting)
+    if kept:
+        tell(f"{kept} of {len(sources)} recordings are already evaluated")
+    for copy in failed.values():
+        if not experiment.keep_going:
+            raise InputError(copy)
+        tell(f"left out: {copy}")
     lost: list[str] = []
-    for done, (source, error) in enumerate(_evaluate_all(experiment, waiting), start=1):
+    for done, (source, error) in enumerate(_evaluate_all(experiment, question, marks, waiting), start=1):
         if isinstance(error, Lost):
             lost.append(source.name)
             error = error.reason
@@ -64,70 +80,101 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
 
     def findings() -> Iterator[Findings]:
         for source in sources:
-            found = None if source.name in failed else _known(experiment, source)
+            found = None if source.name in failed else _known(experiment, source, marks[source.name])
             if found is None and source.name not in failed:
-                raise InputError(
-                    f"recording {source.name}: its files or results changed while they were used"
-                )
+                raise InputError(f"recording {source.name}: its results changed while they were used")
             if found is not None:
                 yield found
 
     in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
     totals = write_results(experiment.out, experiment.settings, findings(), in_order)
-    return Outcome(totals, in_order, tuple(lost))
+    return Outcome(totals, in_order, marks, tuple(lost))
 
 
 def saved_findings(experiment: Experiment, outcome: Outcome) -> Iterator[tuple[RecordingSource, Findings]]:
     """What an experiment that is done has saved of each recording, in order."""
     for source in find_sources(experiment.recordings):
-        found = None if source.name in outcome.failed else _known(experiment, source)
-        if found is not None:
-            yield source, found
+        if source.name in outcome.marks and source.name not in outcome.failed:
+            found = _known(experiment, source, outcome.marks[source.name])
+            if found is not None:
+                yield source, found
+
+
+def _copies(sources: Sequence[RecordingSource], digests: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    """The recordings whose samples are those of an earlier one: evaluated, they would count twice."""
+    first: dict[str, RecordingSource] = {}
+    copies = {}
+    for source in sources:
+        samples = digests[source.name][-1]
+        if samples and samples in first:
+            other = first[samples].files[-1]
+            copies[source.name] = f"{source.files[-1]}: the same content as {other}; remove one of the two"
+        first.setdefault(samples, source)
+    return copies
 
 
 def _path(out: Path, source: RecordingSource) -> Path:
     return out / "recordings" / f"{source.name}.json"
 
 
-def _known(experiment: Experiment, source: RecordingSource) -> Findings | None:
-    mark = fingerprint(experiment.settings, source.stamp())
+def _is_kept(experiment: Experiment, source: RecordingSource, mark: str) -> bool:
+    return _known(experiment, source, mark) is not None
+
+
+def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findings | None:
     return load_findings(_path(experiment.out, source), mark)
 
 
 def _evaluate_all(
-    experiment: Experiment, sources: list[RecordingSource]
+    experiment: Experiment, question: str, marks: Mapping[str, str], sources: list[RecordingSource]
 ) -> Iterator[tuple[RecordingSource, str | Lost | None]]:
     """Evaluate and save each; the second part is why a recording could not be used."""
+    jobs = [_Job(experiment.settings, question, experiment.out, s, marks[s.name]) for s in sources]
     if experiment.jobs == 1 or len(sources) < 2:
-        for source in sources:
-            yield source, _evaluate((experiment.settings, experiment.out, source))
+        for job in jobs:
+            yield job.source, _evaluate(job)
         return
-    tasks = [(experiment.settings, experiment.out, source) for source in sources]
     # Threads of a library may hold locks while a process forks, so workers start afresh.
-    with closing(answers_of(_evaluate, tasks, min(experiment.jobs, len(sources)), fresh=True)) as answers:
+    with closing(answers_of(_evaluate, jobs, min(experiment.jobs, len(sources)), fresh=True)) as answers:
         for place, error in answers:
             yield sources[place], error
 
 
-def _evaluate(task: tuple[Settings, Path, RecordingSource]) -> str | None:
-    settings, out, source = task
-    mark = fingerprint(settings, source.stamp())
+@dataclass(frozen=True)
+class _Job:
+    """One recording to evaluate: ``question`` marks the settings, ``mark`` the results."""
+
+    settings: Settings
+    question: str
+    out: Path
+    source: RecordingSource
+    mark: str
+
+
+def _evaluate(job: _Job) -> str | None:
+    """Read, evaluate and save; why the recording cannot be used, where it is the files' fault."""
     try:
-        recording = source.read()
+        recording = job.source.read()
     except InputError as error:
         return str(error)
-    save_findings(
-        _path(out, source), evaluate_recording(recording, _questions(settings, recording.rate)), mark
-    )
+    try:
+        questions = _questions(job.settings, job.question, recording.rate)
+    except InputError as error:
+        return f"{job.source.place_of_rate(recording.rate)}: {error}"
+    try:
+        findings = evaluate_recording(recording, questions)
+    except Exception as error:
+        raise RuntimeError(f"recording {job.source.name}: {type(error).__name__}: {error}") from error
+    save_findings(_path(job.out, job.source), findings, job.mark)
     return None
 
 
-_asked: dict[int, tuple[Settings, Questions]] = {}
+_asked: dict[tuple[str, int], Questions] = {}
 
 
-def _questions(settings: Settings, rate: int) -> Questions:
-    """Compiled once a process and rate."""
-    known = _asked.get(rate)
-    if known is None or known[0] is not settings:
-        _asked[rate] = (settings, ask(settings, rate))
-    return _asked[rate][1]
+def _questions(settings: Settings, question: str, rate: int) -> Questions:
+    """Compiled once a process for each rate; ``question`` tells settings apart, which come as copies."""
+    if (question, rate) not in _asked:
+        _asked.clear()
+        _asked[question, rate] = ask(settings, rate)
+    return _asked[question, rate]

@@ -1,4 +1,4 @@
-"""What a file is that was given where a table or an XML file is expected: named, so that it can be put right."""
+"""What a file is that was given where a table or XML is expected, named so that it can be put right."""
 
 _BEGINNINGS: tuple[tuple[bytes, str], ...] = (
     (b"\x1f\x8b", "is compressed by gzip; unpack it first (gunzip)"),

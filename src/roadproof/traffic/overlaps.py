@@ -4,16 +4,24 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from roadproof.traffic.pairs import common_pairs, row_of
+from roadproof.traffic.pairs import Pairs, Within, common_pairs, ever_within, row_of
 from roadproof.traffic.recording import Recording
 
 
-def find_overlaps(recording: Recording) -> Iterator[tuple[int, int, int, float]]:
+def find_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[tuple[int, int, int, float]]:
     """Pairs whose boxes overlap with positive area: both ids, in how many frames, how deep at most (m).
+
+    All pairs are looked at, or those ``among``.
 
     Depth is the smaller of the overlaps along and across, as large as it ever gets.
     """
-    pairs = common_pairs(recording, np.ones(recording.vehicles, bool))
+    pairs = common_pairs(recording, np.ones(recording.vehicles, bool)) if among is None else among
+    first, second = pairs.first, pairs.second
+    touching = [
+        Within(position, size[first], size[second])
+        for position, size in ((recording.s, recording.length), (recording.d, recording.width))
+    ]
+    pairs = pairs.choose(ever_within(recording, pairs, touching))
     for first, second, low, high in zip(pairs.first, pairs.second, pairs.low, pairs.high, strict=True):
         one, other = (
             slice(int(row_of(recording, v, low)), int(row_of(recording, v, high)) + 1)
@@ -29,7 +37,7 @@ def find_overlaps(recording: Recording) -> Iterator[tuple[int, int, int, float]]
             yield int(ids[first]), int(ids[second]), int(np.count_nonzero(depth > 0)), float(depth.max())
 
 
-def describe_overlaps(recording: Recording) -> Iterator[str]:
+def describe_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[str]:
     """One line for each pair that overlaps."""
-    for one, other, frames, depth in find_overlaps(recording):
+    for one, other, frames, depth in find_overlaps(recording, among):
         yield f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth:.2f} m"

@@ -197,7 +197,7 @@ def _too_many(broken: int, asked: int, share: float) -> bool:
 
 
 def _places(recording: Recording) -> Iterator[Doubt]:
-    """Vehicles of one direction that all drive beside the middle of their lanes: not the corner is tracked."""
+    """Vehicles of one direction that all drive beside the middle of their lanes, so no corner is tracked."""
     bands = [lane.d for lane in recording.lanes]
     if any(band is None for band in bands):
         return
@@ -214,8 +214,8 @@ def _places(recording: Recording) -> Iterator[Doubt]:
         if abs(median) > OFF_CENTRE[0]:
             side = "left" if median > 0 else "right"
             rule = (
-                f"vehicles of direction {way} drive {abs(median):.2f} half widths {side} of the middle of their "
-                "lanes: is a position the upper-left corner of the box?"
+                f"vehicles of direction {way} drive {abs(median):.2f} half widths {side} of the middle of "
+                "their lanes: is a position the upper-left corner of the box?"
             )
             row = int(np.argmax(ours & (np.abs(beside) > OFF_CENTRE[0])))
             yield Doubt(rule, "d", row, many, many, "vehicles", abs(median) > OFF_CENTRE[1])

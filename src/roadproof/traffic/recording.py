@@ -7,7 +7,7 @@ Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -42,6 +42,7 @@ class Recording:
     area, SPEC §4), ``lane`` (index of the lane that holds the centre of the box, -1 for none) and
     ``zones`` (bit k: the box occupies a lanelet of zone ZONES[k]).
     ``beside`` holds unordered pairs of names of adjacent lanes. ``notes`` says what is odd but usable.
+    ``moments``: where other recordings may show the same, a number a sample that says so (repeats.py).
     """
 
     name: str
@@ -65,6 +66,7 @@ class Recording:
     lane: Integers
     zones: Masks
     notes: tuple[str, ...] = ()
+    moments: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
 
     @property
     def vehicles(self) -> int:
@@ -103,6 +105,8 @@ def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
         for name in ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
     }
     changed |= {name: getattr(recording, name)[rows] for name in (*SIGNALS, "occupancy", "lane", "zones")}
+    if len(recording.moments):
+        changed["moments"] = recording.moments[rows]
     return _replace(recording, changed | {"start": offsets(counts)})
 
 
@@ -113,6 +117,8 @@ def join_vehicles(recording: Recording, guests: Recording) -> Recording:
     """
     if (recording.rate, recording.lanes) != (guests.rate, guests.lanes):
         raise ValueError("recordings of different roads or rates cannot be joined")
+    if len(recording.moments) or len(guests.moments):
+        raise ValueError("recordings whose moments others may show cannot be joined")
     if recording.vehicles and guests.vehicle_id.min() <= recording.vehicle_id.max():
         raise ValueError("the ids of the guests must be greater than those of the recording")
     per_vehicle = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")

@@ -8,20 +8,23 @@ import csv
 import hashlib
 import json
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
+from importlib.metadata import version
 from io import TextIOWrapper
 from pathlib import Path
 from typing import Any, TextIO
 
 from roadproof.files import make_folder, whole_file
+from roadproof.traffic.counting import Counted, Repeat, without_repeats
 from roadproof.traffic.detectors import Detection
 from roadproof.traffic.evaluate import Findings, Match, Trace
 from roadproof.traffic.questions import Settings
+from roadproof.traffic.repeats import Seen
 
-RECORDING_SCHEMA = "roadproof/recording-findings/1"
+RECORDING_SCHEMA = "roadproof/recording-findings/2"
 RESULTS_SCHEMA = "roadproof/traffic-results/1"
 MATCH_COLUMNS = tuple(
     "recording sv pov pov2 lane start_frame end_frame min_danger set scenario".split()  # noqa: SIM905
@@ -31,14 +34,23 @@ PAIR_COLUMNS = tuple(
 )
 
 
-def fingerprint(settings: Settings, stamp: list[list[int]]) -> str:
-    """Changes whenever the settings, the specification or a file of the recording do."""
+def question_mark(settings: Settings) -> str:
+    """Changes whenever the settings, the specification or the version of this program do."""
     told = {
         "schema": RECORDING_SCHEMA,
+        "version": version("roadproof"),
         "settings": describe(settings),
         "specification": {name: source.text for name, source in sorted(settings.library.sources.items())},
-        "files": stamp,
     }
+    return _digest(told)
+
+
+def fingerprint(question: str, digests: Sequence[str]) -> str:
+    """Changes whenever the question's mark or the content of a file of the recording does."""
+    return _digest([question, *digests])
+
+
+def _digest(told: object) -> str:
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
@@ -61,20 +73,29 @@ def save_findings(path: Path, findings: Findings, mark: str) -> None:
     found: dict[str, Any] = {**vars(findings)}
     for name in _ROWS:
         found[name] = [list(vars(row).values()) for row in found[name]]
-    told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "findings": found}
+    found["seen"] = [list(vars(pair).values()) for pair in findings.seen]
+    told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "seal": seal(mark, found), "findings": found}
     with whole_text(path) as file:
         file.write(json.dumps(told) + "\n")
 
 
+def seal(mark: str, found: Mapping[str, Any]) -> str:
+    """What findings that were saved must still have: a digest of them and their fingerprint."""
+    return _digest([mark, found])
+
+
 def load_findings(path: Path, mark: str) -> Findings | None:
-    """Findings that were saved under the same fingerprint, else None."""
+    """Findings that were saved under the same fingerprint and not changed since, else None."""
     try:
         told = json.loads(path.read_text())
+        found = told["findings"]
         if told["schema"] != RECORDING_SCHEMA or told["fingerprint"] != mark:
             return None
-        found = told["findings"]
+        if told["seal"] != seal(mark, found):
+            return None
         made = {name: tuple(kind(*row) for row in found[name]) for name, kind in _ROWS.items()}
-        return Findings(**{**found, **made, "notes": tuple(found["notes"])})
+        seen = tuple(Seen(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
+        return Findings(**{**found, **made, "notes": tuple(found["notes"]), "seen": seen})
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
@@ -134,6 +155,13 @@ class Totals:
     detected: Counter[str] = field(default_factory=Counter)
     unequal_3_4: list[tuple[str, int, int, str]] = field(default_factory=list)
     broken: list[str] = field(default_factory=list)
+    notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    repeats: list[Repeat] = field(default_factory=list)
+
+    @property
+    def repeated(self) -> int:
+        """How many traces are left out because an earlier recording has them too."""
+        return sum(x.what == "trace" for x in self.repeats)
 
 
 def begin_totals(settings: Settings) -> Totals:
@@ -210,22 +238,24 @@ def write_results(
 ) -> Totals:
     """Write matches.csv, pairs.csv and results.json; ``findings`` gives the recordings in order.
 
-    Recordings are taken one at a time. ``failed`` says which are left out and why.
+    Recordings are taken one at a time, and what an earlier one shows too is left out. ``failed`` says which
+    recordings are left out and why.
     """
     totals = begin_totals(settings)
-    notes = {}
+    counted = Counted(repeats=totals.repeats)
     with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
         match_rows.writerow(MATCH_COLUMNS)
         pair_rows.writerow((*PAIR_COLUMNS, *settings.sets))
-        for found in findings:
+        for all_found in findings:
+            found = without_repeats(all_found, counted)
             add_findings(totals, found)
             match_rows.writerows(_match_rows(settings, found))
             pair_rows.writerows(_pair_rows(settings, found))
             if found.notes:
-                notes[found.recording] = list(found.notes)
+                totals.notes[found.recording] = found.notes
     with whole_text(folder / "results.json") as file:
-        told = {**as_json(totals), "notes": notes, "failed": dict(failed)}
+        told = {**as_json(totals), "failed": dict(failed)}
         file.write(json.dumps(told, indent=1) + "\n")
     return totals
 
@@ -257,6 +287,19 @@ def as_json(totals: Totals) -> dict[str, Any]:
             "broken": totals.broken,
             "scenario3And4Differ": [list(x) for x in totals.unequal_3_4],
         },
+        "repeats": [_repeat_as_json(totals, x) for x in totals.repeats],
+        "notes": {name: list(notes) for name, notes in totals.notes.items()},
+    }
+
+
+def _repeat_as_json(totals: Totals, repeat: Repeat) -> dict[str, Any]:
+    danger = None if repeat.min_danger is None else str(totals.settings.min_danger[repeat.min_danger])
+    return {
+        "recording": repeat.recording,
+        "pair": [repeat.first, repeat.second],
+        "what": repeat.what,
+        "minDanger": danger,
+        "shownIn": repeat.shown_in,
     }
 
 

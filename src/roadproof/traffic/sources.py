@@ -1,5 +1,6 @@
 """Which recordings a path holds, in whatever format, and what tells that their files are the same."""
 
+import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,9 +25,15 @@ class RecordingSource:
             return read_commonroad(self.files[0])
         return read_highd(self.files[0].parent, self.name)
 
-    def stamp(self) -> list[list[int]]:
-        """Size and time of change (ns) of each file, [-1, -1] for one that is missing."""
-        return [_stamp(path) for path in self.files]
+    def digests(self) -> list[str]:
+        """A digest of the content of each file, empty for one that cannot be read."""
+        return [_digest(path) for path in self.files]
+
+    def place_of_rate(self, rate: int) -> str:
+        """Where the files say how many samples a second there are."""
+        if self.files[0].suffix == ".xml":
+            return f"{self.files[0]}: timeStepSize={1 / rate:g}"
+        return f"{self.files[0]}, row 2, column frameRate={rate}"
 
 
 def find_sources(path: Path) -> tuple[RecordingSource, ...]:
@@ -46,9 +53,9 @@ def find_sources(path: Path) -> tuple[RecordingSource, ...]:
     )
 
 
-def _stamp(path: Path) -> list[int]:
+def _digest(path: Path) -> str:
     try:
-        status = path.stat()
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError:
-        return [-1, -1]
-    return [status.st_size, status.st_mtime_ns]
+        return ""
