@@ -27,7 +27,7 @@ class InputError(RoadproofError):
 
 
 class MissingSolverError(RoadproofError):
-    """A solver that was asked for is not installed."""
+    """A solver or another library that was asked for is not installed."""
 
     exit_code = 4
 

@@ -45,7 +45,7 @@ class Grid:
         if steps.denominator != 1:
             raise UsageError(
                 f"the interval bound {float(bound):g} s is no multiple of dt={float(self.dt):g} s: "
-                f"choose a dt that divides both, such as --dt {_common_divisor(bound, self.dt)}"
+                f"choose a dt that divides both, such as dt={_common_divisor(bound, self.dt)}"
             )
         return int(steps)
 

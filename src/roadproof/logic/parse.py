@@ -19,6 +19,7 @@ from lark.visitors import Transformer_NonRecursive
 
 from roadproof.errors import Position, TextError
 from roadproof.logic import syntax
+from roadproof.logic.foreign import find_foreign
 from roadproof.logic.syntax import Expression, Statement
 
 DEEPEST_NESTING = 100
@@ -154,6 +155,13 @@ def _readable(names: set[str]) -> str:
 
 
 def _explain(error: UnexpectedInput, text: str) -> TextError:
+    mistake = error.pos_in_stream
+    foreign = None if mistake is None else find_foreign(text, mistake)
+    if foreign is not None:
+        begin, sign, instead = foreign
+        line = text.count("\n", 0, begin) + 1
+        position = Position(line, begin - text.rfind("\n", 0, begin))
+        return TextError(f"'{sign}' is not of this language", position, instead)
     if isinstance(error, UnexpectedToken) and error.token.type != "$END":
         expected = set(error.accepts or error.expected)
         return TextError(

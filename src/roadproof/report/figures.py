@@ -4,20 +4,20 @@ import io
 from collections.abc import Sequence
 from typing import Any
 
-from roadproof.errors import InputError
+from roadproof.errors import MissingSolverError
 
 
 def make_figure(heights: Sequence[float], width: float = 9.0) -> tuple[Any, list[Any]]:
     """A figure of ``width`` inches with one axes a row of the given heights (inches).
 
-    Raises ``InputError`` where matplotlib is not installed.
+    Raises ``MissingSolverError`` where matplotlib is not installed.
     """
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        raise InputError(
-            "pictures need matplotlib: install roadproof[plot], or ask for --no-pictures"
+        raise MissingSolverError(
+            "pictures need matplotlib: install matplotlib, or go without pictures"
         ) from None
     figure = Figure(figsize=(width, sum(heights) + 0.4), layout="constrained")
     FigureCanvasAgg(figure)

@@ -144,7 +144,7 @@ def find_solver(name: str) -> SolverFacts:
         if find_spec(module) is None:
             raise MissingSolverError(
                 f"solver={name} needs the module {module}: install roadproof[milp] for HiGHS, "
-                "or use --engine smt, which needs z3 only"
+                "or choose the engine smt, for which z3 is enough"
             )
     return SOLVERS[name]
 

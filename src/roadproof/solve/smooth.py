@@ -58,7 +58,7 @@ def minimise(
     """
     if find_spec("clarabel") is None:
         raise MissingSolverError(
-            "solver=clarabel is not installed: install roadproof[milp], or use --objective any"
+            "solver=clarabel is not installed: install clarabel, or ask for another objective"
         )
     import clarabel
     from scipy.sparse import coo_array, csc_matrix, diags_array

@@ -14,6 +14,7 @@ from roadproof.errors import Position, TextError
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
+from roadproof.logic.foreign import instead_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import vehicles_of
@@ -203,7 +204,7 @@ class _Elaborator:
         definition = self.specification.definitions.get(name)
         if definition is None:
             everything = [*self.specification.definitions, *BUILT_IN]
-            raise TextError(unknown("definition", name, everything), call.at)
+            raise TextError(unknown("definition", name, everything), call.at, instead_of(name))
         bound = self._bind(definition, call, scope)
         return self.apply(definition, bound, call.at)
 
@@ -382,7 +383,7 @@ class _Elaborator:
             raise TextError(f"'{name}' needs its arguments", at, f"Write {name}(…).")
         numbers = [n for n, v in scope.items() if isinstance(v, Quantity)]
         known = [*self.specification.library.parameters, *self.specification.definitions, *numbers]
-        raise TextError(unknown("parameter or definition", name, known), at)
+        raise TextError(unknown("parameter or definition", name, known), at, instead_of(name))
 
     def _binary(self, expression: syntax.Binary, scope: Scope) -> Formula | Quantity:
         op, at = expression.op, expression.at

@@ -117,10 +117,7 @@ def _polars() -> ModuleType:
     try:
         import polars
     except ImportError:
-        message = (
-            "tables of traffic need polars, which is not installed; use pip install 'roadproof[traffic]'"
-        )
-        raise MissingSolverError(message) from None
+        raise MissingSolverError("tables of traffic need polars: install polars") from None
     return polars
 
 

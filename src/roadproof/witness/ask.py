@@ -185,8 +185,8 @@ def make_grid(horizon: Fraction, dt: Fraction) -> Grid:
     steps = horizon / dt
     if steps.denominator != 1:
         raise UsageError(
-            f"horizon={horizon} s is no multiple of dt={dt} s: use --horizon {dt * (int(steps) + 1)} "
-            f"or another --dt"
+            f"horizon={horizon} s is no multiple of dt={dt} s: choose a horizon "
+            f"such as {dt * (int(steps) + 1)} s, or another dt"
         )
     if steps > MOST_STEPS:
         raise UsageError(

@@ -183,8 +183,8 @@ class _Search:
             return solve_mixed(problem, box_of(problem), solver=self.means.solver, meter=self.meter)
         except TooNonlinearError:
             raise UsageError(
-                "the formula has a comparison of degree above 2, which --engine milp cannot bound: "
-                "use --engine smt"
+                "the formula has a comparison of degree above 2, which the engine milp cannot bound: "
+                "the engine smt can"
             ) from None
 
     def _drives(
