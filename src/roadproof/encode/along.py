@@ -18,12 +18,19 @@ from roadproof.world.vehicle import Range, Vehicle
 
 # Places farther from s = 0 are no places to start from: numbers of that size drown those of a drive.
 FARTHEST = Fraction(10_000)
+# Starts are looked at this far around what is named, or as far as vehicles may be apart, in m.
+AROUND = Fraction(1000)
 
 
 def is_same_everywhere(formula: Formula, road: Road, vehicles: Mapping[str, Vehicle]) -> bool:
     """Whether a drive moved along ``road`` satisfies the bound ``formula`` exactly where it did unmoved."""
     endless = all(bound is None for lanelet in road.lanelets for bound in lanelet.s)
-    return endless and all(not slope_along(p).terms for p in _polynomials(formula, vehicles))
+    return endless and not names_places(formula, vehicles)
+
+
+def names_places(formula: Formula, vehicles: Mapping[str, Vehicle]) -> bool:
+    """Whether a comparison of the bound ``formula`` changes when all vehicles are moved along together."""
+    return any(slope_along(p).terms for p in _polynomials(formula, vehicles))
 
 
 def slope_along(polynomial: Polynomial[Quantity]) -> Polynomial[Quantity]:
@@ -42,7 +49,7 @@ def starting_range(
     """Where fronts may be at time 0 (m along ``road``); None where every start is as good as another.
 
     From where all that road and formulas name along the road is still ahead throughout the horizon, to
-    where it is behind, and ``reach`` more on both sides.
+    where it is behind, and a kilometre more on both sides, or ``reach`` where that is more.
     """
     asked = tuple(formulas)
     if all(is_same_everywhere(formula, road, vehicles) for formula in asked):
@@ -52,7 +59,8 @@ def starting_range(
     near = [Fraction(0), *(place for place in named if abs(place) <= FARTHEST)]
     driven = max(v.v_lon[1] for v in vehicles.values()) * grid.horizon
     longest = max(v.length for v in vehicles.values())
-    return min(near) - driven - reach, max(near) + longest + reach
+    around = max(AROUND, reach)
+    return min(near) - driven - around, max(near) + longest + around
 
 
 def _places(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[Fraction]:

@@ -106,11 +106,11 @@ class _Search:
                 return self._answer(Verdict.WITNESSED, found, "")
         if self.meter.is_out():
             return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
-        if self.doubts:
-            return self._answer(Verdict.UNKNOWN, None, self.doubts[-1])
+        doubt = self.doubts[-1] if self.doubts else ""
         if not self.means.explain:
-            return self._answer(Verdict.UNKNOWN, None, "none was found")
-        return self.none()
+            return self._answer(Verdict.UNKNOWN, None, doubt or "none was found")
+        answer = self.none()
+        return replace(answer, reason=doubt) if doubt and answer.verdict is Verdict.UNKNOWN else answer
 
     def _answer(self, verdict: Verdict, found: Found | None, reason: str) -> Answer:
         return Answer(verdict, found, reason, self.seconds, self.sizes)

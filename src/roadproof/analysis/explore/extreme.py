@@ -33,6 +33,7 @@ from roadproof.analysis.explore.values import (
     Say,
     look_one_by_one,
 )
+from roadproof.encode.along import names_places
 from roadproof.errors import InputError
 from roadproof.evidence.witness import DriveFile, from_json, judge_file
 from roadproof.judge.signals import Courses, DriveSignals
@@ -145,7 +146,10 @@ class _Seeking:
             return None
         question = pose(self.specification, self.request.what, self.request)
         try:
-            low, high = range_of(self.bound_term(question.road, {}), starting_ranges(question))
+            term = self.bound_term(question.road, {})
+            if names_places(f.Compare(term, ">", number(0)), question.vehicles):
+                return None
+            low, high = range_of(term, starting_ranges(question))
         except (ValueError, KeyError):
             return None
         return low if self.measure.sense == "least" else high

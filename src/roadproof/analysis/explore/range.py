@@ -17,7 +17,8 @@ Ranges: TypeAlias = Mapping[tuple[str, str], Range]
 def starting_ranges(question: Question) -> dict[tuple[str, str], Range]:
     """What the signals of every vehicle can be at time 0, by vehicle and signal; sizes too.
 
-    The first vehicle starts with its front at 0, the others within the reach.
+    Places along the road are told from the front of the first vehicle, so for a term that names places
+    (``encode.along``) they are none.
     """
     right, left = span(question.road)
     reach = question.manners.reach
