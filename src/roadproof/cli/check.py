@@ -9,7 +9,7 @@ from pathlib import Path
 from roadproof.cli.numbers import add_effort_options, add_jobs_option, read_effort
 from roadproof.cli.options import add_json_option, write_json
 from roadproof.cli.working import work_in_order
-from roadproof.effort import Effort
+from roadproof.effort import Effort, Late
 from roadproof.errors import InputError, RoadproofError
 from roadproof.verdict import ExitCode
 
@@ -80,7 +80,8 @@ def run(args: argparse.Namespace) -> int:
     for finding in work_in_order(examine, jobs, args.jobs):
         findings.append(finding)
         if not finding.accepted and args.json != "-":
-            print(f"rejected  {finding.path}: {finding.reason}", flush=True)
+            ruling = "undecided" if finding.what == "undecided" else "rejected "
+            print(f"{ruling} {finding.path}: {finding.reason}", flush=True)
     accepted = sum(finding.accepted for finding in findings)
     if args.json != "-":
         print(f"{accepted} of {len(findings)} accepted by {args.solver} and the exact judge")
@@ -93,7 +94,10 @@ def run(args: argparse.Namespace) -> int:
     if accepted == len(findings):
         return ExitCode.AS_EXPECTED
     rejected = any(not x.accepted and x.what in ("certificate", "drive") for x in findings)
-    return ExitCode.UNEXPECTED if rejected else ExitCode.BAD_INPUT
+    if rejected:
+        return ExitCode.UNEXPECTED
+    damaged = any(x.what in ("unknown", "damaged") for x in findings)
+    return ExitCode.BAD_INPUT if damaged else ExitCode.UNKNOWN
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
@@ -169,6 +173,8 @@ def examine(job: Job) -> Finding:
             return Finding(job.path, "drive", _examine_drive(job))
         known = f"{certificate.SCHEMA} or {witness.SCHEMA}"
         return Finding(job.path, "unknown", f"its schema is {schema!r}, but must be {known}")
+    except Late as late:
+        return Finding(job.path, "undecided", str(late))
     except RoadproofError as error:
         return Finding(job.path, "damaged", str(error))
 

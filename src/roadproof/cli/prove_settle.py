@@ -42,11 +42,15 @@ class Job:
 
 @dataclass(frozen=True)
 class Settled:
-    """A task with its result; ``drive`` is a judged drive on which the claim is false."""
+    """A task with its result; ``drive`` is a judged drive on which the claim is false.
+
+    ``bounded``: asked of drives on one road, up to a horizon.
+    """
 
     task: "Task"
     result: "Result"
     drive: Mapping[str, Any] | None
+    bounded: bool = False
 
     @property
     def verdict(self) -> Verdict:
@@ -67,7 +71,7 @@ def settle(job: Job) -> Settled:
 
         seconds = time.monotonic() - begun
         result = Result(job.task.claim, job.task.set_name, Verdict.UNKNOWN, str(late), seconds)
-        return Settled(job.task, result, None)
+        return Settled(job.task, result, None, job.bounded is not None)
 
 
 def _settle(job: Job) -> Settled:
@@ -82,7 +86,11 @@ def _settle(job: Job) -> Settled:
     result = prove(specification, task.claim, job.effort, label, task.scenario)
     drive = None
     if job.seek_drive and result.verdict in (Verdict.REFUTED, Verdict.UNKNOWN):
-        drive = _refuting_drive(job)
+        try:
+            drive = _refuting_drive(job)
+        except Late:
+            if result.verdict is Verdict.UNKNOWN:
+                raise
     return Settled(task, result, drive)
 
 
@@ -113,7 +121,7 @@ def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
     expected = Verdict.PROVED_BOUNDED if job.task.expected is Verdict.PROVED else job.task.expected
     seconds = time.monotonic() - begun
     result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
-    return Settled(replace(job.task, expected=expected), result, found.drive)
+    return Settled(replace(job.task, expected=expected), result, found.drive, True)
 
 
 def _refuting_drive(job: Job) -> Mapping[str, Any] | None:
