@@ -63,7 +63,7 @@ class Meter:
     seconds: float
     whole: "Meter | None" = None
     spent: float = 0.0
-    begun: float = field(default_factory=time.monotonic)
+    begun: float = field(default_factory=lambda: time.monotonic())
 
     def left(self) -> float:
         """Units left; never below 0."""

@@ -16,6 +16,7 @@ from roadproof.analysis.coverage.traffic import disturbances_in
 from roadproof.analysis.meeting import Meeting, Node, conjunctions
 from roadproof.analysis.overlap import Asked
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
@@ -62,7 +63,7 @@ def occurrences(path: Path) -> Occurrences:
 def is_impossible(a: int, b: int, set_name: str) -> bool:
     specification = bundled_library().select(set_name)
     (formula,) = conjunctions(specification, Node(a, set_name), Node(b, set_name), Meeting())
-    return prove(specification, f"not ({formula})", 3.0).verdict in (Verdict.PROVED, Verdict.VACUOUS)
+    return prove(specification, f"not ({formula})", Effort(3)).verdict in (Verdict.PROVED, Verdict.VACUOUS)
 
 
 @pytest.mark.parametrize("set_name", ["base", "ext"])
@@ -86,7 +87,9 @@ def test_no_class_of_gaps_that_occurs_is_proved_empty(recordings: Path) -> None:
     empty = [
         part.key
         for part in [p for p in Classes(asked).parts if p.key in seen and p.finest][::2]
-        if prove(specification, f"{part.without} and F danger(SV,POV) -> {scenarios}", 0.3).certificate
+        if prove(
+            specification, f"{part.without} and F danger(SV,POV) -> {scenarios}", Effort(0.3)
+        ).certificate
     ]
     assert empty == []
 

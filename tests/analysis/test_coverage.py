@@ -21,6 +21,7 @@ from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, judge_drive
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.errors import UsageError
 from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file
 from roadproof.judge.replay import first_breach
@@ -44,7 +45,7 @@ def without(name: str) -> Verdict:
     body = "\n".join(text(COMPLETE.definitions[n]) for n in kept)
     library = build_library([Source("trial", f"set trial extends ext {{\n{body}\n}}")], LIBRARY)
     specification = library.select("trial")
-    return prove(specification, claims_of(specification)[0], 1.5).verdict
+    return prove(specification, claims_of(specification)[0], Effort(1.5)).verdict
 
 
 def caught_without(name: str, drive: Drive, road: Road) -> bool:

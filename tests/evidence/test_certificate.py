@@ -36,7 +36,7 @@ OWN = (
 def certificate(name: str) -> Certificate:
     if name in SHIPPED:
         return read_certificate(shipped("proofs") / f"{name}.json")
-    made = prove(specification(), name, 10).certificate
+    made = prove(specification(), name, Effort(10)).certificate
     assert made is not None
     return made
 
@@ -157,7 +157,7 @@ def test_an_altered_claim_is_noticed(claim):
 
 def test_an_altered_bound_is_noticed_by_the_solver():
     claim = "G[0,minSafe] {0} -> F[0,minSafe] {0}".format("atLane(SV,L)")
-    whole = prove(specification(), claim, 5).certificate
+    whole = prove(specification(), claim, Effort(5)).certificate
     narrow = claim.replace("F[0,minSafe]", "F[minSafe,minDanger]")
     texts = {
         site: site.formula.replace("F [0, minSafe]", "F [minSafe, minDanger]") for site in whole.instances

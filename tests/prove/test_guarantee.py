@@ -85,5 +85,5 @@ def test_a_gap_above_the_distance_is_never_used_up(b_min, rho, v_r, v_f, more):
 def test_the_guarantee_is_not_vacuous():
     """Its premise has models: else it would say nothing."""
     premise = "b_min <= b_max and 0 <= v_r and 0 <= v_f and 0 <= t and gap > dRSS_lon(v_r, v_f)"
-    result = prove(specification(), f"given v_r, v_f: m/s; gap: m; t: s: not ({premise})", 10)
+    result = prove(specification(), f"given v_r, v_f: m/s; gap: m; t: s: not ({premise})", Effort(10))
     assert result.verdict is Verdict.REFUTED, result.reason

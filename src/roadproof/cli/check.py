@@ -10,7 +10,7 @@ from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import add_json_option, write_json
 from roadproof.cli.progress import clear
 from roadproof.cli.working import add_working_options, work_in_order
-from roadproof.effort import Effort
+from roadproof.effort import Effort, Late
 from roadproof.errors import InputError, RoadproofError
 from roadproof.verdict import ExitCode
 
@@ -95,10 +95,11 @@ def run(args: argparse.Namespace) -> int:
         write_json({"schema": SCHEMA, "solver": args.solver, "findings": entries}, args.json)
     if accepted == len(findings):
         return ExitCode.AS_EXPECTED
-    if any(x.what == "undecided" for x in findings):
-        return ExitCode.UNKNOWN
     rejected = any(not x.accepted and x.what in ("certificate", "drive") for x in findings)
-    return ExitCode.UNEXPECTED if rejected else ExitCode.BAD_INPUT
+    if rejected:
+        return ExitCode.UNEXPECTED
+    damaged = any(x.what in ("unknown", "damaged") for x in findings)
+    return ExitCode.BAD_INPUT if damaged else ExitCode.UNKNOWN
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
@@ -179,6 +180,8 @@ def examine(job: Job) -> Finding:
             return Finding(job.path, "drive", _examine_drive(job))
         known = f"{certificate.SCHEMA} or {witness.SCHEMA}"
         return Finding(job.path, "unknown", f"its schema is {schema!r}, but must be {known}")
+    except Late as late:
+        return Finding(job.path, "undecided", str(late))
     except RoadproofError as error:
         return Finding(job.path, "damaged", str(error))
 

@@ -39,7 +39,7 @@ examples:
   roadproof prove 'scenario_4(SV,POV,L) -> scenario_4@ext(SV,POV,L)'
   roadproof prove 'given A, B: vehicle: danger(A,B) -> danger(B,A)' --out proofs
   roadproof prove --claims mine.txt --json -          one claim a paragraph
-  roadproof prove 'dangerArises(SV,POV) -> F aheadOf(SV,POV)' --engine smt --horizon 6 --dt 1/5
+  roadproof prove 'dangerArises(SV,POV) -> F aheadOf(SV,POV)' --engine smt --horizon 3 --dt 3/5
 
 A claim is about all traces, all roads, all vehicle sizes and all parameter values within their declared
 bounds. PROVED comes with a certificate, which `roadproof check` accepts; REFUTED with a counterexample.

@@ -44,7 +44,7 @@ def details(settled: Settled) -> str:
     """The verdict with its evidence: certificate in numbers, drive or trace."""
     result, task = settled.result, settled.task
     lines = [f"{settled.verdict}  {' '.join(task.claim.split())}"]
-    within = "up to a horizon" if settled.verdict is Verdict.PROVED_BOUNDED else "dense time, all horizons"
+    within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
     lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
     if result.reason:
         lines.append(f"  {result.reason}")

@@ -44,13 +44,15 @@ class Job:
 class Settled:
     """A task with its result; ``drive`` is a judged drive on which the claim is false.
 
-    ``limits``: within what a PROVED-BOUNDED claim holds.
+    ``limits``: within what a PROVED-BOUNDED claim holds; ``bounded``: asked of drives on one road, up to a
+    horizon.
     """
 
     task: "Task"
     result: "Result"
     drive: Mapping[str, Any] | None
     limits: Mapping[str, Any] | None = None
+    bounded: bool = False
 
     @property
     def verdict(self) -> Verdict:
@@ -71,7 +73,7 @@ def settle(job: Job) -> Settled:
 
         seconds = time.monotonic() - begun
         result = Result(job.task.claim, job.task.set_name, Verdict.UNKNOWN, str(late), seconds)
-        return Settled(job.task, result, None)
+        return Settled(job.task, result, None, job.bounded is not None)
 
 
 def _settle(job: Job) -> Settled:
@@ -86,7 +88,11 @@ def _settle(job: Job) -> Settled:
     result = prove(specification, task.claim, job.effort, label, task.scenario)
     drive = None
     if job.seek_drive and result.verdict in (Verdict.REFUTED, Verdict.UNKNOWN):
-        drive = _refuting_drive(job)
+        try:
+            drive = _refuting_drive(job)
+        except Late:
+            if result.verdict is Verdict.UNKNOWN:
+                raise
     return Settled(task, result, drive)
 
 
@@ -125,7 +131,7 @@ def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
     seconds = time.monotonic() - begun
     result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
     limits = None if found.limits is None else found.limits.as_json()
-    return Settled(replace(job.task, expected=expected), result, found.drive, limits)
+    return Settled(replace(job.task, expected=expected), result, found.drive, limits, True)
 
 
 def _refuting_drive(job: Job) -> Mapping[str, Any] | None:

@@ -148,7 +148,8 @@ def _ask_cvc5(script: str, meter: Meter | None) -> Answer:
     while not (command := parser.nextCommand()).isNull():
         printed.append(str(command.invoke(solver, symbols)))
     if meter is not None:
-        meter.spend(solver.getStatistics().get("resource::resourceUnitsUsed")["value"] / UNIT_CVC5)
+        used = solver.getStatistics().get("resource::resourceUnitsUsed").get("value", 0)
+        meter.spend(used / UNIT_CVC5)
     answer = _answer(" ".join(printed))
     if answer == "unknown" and meter is not None:
         meter.seconds_left()

@@ -1,0 +1,83 @@
+"""Work is counted, the clock is a backstop that an answer names."""
+
+import pickle
+
+import pytest
+
+from roadproof import effort
+from roadproof.effort import Effort, Late, Meter, backstop
+
+
+class Clock:
+    """A clock that stands still unless it is moved on."""
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr(effort.time, "monotonic", lambda: self.now)
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    return Clock(monkeypatch)
+
+
+def test_a_part_spends_from_the_whole_and_has_no_more_than_it():
+    whole = Effort(10).meter()
+    part = whole.part(4)
+    part.spend(3)
+    assert (whole.left(), part.left()) == (7, 1)
+    part.part(100).spend(2)
+    assert (whole.left(), part.left()) == (5, 0)
+    assert part.is_out()
+    assert not whole.is_out()
+    whole.spend(6)
+    assert whole.left() == whole.part(4).left() == 0
+
+
+def test_a_meter_apart_spends_on_its_own_account():
+    whole = Effort(2).meter()
+    whole.spend(5)
+    apart = whole.apart(3)
+    assert apart.left() == 3
+    apart.spend(1)
+    assert whole.spent == 5
+
+
+def test_the_reason_names_the_limit_that_was_reached():
+    whole = Effort(10).meter()
+    part = whole.part(4)
+    part.spend(4)
+    assert part.reason() == "no answer within 4 units of work"
+    whole.spend(6)
+    assert part.reason() == "no answer within 10 units of work"
+
+
+@pytest.mark.parametrize("made", [Meter.part, Meter.apart])
+def test_what_the_clock_cuts_off_is_late(clock, made):
+    meter = made(Effort(10, 3.0).meter(), 4)
+    clock.now = 2.5
+    assert meter.seconds_left() == 0.5
+    assert not meter.is_out()
+    clock.now = 3.0
+    for ask in (meter.seconds_left, meter.is_out):
+        with pytest.raises(Late, match=r"cut off by the clock after 3 s, .*raise --timeout"):
+            ask()
+
+
+def test_work_alone_never_makes_an_answer_late(clock):
+    meter = Effort(1, 3.0).meter()
+    meter.spend(1e6)
+    assert meter.is_out()
+
+
+def test_the_backstop_follows_from_the_work_unless_it_is_given(clock):
+    assert Effort(60).meter().seconds_left() == backstop(60) == 1200
+    assert Effort(0.1).meter().seconds_left() == backstop(0.1) == 120
+    assert Effort(60, 7.0).of(1).meter().seconds_left() == 7
+
+
+def test_lateness_comes_back_from_another_process():
+    late = pickle.loads(pickle.dumps(Late(2.5)))
+    assert isinstance(late, Late)
+    assert str(late) == str(Late(2.5))
+    assert late.exit_code == 20
