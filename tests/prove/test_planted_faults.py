@@ -119,7 +119,7 @@ def no_membership(monkeypatch):
 
 def everything_unsat(monkeypatch):
     """What z3 does not know, or has a model of, counts as refuted."""
-    monkeypatch.setattr(Session, "check", lambda self, assuming=(), timeout=None: "unsat")
+    monkeypatch.setattr(Session, "check", lambda self, assuming=(), meter=None: "unsat")
     monkeypatch.setattr(Session, "core", lambda self: [])
 
 
@@ -186,7 +186,7 @@ LAST_FAULTS = [unknown_is_proved, lemmas_not_asked]
 def wrong_proof() -> str | None:
     """A false claim that is called PROVED; its certificate says so to those who check it."""
     for claim in TEMPTING:
-        result = settle(claim, timeout=SECONDS)
+        result = settle(claim, units=UNITS)
         if result.verdict in PROVED:
             assert refusal(result.certificate, specification().library, ask) is not None
             return claim
