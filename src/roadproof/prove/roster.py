@@ -46,20 +46,19 @@ def roster_for(claim: Formula, lanes: Sequence[str]) -> Roster | None:
 
     A free lanelet is in the last lane.
     """
-    domains = open_domains(claim)
-    if not domains:
+    quantifiers = open_quantifiers(claim)
+    if not quantifiers:
         return None
     prefix = free_prefix("M", {*lanes, *road_names(claim)})
     missing = max(0, FEWEST_LANES - len(lanes))
     names = (*lanes, *(f"{prefix}{number}" for number in range(1, missing + 1)))
     lanelets = dict.fromkeys(free_lanelets(claim), names[-1])
-    if lanelets or any(domain.kind in ("lanelets", "zone") for domain in domains.values()):
+    if lanelets or any(x.domain.kind in ("lanelets", "zone") for x in quantifiers):
         places = [lane for lane in names for _ in range(LANELETS_A_LANE)]
         lanelets |= {f"{prefix}{missing + k}": lane for k, lane in enumerate(places, 1)}
     return Roster(names, lanelets)
 
 
-def open_domains(formula: Formula) -> dict[str, f.Domain]:
-    """The variables, sorted, of the quantifiers over the road that are no part of an atom; their domains."""
-    found = (x for x in f.subformulas(formula) if isinstance(x, f.Some | f.Every) and not is_atom(x))
-    return dict(sorted((x.variable, x.domain) for x in found))
+def open_quantifiers(formula: Formula) -> list[f.Some | f.Every]:
+    """The quantifiers over the road that are no part of an atom."""
+    return [x for x in f.subformulas(formula) if isinstance(x, f.Some | f.Every) and not is_atom(x)]

@@ -19,7 +19,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import road_names
 from roadproof.prove.grounding import Grounding, Universal
-from roadproof.prove.roster import Roster, open_domains
+from roadproof.prove.roster import Roster, open_quantifiers
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import Answer
 
@@ -90,7 +90,8 @@ class Search:
         self.grounding.elements |= dict.fromkeys(free_lanelets(claim), f.Domain("lanelets"))
         if not self.grounding.elements:
             # Every road has a lane: one of the claim's own variables stands for it.
-            self.grounding.elements |= dict.fromkeys(list(open_domains(claim))[:1], f.Domain("lanes"))
+            variables = sorted({x.variable for x in open_quantifiers(claim)})
+            self.grounding.elements |= dict.fromkeys(variables[:1], f.Domain("lanes"))
         self.states = states
         self.bound_moments = _bounds_of(claim)
         for bound in self.bound_moments:
