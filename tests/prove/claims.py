@@ -8,13 +8,13 @@ from math import prod
 
 from roadproof.effort import Effort
 from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.refutation import Countermodel
 from roadproof.judge import TruthSet, judge
 from roadproof.judge.truth import from_switches
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, map_terms, without_names
-from roadproof.prove.countermodel import Countermodel
 from roadproof.prove.prover import Result, prove
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification, bundled_library

@@ -2,19 +2,23 @@
 
 import pytest
 
-from prove.claims import INVALID, PROVED, VALID, is_false_on, settle, speaks_of_all_lanes
-from roadproof.evidence import atoms
+from prove.claims import INVALID, PROVED, VALID, is_false_on, settle, speaks_of_all_lanes, specification
+from prove.on_roads import is_road
+from roadproof.evidence import refutation
+from roadproof.evidence.certificate import refusal
 from roadproof.logic import formula as f
 from roadproof.prove import countermodel, grounding, prover
 from roadproof.prove.grounding import Grounding, Window
 from roadproof.prove.search import Search
 from roadproof.prove.states import StateChecker
+from roadproof.solve.smt import Session, ask
 from roadproof.verdict import Verdict
+from roadproof.world.road import Lanelet, Road
 
 UNITS = 0.4
 true_smt, true_holds, true_shrink = Window.smt, Window.holds, Search._shrink
 true_unfold, true_atom, true_name = Grounding._unfold, Grounding.atom, Grounding._name_time
-true_spread, true_holds_part, true_judge = countermodel._spread, countermodel._holds, countermodel.judge
+true_spread, true_holds_part = refutation._spread, refutation._holds
 
 
 def phi_at_the_end(monkeypatch):
@@ -113,6 +117,12 @@ def no_membership(monkeypatch):
     monkeypatch.setattr(Grounding, "_fact", lambda self, domain, element: "true")
 
 
+def everything_unsat(monkeypatch):
+    """What z3 does not know, or has a model of, counts as refuted."""
+    monkeypatch.setattr(Session, "check", lambda self, assuming=(), meter=None: "unsat")
+    monkeypatch.setattr(Session, "core", lambda self: [])
+
+
 FINDER_FAULTS = [
     phi_at_the_end,
     open_windows,
@@ -123,6 +133,7 @@ FINDER_FAULTS = [
     wishes_as_clauses,
     every_state_is_impossible,
     no_membership,
+    everything_unsat,
 ]
 TEMPTING = [
     "F p -> p",
@@ -154,6 +165,63 @@ def test_a_fault_in_the_finder_proves_nothing_false(fault, monkeypatch):
     assert set(verdicts) != {Verdict.REFUTED}
 
 
+# --- the last check of a proof -------------------------------------------------------------------
+
+
+def unknown_is_proved(monkeypatch):
+    """A derived query that z3 cannot answer counts as answered unsat."""
+    everything_unsat(monkeypatch)
+    monkeypatch.setattr(prover, "ask", lambda query, **limits: "unsat")
+
+
+def lemmas_not_asked(monkeypatch):
+    """What the finder takes for a lemma is not derived and asked again."""
+    every_state_is_impossible(monkeypatch)
+    monkeypatch.setattr(prover, "ask", lambda query, **limits: "unsat" if "QF_NRA" in query else ask(query))
+
+
+LAST_FAULTS = [unknown_is_proved, lemmas_not_asked]
+
+
+def wrong_proof() -> str | None:
+    """A false claim that is called PROVED; its certificate says so to those who check it."""
+    for claim in TEMPTING:
+        result = settle(claim, units=UNITS)
+        if result.verdict in PROVED:
+            assert refusal(result.certificate, specification().library, ask) is not None
+            return claim
+    return None
+
+
+@pytest.mark.parametrize("fault", LAST_FAULTS, ids=lambda fault: fault.__name__)
+def test_a_fault_in_the_last_check_is_caught(fault, monkeypatch):
+    fault(monkeypatch)
+    assert wrong_proof() is not None
+
+
+@pytest.mark.parametrize(
+    ("answer", "verdict"), [("unknown", Verdict.UNKNOWN), ("sat", Verdict.CROSSCHECK_FAILED)]
+)
+@pytest.mark.parametrize("claim", ["F F p -> F p", "aheadOf(SV,POV) -> not aheadOf(POV,SV)"])
+def test_a_proof_counts_only_once_its_derived_queries_are_unsat(claim, answer, verdict, monkeypatch):
+    monkeypatch.setattr(prover, "ask", lambda query, **limits: answer)
+    result = settle(claim)
+    assert result.verdict is verdict
+    assert result.certificate is None
+    assert "derived query 'claim'" in result.reason
+
+
+def test_a_proof_that_fits_no_certificate_is_unknown(monkeypatch):
+    """The finder forgets in which instance it met a name."""
+    monkeypatch.setattr(Search, "_with_origins", lambda self, needed: list(needed))
+    claim = "F[1.8 s, inf] (every K in lanes: instSafe(POV, SV)) -> F (every K in lanes: instSafe(POV, SV))"
+    result = settle(claim)
+    assert result.verdict is Verdict.UNKNOWN
+    assert "no certificate" in result.reason
+    monkeypatch.undo()
+    assert settle(claim).verdict is Verdict.PROVED
+
+
 # --- refuting ------------------------------------------------------------------------------------
 
 
@@ -161,71 +229,54 @@ def wrong_side_held(monkeypatch):
     """What lies between instants is the state of the other side than is said."""
     turned = {"before": "after", "after": "before"}
     monkeypatch.setattr(
-        countermodel, "_spread", lambda times, values, held: true_spread(times, values, turned[held])
+        refutation, "_spread", lambda times, values, held: true_spread(times, values, turned[held])
     )
 
 
 def not_judged(monkeypatch):
     """A model over points in time is taken for a trace unseen."""
-    monkeypatch.setattr(countermodel, "judge", _always_false)
-
-
-class _Denied:
-    holds = False
-
-    def __init__(self, judgement):
-        self.truth = judgement.truth
-
-
-def _always_false(formula, drive=None, given=None):
-    judgement = true_judge(formula, drive, given or {})
-    return judgement if drive is not None or isinstance(formula, f.Compare | f.Named) else _Denied(judgement)
+    monkeypatch.setattr(countermodel, "fault_of", lambda found, claim, bounds: None)
 
 
 def comparisons_turned(monkeypatch):
     """The truth of comparisons is not that of the numbers handed out."""
-
-    def holds(part, found):
-        known = true_holds_part(part, found)
-        return not known if isinstance(part, f.Compare) else known
-
-    monkeypatch.setattr(countermodel, "_holds", holds)
+    monkeypatch.setattr(refutation, "_holds", lambda part, instant: not true_holds_part(part, instant))
 
 
-def road_unseen(monkeypatch):
-    monkeypatch.setattr(countermodel, "is_on_some_road", lambda truths, lanes: True)
+def lanelets_anywhere(monkeypatch):
+    """The road is a heap of rectangles, one for each box that is to be in a lane."""
 
+    def lay(layout):
+        heap = [
+            Lanelet(f"{lane}.{j}", lane, "main", "main", (box.rear, box.front), (box.right, box.left))
+            for lane in layout.lanes
+            for j, box in enumerate(layout.boxes)
+            if (("lane", lane), j) in layout.inside
+        ]
+        return Road("heap", tuple(heap), frozenset())
 
-def capturing_rename(monkeypatch):
-    """Renames also what a quantifier inside calls by the old name."""
-
-    def rename(formula, old, new):
-        def visit(current):
-            match current:
-                case f.Occupies(vehicle, lanelet) if lanelet == old:
-                    return f.Occupies(vehicle, new)
-                case f.Some(variable, domain, body) | f.Every(variable, domain, body) if domain.of == old:
-                    return type(current)(variable, f.Domain(domain.kind, new), body)
-            return current
-
-        return f.transform(formula, visit)
-
-    for module in (atoms, grounding, countermodel):
-        monkeypatch.setattr(module, "rename", rename)
+    monkeypatch.setattr(countermodel, "lay_road", lay)
+    monkeypatch.setattr(refutation, "check_lanelets", lambda lanelets, where: None)
 
 
 REFUTING_FAULTS = [
     wrong_side_held,
     not_judged,
     comparisons_turned,
-    road_unseen,
-    capturing_rename,
+    lanelets_anywhere,
 ]
+# A box covered by two others.
+COVERED = (
+    "given A, B, C: vehicle: s(A) = s(B) and s(A) - length(B) = s(C) and length(A) = length(B) + length(C)"
+    " and d(A) = d(B) and d(A) = d(C) and width(A) = width(B) and width(A) = width(C)"
+    " and atLane(A,L) -> atLane(B,L) or atLane(C,L)"
+)
 MORE = [
     "not (not p and G[1,1] p and not (not p U[0,1] p))",
     "p U q -> p or F (p and q)",
     "atLane(SV,L) -> onMainRoad(SV) or inMergeZone(SV) or inDepartZone(SV)",
     "(some l in lanelets(L): occ(SV,l) and occ(POV,l)) -> atLane(SV,L)",
+    COVERED,
     "F (v_lon(SV) > 20 m/s) -> G (v_lon(SV) > 20 m/s)",
     "F[0,minSafe] p -> p",
 ]
@@ -238,7 +289,8 @@ def wrong_refutation() -> str | None:
             result = settle(claim, units=UNITS)
             if result.verdict is not Verdict.REFUTED:
                 continue
-            true = claim in VALID or claim in MORE[2:4]
+            road = result.countermodel.road
+            true = claim in VALID or claim in MORE[2:5] or (road is not None and not is_road(road))
             if true or (not speaks_of_all_lanes(claim) and not is_false_on(result.countermodel, claim)):
                 return claim
         except AssertionError:

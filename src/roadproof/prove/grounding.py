@@ -10,12 +10,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
+from roadproof.evidence.atoms import ZONES, Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.derivation import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
+from roadproof.prove.roster import Roster
 from roadproof.solve.smt import Session
 
 
@@ -84,6 +85,7 @@ class Grounding:
     timing: frozenset[str] = frozenset()
     wishful: bool = False
     names: dict[Site, str] = field(default_factory=dict)
+    roster: Roster | None = None
     session: Session = field(default_factory=Session)
     universals: list[Universal] = field(default_factory=list)
     road_universals: list[RoadUniversal] = field(default_factory=list)
@@ -183,13 +185,35 @@ class Grounding:
                     instance = self.atoms.atomise(rename(body, variable, element))
                     return self.truth(instance, positive, moment)
 
-                if isinstance(formula, f.Some) == positive:
+                if self.roster is not None:
+                    self._require(switch, self._over_roster(self.roster, formula, positive, at_element))
+                elif isinstance(formula, f.Some) == positive:
                     element = self._name_element(site, domain)
                     self._require(switch, self._fact(domain, element), at_element(element))
                 else:
                     self.road_universals.append(RoadUniversal(site, switch, domain, at_element))
             case _:
                 raise ValueError(f"no quantifier: {site.formula}")
+
+    def _over_roster(
+        self,
+        roster: Roster,
+        formula: f.Some | f.Every,
+        positive: bool,
+        at_element: Callable[[str], str],
+    ) -> str:
+        """A quantifier over all elements of the roster; a lanelet has its lane there, and one zone."""
+        domain, exists = formula.domain, isinstance(formula, f.Some) == positive
+        parts = ["false" if exists else "true"]
+        for element in roster.members(domain):
+            fact = self._fact(domain, element)
+            if domain.kind == "lanelets":
+                self._declare(f"(assert {fact})", f"(assert {fact})")
+            if domain.kind == "zone":
+                for zone in ZONES:
+                    self._fact(f.Domain("zone", zone), element)
+            parts.append(f"({'and' if exists else '=>'} {fact} {at_element(element)})")
+        return f"({'or' if exists else 'and'} {' '.join(parts)})"
 
     def _fails(self, until: f.Until, site: Site, low: Moment, when: Moment) -> str:
         failed = self._name_time(Site(site.formula, False, site.moment, str(when)), low)

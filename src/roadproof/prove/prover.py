@@ -15,6 +15,7 @@ from roadproof.evidence.refutation import Countermodel
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.prove.countermodel import realise
+from roadproof.prove.roster import Roster, roster_for
 from roadproof.prove.search import GaveUp, Proof, Search
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import ask
@@ -33,6 +34,7 @@ TURNS: tuple[tuple[bool, float], ...] = (
     (False, 20.0),
     (True, math.inf),
 )
+ON_FEW_LANES = 1.0
 VACUITY = 0.5
 
 
@@ -143,24 +145,32 @@ class _Attempt:
     def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
         """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
         last = GaveUp(self.meter.reason())
-        for wishful, units in TURNS[-1:] if f.is_state(goal) else TURNS:
-            meter = self.meter.part(units)
-            search = self._search(goal, names, wishful)
-            found = search.run(meter)
-            while not isinstance(found, Proof | GaveUp):
-                countermodel = realise(self.query, self.atoms, found, self.defaults, self.bounds)
-                if countermodel is not None:
-                    return countermodel
-                if not search.widen():
-                    found = GaveUp("the only countermodels found over points in time are no traces")
-                    break
-                found = search.run(meter)
-            if isinstance(found, Proof):
+        turns = TURNS[-1:] if f.is_state(goal) else TURNS
+        roster = roster_for(goal, self.query.lanes)
+        for number, (wishful, units) in enumerate(turns, 1):
+            if roster is not None and number == len(turns[:2]):
+                few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
+                if isinstance(few, Countermodel):
+                    return few
+            found = self._run(self._search(goal, names, wishful), self.meter.part(units))
+            if not isinstance(found, GaveUp):
                 return found
             last = found
             if self.meter.is_out():
                 break
         return last
+
+    def _run(self, search: Search, meter: Meter) -> Proof | Countermodel | GaveUp:
+        """What one search finds, a model of it made into a trace and judged."""
+        found = search.run(meter)
+        while not isinstance(found, Proof | GaveUp):
+            countermodel = realise(self.query, self.atoms, found, self.defaults, self.bounds)
+            if countermodel is not None:
+                return countermodel
+            if not search.widen():
+                return GaveUp("the only countermodels found over points in time are no traces")
+            found = search.run(meter)
+        return found
 
     def never_holds(self, premise: Formula) -> bool:
         """Whether the negation of ``premise`` is proved quickly, its query derived apart as for a claim."""
@@ -175,8 +185,10 @@ class _Attempt:
         )
         return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
 
-    def _search(self, goal: Formula, names: dict[Site, str], wishful: bool) -> Search:
-        return Search(goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful)
+    def _search(
+        self, goal: Formula, names: dict[Site, str], wishful: bool, roster: Roster | None = None
+    ) -> Search:
+        return Search(goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful, roster)
 
 
 def _certificate(

@@ -19,10 +19,12 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import road_names
 from roadproof.prove.grounding import Grounding, Universal
+from roadproof.prove.roster import Roster, open_quantifiers
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import Answer
 
 MOST_ROUNDS = 400
+MOST_ELEMENTS = 24
 WISH = 0.25  # units of work for a check with wishes, or for one of a shorter proof
 
 
@@ -64,6 +66,7 @@ class Search:
 
     ``wishful`` asks for models with few instants, which ends the hunt for a countermodel sooner and
     a hard proof later. ``names`` is shared between searches whose proofs are to be put together.
+    With a ``roster`` only countermodels are found, on a road of just its lanes and lanelets.
     """
 
     def __init__(
@@ -75,11 +78,20 @@ class Search:
         lanes: Sequence[str],
         names: dict[Site, str],
         wishful: bool,
+        roster: Roster | None = None,
     ) -> None:
         prefixes = free_prefix("t", bounds), free_prefix("M", {*lanes, *road_names(claim)})
-        self.grounding = Grounding(atoms, dict(bounds), prefixes, bound_parameters(claim), wishful, names)
+        self.grounding = Grounding(
+            atoms, dict(bounds), prefixes, bound_parameters(claim), wishful, names, roster
+        )
+        if roster is not None:
+            self.grounding.elements |= roster.elements()
         self.grounding.elements |= dict.fromkeys(lanes, f.Domain("lanes"))
         self.grounding.elements |= dict.fromkeys(free_lanelets(claim), f.Domain("lanelets"))
+        if not self.grounding.elements:
+            # Every road has a lane: one of the claim's own variables stands for it.
+            variables = sorted({x.variable for x in open_quantifiers(claim)})
+            self.grounding.elements |= dict.fromkeys(variables[:1], f.Domain("lanes"))
         self.states = states
         self.bound_moments = _bounds_of(claim)
         for bound in self.bound_moments:
@@ -96,6 +108,8 @@ class Search:
             if meter.is_out():
                 return GaveUp(meter.reason())
             answer = self._check(meter)
+            if answer == "unsat" and self.grounding.roster is not None:
+                return GaveUp("no countermodel on a road of few lanes")
             if answer == "unsat":
                 return self._shrink(meter)
             if answer == "unknown":
@@ -103,6 +117,8 @@ class Search:
                 return GaveUp(meter.reason() if out else "z3 gave no answer to the ground query")
             values = self._values()
             if self._instantiate(values):
+                if len(self.grounding.elements) > MOST_ELEMENTS:
+                    return GaveUp(f"no end after {MOST_ELEMENTS} lanes and lanelets that must exist")
                 continue
             states = self._states(values)
             refused = self._lemmas(states, values, meter)

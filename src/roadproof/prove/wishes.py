@@ -84,14 +84,18 @@ class _Elements:
 
     def __init__(self, model: Model) -> None:
         self.facts = model.facts
+        self.domains = model.elements
         kinds = {name: domain.kind for name, domain in model.elements.items()}
         self.lanes = [name for name, kind in kinds.items() if kind in ("lanes", "adjacent")]
         self.lanelets = [name for name, kind in kinds.items() if kind in ("lanelets", "zone")]
 
     def lane_of(self, name: str) -> str:
         """A lane that the lanelet is said to be in, or one of its own."""
-        of = (lane for lane in self.lanes if self.facts.get((f.Domain("lanelets", lane), name)))
-        return name if name in self.lanes else next(of, name)
+        if name in self.lanes:
+            return name
+        said = [self.domains[name].of] if self.domains[name].kind == "lanelets" else []
+        said += [lane for lane in self.lanes if self.facts.get((f.Domain("lanelets", lane), name))]
+        return next((lane for lane in said if lane in self.lanes), name)
 
     def zones_of(self, name: str) -> tuple[Zone, ...]:
         """The zones in which the lanelet can be."""
