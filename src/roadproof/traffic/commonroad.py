@@ -181,7 +181,7 @@ def _check_plausible(path: Path, recording: Recording) -> Iterator[str]:
         who = f"dynamicObstacle {recording.vehicle_id[vehicle]}, time step {step}"
         if doubt.refused:
             raise InputError(f"{path}: {who}: {doubt.told}")
-        yield f"{path.name}: {who}: {doubt.told}"
+        yield f"{who}: {doubt.told}"
 
 
 def _describe(recording: Recording) -> tuple[str, ...]:

@@ -102,10 +102,9 @@ def _motion(recording: Recording) -> Iterator[Doubt]:
         if broken:
             factor = float(np.median(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong])))
             row = _worst(signal, total, int(begin[np.argmax(wrong)]), int(end[np.argmax(wrong)]))
-            text = f"{rule.what} contradict each other{_hint(factor)}"
-            yield Doubt(
-                text, rule.rate, row, broken, asked, "moving seconds", _too_many(broken, asked, SHARE)
-            )
+            refused = _too_many(broken, asked, SHARE)
+            text = f"{rule.what} contradict each other{_hint(factor) if refused else ''}"
+            yield Doubt(text, rule.rate, row, broken, asked, "moving seconds", refused)
 
 
 def _hint(factor: float) -> str:
