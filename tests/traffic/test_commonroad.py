@@ -2,7 +2,6 @@
 
 import math
 import random
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,89 +12,10 @@ from hypothesis import strategies as st
 from roadproof.errors import InputError
 from roadproof.traffic.commonroad import read_commonroad
 from roadproof.traffic.overlaps import find_overlaps
-from roadproof.traffic.projection import boxes_of, inside, overlap, project, triangles_of
+from roadproof.traffic.projection import boxes_of, even_line, inside, overlap, project, triangles_of
+from traffic.tiny_commonroad import Car, document, point
 
 US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
-TURN = math.radians(30)
-
-
-@dataclass(frozen=True)
-class Car:
-    """Positions (along, across) of the centre in road coordinates; one state a time step."""
-
-    id: int
-    first: int
-    centres: tuple[tuple[float, float], ...]
-    speed: float = 20.0
-    drift: float = 0.0  # angle to the road
-    length: float = 4.0
-
-
-CARS = (
-    Car(7, 0, ((10.0, 1.75), (12.0, 1.75), (14.0, 1.75))),  # right main lane
-    Car(3, 1, ((40.0, 3.2), (42.0, 3.6)), drift=0.1),  # astride the marking at 3.5
-    Car(9, 0, ((60.0, -1.75),), length=9.0),  # on the merge lane
-)
-
-
-def plane(along: float, across: float) -> tuple[float, float]:
-    return (
-        100 + along * math.cos(TURN) - across * math.sin(TURN),
-        50 + along * math.sin(TURN) + across * math.cos(TURN),
-    )
-
-
-def point(along: float, across: float) -> str:
-    x, y = plane(along, across)
-    return f"<point><x>{x!r}</x><y>{y!r}</y></point>"
-
-
-def lanelet(name: str, low: float, high: float, s: tuple[float, float], kind: str, links: str) -> str:
-    def bound(tag: str, across: float) -> str:
-        return f"<{tag}>{''.join(point(a, across) for a in (s[0], sum(s) / 2, s[1]))}</{tag}>"
-
-    return (
-        f'<lanelet id="{name}">{bound("leftBound", high)}{bound("rightBound", low)}{links}'
-        f"<laneletType>{kind}</laneletType></lanelet>"
-    )
-
-
-def state(tag: str, car: Car, k: int) -> str:
-    values = {
-        "orientation": TURN + car.drift,
-        "time": car.first + k,
-        "velocity": car.speed,
-        "acceleration": -1.5,
-    }
-    return (
-        f"<{tag}><position>{point(*car.centres[k])}</position>"
-        + "".join(f"<{x}><exact>{v!r}</exact></{x}>" for x, v in values.items())
-        + f"</{tag}>"
-    )
-
-
-def obstacle(car: Car) -> str:
-    states = "".join(state("state", car, k) for k in range(1, len(car.centres)))
-    return (
-        f'<dynamicObstacle id="{car.id}"><type>car</type><shape><rectangle><length>{car.length}</length>'
-        f"<width>1.8</width></rectangle></shape>{state('initialState', car, 0)}"
-        f"<trajectory>{states}</trajectory></dynamicObstacle>"
-    )
-
-
-def document(cars: tuple[Car, ...] = CARS) -> str:
-    """Two main lanes of two lanelets each, and a merge lane beside the first right one."""
-    road = [
-        lanelet(
-            "1", 0.0, 3.5, (0, 80), "highway", '<successor ref="2"/><adjacentLeft ref="3" drivingDir="same"/>'
-        ),
-        lanelet("2", 0.0, 3.5, (80, 160), "highway", '<predecessor ref="1"/>'),
-        lanelet("3", 3.5, 7.0, (0, 80), "highway", '<successor ref="4"/><successor ref="99"/>'),
-        lanelet("4", 3.5, 7.0, (80, 160), "highway", '<adjacentRight ref="2" drivingDir="same"/>'),
-        lanelet("5", -3.5, 0.0, (0, 80), "accessRamp", '<adjacentLeft ref="1" drivingDir="same"/>'),
-    ]
-    head = '<?xml version="1.0"?><commonRoad commonRoadVersion="2020a" timeStepSize="0.1">'
-    return head + "".join(road) + "".join(map(obstacle, cars)) + "</commonRoad>"
 
 
 @pytest.fixture
@@ -229,10 +149,50 @@ def test_touching_is_not_occupying() -> None:
 
 def test_projection_goes_on_straight() -> None:
     line = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]])
-    along = project(line, np.array([[-5.0, 1.0], [4.0, -2.0], [9.0, 6.0], [12.0, 15.0]]))
-    assert along.s.tolist() == [-5.0, 4.0, 16.0, 25.0]
-    assert along.d.tolist() == [1.0, -2.0, 1.0, -2.0]
-    assert along.heading == pytest.approx([0, 0, math.pi / 2, math.pi / 2])
+    along = project(line, np.array([[-5.0, 1.0], [12.0, 15.0]]))
+    assert along.s.tolist() == [-5.0, 25.0]
+    assert along.d.tolist() == [1.0, -2.0]
+    assert along.heading == pytest.approx([0, math.pi / 2])
+    straight = project(line[:2], np.array([[4.0, -2.0]]))
+    assert (straight.s[0], straight.d[0], straight.heading[0], straight.stretch[0]) == (4.0, -2.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("d", [-18.0, -5.0, 0.0, 5.0, 18.0])
+def test_projection_in_a_bend(d: float) -> None:
+    """A left bend of 200 m: a point d to the left goes 1 - d/200 m where the line goes 1 m, without jumps."""
+    radius, angle = 200.0, np.linspace(0.0, 1.0, 400)
+    line = even_line(np.stack((radius * np.sin(angle), radius * (1 - np.cos(angle))), axis=1))
+    at = np.linspace(0.05, 0.95, 5000)
+    points = np.stack(((radius - d) * np.sin(at), radius - (radius - d) * np.cos(at)), axis=1)
+    along = project(line, points)
+    assert np.abs(along.s - radius * at).max() < 0.01
+    assert np.abs(along.d - d).max() < 0.02  # chords of 5 m lie 16 mm inside the bend
+    assert np.abs(along.heading - at).max() < 1e-5
+    assert along.stretch == pytest.approx(-d / radius, abs=2e-4)
+    assert np.abs(np.diff(along.heading, 2)).max() < 1e-4
+
+
+def kinked(text: str, tag: str, across: float) -> str:
+    """``text`` (a lanelet) with a bound whose vertices come in threes, 4 cm apart, one of them 1 cm off."""
+    shifts = ((0.0, 0.0), (0.04, 0.01), (0.08, 0.0))
+    points = "".join(point(s + along, across + aside) for s in range(0, 81, 8) for along, aside in shifts)
+    head, _, rest = text.partition(f"<{tag}>")
+    return f"{head}<{tag}>{points}</{tag}>{rest.partition(f'</{tag}>')[2]}"
+
+
+def test_kinks_of_the_lanelets_do_not_reach_the_velocities(tmp_path: Path) -> None:
+    """The kinks turn the line by 14 degrees, which is 4.9 m/s across the road at 20 m/s."""
+    text = document((Car(1, 0, tuple((20.0 + 2 * k, 5.25) for k in range(30))),))
+    text = text.replace("<exact>-1.5</exact>", "<exact>0.0</exact>")
+    for name, low, high in (("1", 0.0, 3.5), ("3", 3.5, 7.0)):
+        head, mark, rest = text.partition(f'<lanelet id="{name}">')
+        one, end, others = rest.partition("</lanelet>")
+        text = head + mark + kinked(kinked(one, "leftBound", high), "rightBound", low) + end + others
+    path = tmp_path / "kinked.xml"
+    path.write_text(text)
+    r = read_commonroad(path)
+    assert np.abs(r.v_lat).max() < 0.08
+    assert np.abs(np.diff(r.s) - 2.0).max() < 0.01
 
 
 @pytest.mark.skipif(not US101.is_dir(), reason="the US-101 recordings are not here: ../shared/data/us101")

@@ -214,7 +214,7 @@ def test_jump_and_strange_lane_are_noted(tmp_path: Path) -> None:
     files = tiny_files()
     change(TRACKS, 7, "x", "15.40")(files)
     change(TRACKS, 7, "laneId", "5")(files)
-    lane, jump = read(files, tmp_path).notes
+    jump, lane = read(files, tmp_path).notes
     cell, rule = (
         "01_tracks.csv, row 8, column laneId=5",
         "laneId is not the lane of the box's centre in 1 rows of 10",

@@ -113,7 +113,8 @@ def _evaluate(args: argparse.Namespace, experiment: "Experiment") -> int:
         compared = comparison_table(totals, failed)
         if compared is not None:
             print(as_text(compared))
-        facts = answer_questions(totals, failed).partition("## Facts")[2].partition("\n\n")[2].splitlines()
+        section = answer_questions(totals, failed).partition("## Facts")[2].partition("\n\n")[2]
+        facts = section.partition("\n\n")[0].splitlines()
         print("\n".join(facts[:MOST_FACTS]))
         if len(facts) > MOST_FACTS:
             print(f"… {len(facts) - MOST_FACTS} more in {args.out / 'answers.md'}")

@@ -2,7 +2,7 @@
 
 import argparse
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,10 +16,12 @@ from roadproof.cli.options import (
     select_specification,
     write_json,
 )
+from roadproof.cli.progress import tell
 from roadproof.errors import InputError, UsageError
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
+    from roadproof.evidence.witness import DriveFile
     from roadproof.report.one_trace import Observed
     from roadproof.spec.library import Library, Specification
     from roadproof.spec.query import Query
@@ -30,7 +32,8 @@ SUMMARY = "say where a formula holds on one trace: a drive, samples, or vehicles
 _EXAMPLES = """\
 FORMULA is a formula or a scenario's number. TRACE is one of
   drive.json               a drive file of roadproof witness; judged exactly, in dense time, unless
-                           --view recorded asks for samples of it
+                           --view recorded asks for samples of it; what the file says of parameters,
+                           options and set holds unless the command line says otherwise
   samples.csv              a row a time and vehicle, with the header
                            time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width
                            (SI units, s along the road, d to the left, front-left corner of the box)
@@ -111,6 +114,8 @@ def _observe(args: argparse.Namespace, library: "Library") -> "tuple[Observed, d
     specification = select_specification(args, library)
     if is_pair(args.trace):
         trace = read_pair(args.trace, _frames(args.frames))
+        for note in trace.notes:
+            tell(f"note: {note}")
     elif args.trace.endswith(".csv"):
         trace = read_samples(Path(args.trace), load_road(args.road))
     else:
@@ -136,15 +141,30 @@ def _observe_drive(args: argparse.Namespace, library: "Library") -> "tuple[Obser
     values |= {name: value for name, value in file.values.items() if name not in given}
     dt = _positive("--dt", args.dt)
     trace = sample_drive(file.drive, file.road, file.horizon, dt, args.trace)
+    overruled = dict(_overruled(file, specification, values))
     if args.view == "recorded":
-        return _observe_trace(args, specification, trace, values, file.lanes)
+        observed, told = _observe_trace(args, specification, trace, values, file.lanes)
+        return observed, told | overruled
     query, number = _read(specification, args.formula)
     lanes = _lanes(args, query, number, trace, file.lanes)
     _check_vehicles(query, trace)
     formula = bind(query.formula, file.road, lanes, values)
-    return observe_drive(query.text, formula, file.drive, file.horizon, dt), _told(
-        trace, specification, lanes
-    )
+    told = _told(trace, specification, lanes) | overruled
+    return observe_drive(query.text, formula, file.drive, file.horizon, dt), told
+
+
+def _overruled(
+    file: "DriveFile", specification: "Specification", values: Mapping[str, Fraction]
+) -> "Iterator[tuple[str, str]]":
+    """What the command line asks for otherwise than the drive file, which was judged as it says."""
+    for name, value in file.values.items():
+        if values[name] != value:
+            yield f"parameter {name}", f"{values[name]} (the file says {value})"
+    for name, reading in file.options.items():
+        if specification.options.get(name) != reading:
+            yield f"option {name}", f"{specification.options.get(name)} (the file says {reading})"
+    if specification.set_name != file.set_name:
+        yield "set of the file", file.set_name
 
 
 def _observe_trace(

@@ -19,9 +19,8 @@ from roadproof.traffic.lanelets import MeasuredLane, MeasuredLanelet, beside_of,
 from roadproof.traffic.overlaps import describe_overlaps
 from roadproof.traffic.plausible import (
     LARGEST_ACCELERATION,
-    LARGEST_LENGTH,
+    LARGEST_SIZE,
     LARGEST_SPEED,
-    LARGEST_WIDTH,
     find_doubts,
 )
 from roadproof.traffic.projection import boxes_of, even_line, inside, overlap, project, triangles_of
@@ -181,7 +180,7 @@ def _check_plausible(path: Path, recording: Recording) -> Iterator[str]:
         who = f"dynamicObstacle {recording.vehicle_id[vehicle]}, time step {step}"
         if doubt.refused:
             raise InputError(f"{path}: {who}: {doubt.told}")
-        yield f"{path.name}: {who}: {doubt.told}"
+        yield f"{who}: {doubt.told}"
 
 
 def _describe(recording: Recording) -> tuple[str, ...]:
@@ -283,11 +282,9 @@ def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) 
         raise InputError(
             f"{path}: {where} has length={length}, width={width}; both must be greater than zero"
         )
-    if length > LARGEST_LENGTH or width > LARGEST_WIDTH:
-        raise InputError(
-            f"{path}: {where} has length={length:g}, width={width:g}; no vehicle is longer than "
-            f"{LARGEST_LENGTH:g} m or wider than {LARGEST_WIDTH:g} m"
-        )
+    if max(length, width) > LARGEST_SIZE:
+        told = f"{where} has length={length:g}, width={width:g}"
+        raise InputError(f"{path}: {told}; no vehicle is larger than {LARGEST_SIZE:g} m")
     rows = [
         _read_state(path, x, where)
         for x in (*node.findall("initialState"), *node.findall("trajectory/state"))

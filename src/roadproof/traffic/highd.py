@@ -14,9 +14,8 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.traffic.plausible import (
     LARGEST_ACCELERATION,
-    LARGEST_LENGTH,
+    LARGEST_SIZE,
     LARGEST_SPEED,
-    LARGEST_WIDTH,
     OFF_CENTRE,
     SHARE,
     find_doubts,
@@ -119,7 +118,6 @@ def read_highd(folder: Path, name: str) -> Recording:
     sizes = np.diff(start)
     _check_boxes(meta, tracks, start)
     _check_limits(tracks)
-    notes += _check_sight(meta, tracks)
 
     direction = np.repeat(meta["drivingDirection"], sizes)
     up = direction == UPPER
@@ -130,7 +128,6 @@ def read_highd(folder: Path, name: str) -> Recording:
     d = np.where(up, np.round(tracks["y"] + width, 6), -tracks["y"])
     _check_direction(meta, tracks, s, start)
     occupancy, lane = occupy_bands(lanes, direction, d, width)
-    notes += _check_lanes(tracks, lanes, lane, occupancy, start)
     recording = Recording(
         name=name,
         rate=rate,
@@ -154,7 +151,9 @@ def read_highd(folder: Path, name: str) -> Recording:
         zones=(occupancy != 0).astype(np.uint32),
         notes=notes,
     )
-    return with_notes(recording, _check_plausible(recording, tracks))
+    more = _check_plausible(recording, tracks)
+    more += _check_lanes(tracks, lanes, lane, occupancy, start)
+    return with_notes(recording, (*more, *_check_sight(meta, tracks)))
 
 
 def lanes_of_markings(upper: tuple[float, ...], lower: tuple[float, ...]) -> tuple[Lane, ...]:
@@ -323,8 +322,8 @@ def _check_limits(tracks: Table) -> None:
         "yVelocity": LARGEST_SPEED,
         "xAcceleration": LARGEST_ACCELERATION,
         "yAcceleration": LARGEST_ACCELERATION,
-        "width": LARGEST_LENGTH,
-        "height": LARGEST_WIDTH,
+        "width": LARGEST_SIZE,
+        "height": LARGEST_SIZE,
     }
     for column, most in limits.items():
         values = tracks[column]
@@ -335,17 +334,19 @@ def _check_limits(tracks: Table) -> None:
 def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
     """x against the distance to the end of the section, which the format counts from the box's centre.
 
-    x + width/2 less that distance is one number for all vehicles, unless x is not the left edge.
+    x + width/2 less that distance is one number for short and long vehicles, unless x is not the left edge.
     """
     names = ("id", "x", "width", "frontSightDistance", "backSightDistance")
     rows = np.array(sample_rows(tracks.path, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
     rows = rows[(rows[:, 3] > 0) & (rows[:, 4] > 0)]
-    if len(rows) < 50 or np.std(rows[:, 2]) < 0.2:
+    rows = rows[np.argsort(rows[:, 2], kind="stable")]
+    third = len(rows) // 3
+    spread = float(np.median(rows[-third:, 2]) - np.median(rows[:third, 2])) / 2 if third else 0.0
+    if third < 15 or spread < 0.2:
         return ()
     up = meta["drivingDirection"][np.searchsorted(meta["id"], rows[:, 0])] == UPPER
-    half = rows[:, 2] / 2
-    west = rows[:, 1] + half - np.where(up, rows[:, 3], rows[:, 4])
-    slope = float(np.cov(west, half)[0, 1] / np.var(half, ddof=1))
+    west = rows[:, 1] + rows[:, 2] / 2 - np.where(up, rows[:, 3], rows[:, 4])
+    slope = float(np.median(west[-third:]) - np.median(west[:third])) / spread
     if abs(slope) <= OFF_CENTRE[0]:
         return ()
     told = (

@@ -42,7 +42,8 @@ _NAMES = {1: ("SV",), 2: ("SV", "POV"), 3: ("SV", "POV1", "POV2")}
 class OneTrace:
     """A batch of one trace, its road, and the lane of each vehicle's centre at the start ("" for none).
 
-    ``first`` is the time of the first sample as the source counts it: seconds, or a frame.
+    ``first`` is the time of the first sample as the source counts it: seconds, or a frame. ``notes``: what is
+    odd in the recording that it is from.
     """
 
     source: str
@@ -50,6 +51,7 @@ class OneTrace:
     road: Road
     lanes: Mapping[str, str]
     first: str
+    notes: tuple[str, ...] = ()
 
 
 def is_pair(text: str) -> bool:
@@ -118,7 +120,7 @@ def cut_trace(
         at = int(recording.lane[begin])
         lanes[name] = recording.lanes[at].name if at >= 0 else ""
     batch = Batch(made.dt, made.lengths, made.signals, made.sizes, given)
-    return OneTrace(source, batch, road, lanes, f"frame {frames[0]}")
+    return OneTrace(source, batch, road, lanes, f"frame {frames[0]}", recording.notes)
 
 
 def _road_of(recording: Recording, way: int) -> Road:

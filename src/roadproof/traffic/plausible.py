@@ -12,15 +12,15 @@ import numpy as np
 
 from roadproof.traffic.recording import Bools, Floats, Integers, Recording
 
-LARGEST_SPEED = 150.0
+LARGEST_SPEED = 250.0
 LARGEST_ACCELERATION = 100.0
-LARGEST_LENGTH, LARGEST_WIDTH = 50.0, 6.0
+LARGEST_SIZE = 50.0
 LARGEST_STEP = 100.0
-"""m/s, m/s², m, m, and m from one frame to the next: what lies beyond is no vehicle; one cell is refused."""
+"""m/s, m/s², m, and m from one frame to the next: beyond that there is no vehicle; one cell is refused."""
 
 SHARE = 0.1
 """Above this share of broken seconds of motion, or of vehicles, a recording is refused."""
-SHARE_OF_JUMPS = 0.01
+SHARE_OF_JUMPS = 0.05
 """Above this share of steps between frames that jump a recording is refused."""
 FEWEST = 5
 """So many must break a rule before a recording is refused for their share."""
@@ -102,10 +102,9 @@ def _motion(recording: Recording) -> Iterator[Doubt]:
         if broken:
             factor = float(np.median(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong])))
             row = _worst(signal, total, int(begin[np.argmax(wrong)]), int(end[np.argmax(wrong)]))
-            text = f"{rule.what} contradict each other{_hint(factor)}"
-            yield Doubt(
-                text, rule.rate, row, broken, asked, "moving seconds", _too_many(broken, asked, SHARE)
-            )
+            refused = _too_many(broken, asked, SHARE)
+            text = f"{rule.what} contradict each other{_hint(factor) if refused else ''}"
+            yield Doubt(text, rule.rate, row, broken, asked, "moving seconds", refused)
 
 
 def _hint(factor: float) -> str:

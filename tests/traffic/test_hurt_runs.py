@@ -1,0 +1,328 @@
+"""Runs that are hurt: two in one folder, full disks, other inputs, copies, files of other kinds."""
+
+import bz2
+import errno
+import gzip
+import json
+import lzma
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+import zipfile
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+
+from roadproof.cli.main import main
+from roadproof.errors import InputError
+from roadproof.files import hold_folder, write_whole
+from roadproof.traffic import experiment as module
+from roadproof.traffic import results
+from roadproof.traffic.commonroad import read_commonroad
+from roadproof.traffic.experiment import Experiment, run_experiment
+from roadproof.traffic.highd import read_highd
+from roadproof.traffic.one_trace import read_samples
+from roadproof.traffic.questions import default_settings
+from roadproof.traffic.simulate import Traffic
+from roadproof.traffic.synthetic import simulate
+from roadproof.traffic.write_highd import write_highd
+from roadproof.world.models import load_road
+from traffic.tiny_highd import tiny_files, write_files
+
+TABLES = ("matches.csv", "pairs.csv", "results.json", "results.txt", "comparison.md", "answers.md")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("recordings")
+    for number in (1, 2):
+        write_highd(simulate(Traffic(seconds=15, lane_width=3.5), seed=6, number=number), path)
+    return path
+
+
+def evaluate(recordings: Path, out: Path, *options: str) -> int:
+    return main(["evaluate", str(recordings), "--out", str(out), "--jobs", "1", "--no-pictures", *options])
+
+
+def spoil(folder: Path, file: str, old: str, new: str) -> None:
+    text = (folder / file).read_text()
+    assert old in text
+    (folder / file).write_text(text.replace(old, new, 1))
+
+
+@pytest.mark.parametrize(
+    ("file", "row", "column", "value", "said"),
+    [
+        (
+            "02_recordingMeta.csv",
+            1,
+            1,
+            "24.00",
+            "row 2, column frameRate=24: ",
+        ),
+        ("02_tracks.csv", 40, 6, "1e155", "row 41, column xVelocity=1e+155: must lie between -250 and 250"),
+    ],
+)
+def test_a_cell_that_breaks_the_evaluation_is_named(
+    file: str,
+    row: int,
+    column: int,
+    value: str,
+    said: str,
+    folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Exit 3, or with --keep-going the other recordings; both name file, row, column, value and rule."""
+    ours = tmp_path / "ours"
+    shutil.copytree(folder, ours)
+    lines = (ours / file).read_text().splitlines()
+    cells = lines[row].split(",")
+    cells[column] = value
+    lines[row] = ",".join(cells)
+    (ours / file).write_text("\n".join(lines) + "\n")
+    assert evaluate(ours, tmp_path / "a") == 3
+    assert f"{ours / file}, {said}" in capsys.readouterr().err
+    assert evaluate(ours, tmp_path / "b", "--keep-going") == 0
+    printed = capsys.readouterr()
+    assert "left out: 02" in printed.out
+    assert said in printed.err
+    assert json.loads((tmp_path / "b" / "results.json").read_text())["recordings"] == 1
+
+
+def test_our_own_fault_names_the_recording(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(recording: object, questions: object) -> None:
+        raise FloatingPointError("overflow")
+
+    monkeypatch.setattr(module, "evaluate_recording", broken)
+    with pytest.raises(RuntimeError, match="recording 01: FloatingPointError: overflow"):
+        run_experiment(Experiment(folder, tmp_path, default_settings()))
+
+
+def test_notes_are_on_the_screen_and_in_the_results(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ours = tmp_path / "ours"
+    shutil.copytree(folder, ours)
+    lines = (ours / "01_tracks.csv").read_text().splitlines()
+    cells = lines[30].split(",")
+    cells[-1] = "1"
+    lines[30] = ",".join(cells)
+    (ours / "01_tracks.csv").write_text("\n".join(lines) + "\n")
+    assert evaluate(ours, tmp_path / "out") == 0
+    printed = capsys.readouterr()
+    note = "01_tracks.csv, row 31, column laneId=1: laneId is not the lane of the box's centre in 1 rows"
+    assert f"note: recording 01: {note}" in printed.err
+    assert "There is 1 note on 1 recordings" in printed.out
+    assert note in (tmp_path / "out" / "answers.md").read_text()
+    assert note in (tmp_path / "out" / "results.json").read_text()
+
+
+def test_a_failing_run_leaves_no_tables_of_another_input(folder: Path, tmp_path: Path) -> None:
+    out, ours = tmp_path / "out", tmp_path / "ours"
+    assert evaluate(folder, out) == 0
+    assert all((out / name).exists() for name in TABLES)
+    shutil.copytree(folder, ours)
+    (ours / "01_tracks.csv").write_text("")
+    assert evaluate(ours, out) == 3
+    assert not any((out / name).exists() for name in TABLES)
+    assert evaluate(folder, out) == 0
+    assert all((out / name).exists() for name in TABLES)
+
+
+def test_a_mistake_in_the_options_costs_no_tables(folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert evaluate(folder, out) == 0
+    assert evaluate(folder, out, "--scenarios", "99") == 2
+    assert evaluate(tmp_path / "nowhere", out) == 3
+    assert all((out / name).exists() for name in TABLES)
+
+
+def test_two_runs_in_one_folder(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The second is refused and touches nothing; a run that was killed holds nothing."""
+    out = tmp_path / "out"
+    hold = "import sys, time; from pathlib import Path; from roadproof.files import hold_folder\n"
+    hold += "with hold_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(600)"
+    other = subprocess.Popen([sys.executable, "-c", hold, str(out)], stdout=subprocess.PIPE, text=True)
+    try:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "held\n"
+        (out / "results.txt").write_text("another's")
+        assert evaluate(folder, out) == 3
+        said = capsys.readouterr().err
+        assert f"{out}: another run is writing into this folder; wait until it is done" in said
+        assert (out / "results.txt").read_text() == "another's"
+    finally:
+        other.kill()
+        other.wait()
+    assert evaluate(folder, out) == 0
+
+
+def test_a_folder_is_let_go_of(tmp_path: Path) -> None:
+    for _ in range(2):
+        with hold_folder(tmp_path / "out"):
+            second = hold_folder(tmp_path / "out")
+            with pytest.raises(InputError, match="another run"):
+                second.__enter__()
+    assert not list((tmp_path / "out").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [
+        (errno.ENOSPC, "no space left on device; make room there"),
+        (errno.EDQUOT, "make room there"),
+        (errno.EROFS, "Read-only file system; name another folder"),
+        (errno.ENOENT, "name a folder that exists"),
+    ],
+)
+def test_a_full_disk_is_called_full(
+    number: int, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(source: str, target: Path) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(InputError, match=said):
+        write_whole(tmp_path / "file", b"content")
+    assert not list(tmp_path.iterdir())
+
+
+def test_results_are_kept_by_content_not_by_time(folder: Path, tmp_path: Path) -> None:
+    """Other content of the same size and time is evaluated again; the same content of another time is not."""
+    ours, out = tmp_path / "ours", tmp_path / "out"
+    shutil.copytree(folder, ours)
+
+    def evaluated() -> int:
+        told: list[str] = []
+        run_experiment(Experiment(ours, out, default_settings()), told.append)
+        return sum(line.startswith("[") for line in told)
+
+    assert evaluated() == 2
+    meta = ours / "01_recordingMeta.csv"
+    times = meta.stat()
+    spoil(ours, meta.name, "12:00", "12:01")
+    os.utime(meta, ns=(times.st_atime_ns, times.st_mtime_ns))
+    assert (meta.stat().st_size, meta.stat().st_mtime_ns) == (times.st_size, times.st_mtime_ns)
+    assert evaluated() == 1
+    os.utime(meta, ns=(1, 1))
+    assert evaluated() == 0
+
+
+def test_results_of_another_version_are_not_kept(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+    run_experiment(Experiment(folder, tmp_path, default_settings()))
+    monkeypatch.setattr(results, "version", lambda name: "0.0.0")
+    run_experiment(Experiment(folder, tmp_path, default_settings()), told.append)
+    assert sum(line.startswith("[") for line in told) == 2
+
+
+def test_results_that_were_changed_are_not_kept(folder: Path, tmp_path: Path) -> None:
+    run_experiment(Experiment(folder, tmp_path, default_settings()))
+    before = (tmp_path / "matches.csv").read_bytes()
+    saved = tmp_path / "recordings" / "01.json"
+    data = json.loads(saved.read_text())
+    data["findings"]["matches"].pop()
+    saved.write_text(json.dumps(data))
+    told: list[str] = []
+    run_experiment(Experiment(folder, tmp_path, default_settings()), told.append)
+    assert [line for line in told if line.startswith("[")] == ["[1/1] 01"]
+    assert (tmp_path / "matches.csv").read_bytes() == before
+
+
+def test_a_recording_under_two_names_counts_once(folder: Path, tmp_path: Path) -> None:
+    ours = tmp_path / "ours"
+    shutil.copytree(folder, ours)
+    for name in ("recordingMeta", "tracksMeta", "tracks"):
+        shutil.copy2(ours / f"01_{name}.csv", ours / f"03_{name}.csv")
+    spoil(ours, "03_recordingMeta.csv", "\n1,", "\n3,")
+    with pytest.raises(InputError, match=r"03_tracks\.csv: the same content as .*01_tracks\.csv"):
+        run_experiment(Experiment(ours, tmp_path / "a", default_settings()))
+    outcome = run_experiment(Experiment(ours, tmp_path / "b", default_settings(), keep_going=True))
+    assert list(outcome.failed) == ["03"]
+    assert outcome.totals.recordings == 2
+
+
+def test_equal_settings_are_compiled_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Workers get a copy of the settings with every recording."""
+    asked, ask = [], module.ask
+    monkeypatch.setattr(module, "ask", lambda settings, rate: asked.append(rate) or ask(settings, rate))
+    monkeypatch.setattr(module, "_asked", {})
+    settings = default_settings()
+    question = results.question_mark(settings)
+    for _ in range(3):
+        copy = pickle.loads(pickle.dumps(settings))
+        assert copy is not settings
+        assert results.question_mark(copy) == question
+        module._questions(copy, question, 25)
+    assert asked == [25]
+    other = replace(settings, scenarios=(4,))
+    module._questions(other, results.question_mark(other), 25)
+    assert asked == [25, 25]
+
+
+def zipped(content: bytes) -> bytes:
+    file = BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("01_tracks.csv", content)
+    return file.getvalue()
+
+
+KINDS = {
+    "semicolons": (lambda c: c.replace(b",", b";"), "has its columns separated by semicolons"),
+    "decimal commas": (lambda c: c.replace(b",", b";").replace(b".", b","), "no table|semicolons"),
+    "tabs": (lambda c: c.replace(b",", b"\t"), "has its columns separated by tabs"),
+    "gzip": (gzip.compress, "is compressed by gzip; unpack it first"),
+    "bzip2": (bz2.compress, "is compressed by bzip2"),
+    "xz": (lzma.compress, "is compressed by xz"),
+    "zip": (zipped, "is a ZIP archive or a spreadsheet"),
+    "UTF-16": (lambda c: c.decode().encode("utf-16"), "is text in UTF-16; save it as UTF-8"),
+    "UTF-16 without a mark": (lambda c: c.decode().encode("utf-16-le"), "is text in UTF-16"),
+    "HTML": (lambda c: b"<!DOCTYPE html>\n<html><body>Log in</body></html>\n", "is a page of HTML"),
+    "HTML without a type": (lambda c: b"\n  <HTML>\n<p>404</p>\n", "is a page of HTML"),
+    "XML": (lambda c: b'<?xml version="1.0"?>\n<a/>\n', "is XML or HTML"),
+    "JSON": (lambda c: b'{"frame": 1}\n', "is JSON, not a table of numbers"),
+    "Parquet": (lambda c: b"PAR1" + c, "is a Parquet file"),
+    "a pointer": (
+        lambda c: b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n",
+        "a pointer of Git LFS",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_files_of_other_kinds_are_called_by_their_names(kind: str, tmp_path: Path) -> None:
+    change, said = KINDS[kind]
+    write_files(tiny_files(), tmp_path)
+    for name in ("01_tracks.csv", "01_tracksMeta.csv", "01_recordingMeta.csv"):
+        path = tmp_path / name
+        honest = path.read_bytes()
+        path.write_bytes(change(honest))
+        if kind == "semicolons" and name == "01_recordingMeta.csv":
+            assert b";" in honest  # its markings
+        with pytest.raises(InputError, match=f"{name}: the file .*({said})"):
+            read_highd(tmp_path, "01")
+        path.write_bytes(honest)
+    samples = tmp_path / "samples.csv"
+    samples.write_bytes(
+        change(b"time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width\n0,SV,1,2,3,0,0,0,4,2\n")
+    )
+    with pytest.raises(InputError, match=said):
+        read_samples(samples, load_road("main-2"))
+
+
+@pytest.mark.parametrize("kind", ["gzip", "zip", "HTML", "a pointer"])
+def test_commonroad_files_of_other_kinds(kind: str, tmp_path: Path) -> None:
+    change, said = KINDS[kind]
+    path = tmp_path / "a.xml"
+    path.write_bytes(change(b"<commonRoad/>"))
+    with pytest.raises(InputError, match=f"a.xml: the file .*{said}"):
+        read_commonroad(path)

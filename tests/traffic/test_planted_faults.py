@@ -1,0 +1,319 @@
+"""Wrong experiments, planted by hand: each check holds as things are, and fails on every fault beside it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.report import classify
+from roadproof.spec.library import Source, build_library, bundled_library
+from roadproof.traffic import disturbances, evaluate, pairs
+from roadproof.traffic.detectors import find_detections
+from roadproof.traffic.pairs import Reach, Sight, common_pairs
+from roadproof.traffic.questions import COMPARISON, ask, default_settings
+from roadproof.traffic.recording import Recording
+from traffic.faults import faulty_library, plant_fault
+from traffic.make_recording import Track, cruise, make_recording
+
+
+@dataclass(frozen=True)
+class Fault:
+    module: ModuleType
+    old: str
+    new: str
+
+
+def check_against(faults: dict[str, Fault]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """The check as it is, and once with each fault, where it must fail."""
+    return pytest.mark.parametrize("fault", [None, *faults.values()], ids=["no fault", *faults])
+
+
+def judge(monkeypatch: pytest.MonkeyPatch, fault: Fault | None, check: Callable[[], None]) -> None:
+    if fault is None:
+        check()
+        return
+    plant_fault(monkeypatch, fault.module, fault.old, fault.new)
+    with pytest.raises((AssertionError, InputError)):
+        check()
+
+
+# --- traces cut one sample early, or late -------------------------------------------------------
+
+
+def near_and_far() -> Recording:
+    """30 m/s each; POV is 10 m ahead in samples 40 to 59 and 70 to 74, else 200 m: danger begins and ends.
+
+    A third car is 400 m ahead all the time.
+    """
+    sv = cruise(0.0, 30.0, 100)
+    near = [10.0 if 40 <= k < 60 or 70 <= k < 75 else 200.0 for k in range(100)]
+    pov = [(s + gap, *rest) for (s, *rest), gap in zip(sv, near, strict=True)]
+    far = [(s + 400.0, *rest) for s, *rest in sv]
+    return make_recording([Track(2, 1, sv), Track(2, 1, pov), Track(2, 1, far)])
+
+
+LAST = {0: 74, 1: 59}
+"""The last sample of the trace, by minDanger: of the last danger, and of the last that lasts for 0.6 s."""
+
+
+def found_at(
+    sample: int, vehicles: str, number: int, initially: str = ""
+) -> set[tuple[int, int | None, int]]:
+    """(sv, pov2, minDanger) of the matches of a scenario that asks for SV's place in ``sample``."""
+    place = Fraction(30 * sample, 25)
+    text = f"def scenario_{number}({vehicles}: vehicle, L: lane) := F (s(SV) >= {place} * 1 m)"
+    library = build_library([Source("mine.spec", text + initially)], bundled_library())
+    settings = replace(default_settings(), library=library, sets=("base",), scenarios=(number,))
+    findings = evaluate.evaluate_recording(near_and_far(), ask(settings, 25))
+    return {(m.sv, m.pov2, m.min_danger) for m in findings.matches if m.sv == 1}
+
+
+ENDS = {
+    "pairs cut early": Fault(evaluate, "end - start + 1, batch.lengths", "end - start, batch.lengths"),
+    "pairs cut late": Fault(evaluate, "end - start + 1, batch.lengths", "end - start + 2, batch.lengths"),
+    "never cut": Fault(evaluate, "seen.cut(lengths), arises", "seen, arises"),
+    "ends early": Fault(
+        disturbances,
+        "end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))",
+        "end.append(np.where((start != NEVER) & (final >= start), final + steps - 1, -1))",
+    ),
+    "ends late": Fault(
+        disturbances,
+        "end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))",
+        "end.append(np.where((start != NEVER) & (final >= start), final + steps + 1, -1))",
+    ),
+    "ends where the last danger begins": Fault(
+        disturbances,
+        "end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))",
+        "end.append(np.where((start != NEVER) & (final >= start), final, -1))",
+    ),
+}
+
+
+@check_against(ENDS)
+def test_pairs_end_with_the_last_danger(fault: Fault | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    def check() -> None:
+        for k, last in LAST.items():
+            assert (1, None, k) in found_at(last, "SV, POV", 4)
+            assert (1, None, k) not in found_at(last + 1, "SV, POV", 4)
+
+    judge(monkeypatch, fault, check)
+
+
+TRIPLE_ENDS = {
+    name: Fault(
+        disturbances,
+        "ends.append(np.where(starts & (final >= start), final + steps, -1))",
+        f"ends.append(np.where(starts & (final >= start), final{change}, -1))",
+    )
+    for name, change in (("early", " + steps - 1"), ("late", " + steps + 1"), ("begins", ""))
+}
+
+
+@check_against(TRIPLE_ENDS)
+def test_triples_end_with_the_last_danger(fault: Fault | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """POV1 is the far car, POV2 the one that comes near."""
+    anyhow = "\ndef initialCondition_2(SV, POV1, POV2: vehicle, L: lane) := v_lon(SV) > 0 m/s"
+
+    def check() -> None:
+        for k, last in LAST.items():
+            assert (1, 2, k) in found_at(last, "SV, POV1, POV2", 2, anyhow)
+            assert (1, 2, k) not in found_at(last + 1, "SV, POV1, POV2", 2, anyhow)
+
+    judge(monkeypatch, fault, check)
+
+
+# --- the pre-filters with the wrong vehicle's size or speed ----------------------------------------
+
+REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
+FILTER = {
+    "length below": Fault(
+        pairs, "least[first]) + recording.length[first]", "least[first]) + recording.length[second]"
+    ),
+    "length above": Fault(
+        pairs, "least[second]) + recording.length[second]", "least[second]) + recording.length[first]"
+    ),
+    "no length below": Fault(pairs, "least[first]) + recording.length[first]", "least[first])"),
+    "speeds below": Fault(pairs, "greatest[second], least[first])", "greatest[first], least[second])"),
+    "speeds above": Fault(pairs, "greatest[first], least[second])", "greatest[second], least[first])"),
+    "width below": Fault(
+        pairs, "bound + recording.width[pairs.first],", "bound + recording.width[pairs.second],"
+    ),
+    "width above": Fault(
+        pairs, "bound + recording.width[pairs.second])", "bound + recording.width[pairs.first])"
+    ),
+}
+
+
+def two_cars(front: int, gap: float, across: float, sizes: tuple[float, float]) -> Recording:
+    """A car and a lorry, the rear one faster; ``front`` says which of the two is ahead, and left.
+
+    ``gap`` and ``across`` are between the boxes.
+    """
+    (length, width), (lorry_length, lorry_width) = (4.5, 1.8), sizes
+    lengths, widths = (length, lorry_length), (width, lorry_width)
+    places = {front: (gap + lengths[front], across + widths[front], 24.0), 1 - front: (0.0, 0.0, 30.0)}
+    return make_recording(
+        [
+            Track(
+                2,
+                1,
+                [(places[k][0], -26.0 + places[k][1], places[k][2], 0.0, 0.0, 0.0)],
+                lengths[k],
+                widths[k],
+            )
+            for k in (0, 1)
+        ]
+    )
+
+
+@check_against(FILTER)
+def test_the_pre_filter_is_sharp_for_cars_and_lorries(
+    fault: Fault | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """30 m/s behind 24 m/s need 73.65 m along, standing still across they need 1.08 m (semantics §3)."""
+
+    def kept(front: int, gap: float, across: float) -> bool:
+        r = two_cars(front, gap, across, (12.0, 2.5))
+        return len(pairs.near_pairs(r, common_pairs(r, np.ones(2, bool)), REACH)) == 1
+
+    def check() -> None:
+        for front in (0, 1):
+            assert kept(front, 73.64, 0.0)
+            assert not kept(front, 73.66, 0.0)
+            assert kept(front, 10.0, 1.07)
+            assert not kept(front, 10.0, 1.09)
+
+    judge(monkeypatch, fault, check)
+
+
+SIGHT = {
+    "length of the rear": Fault(
+        pairs, "gap + recording.length[front] + 0.001", "gap + recording.length[rear] + 0.001"
+    ),
+    "headway at the front's speed": Fault(pairs, "sight.thw * greatest[rear]", "sight.thw * greatest[front]"),
+    "closing the other way": Fault(
+        pairs, "(greatest[rear] - least[front])", "(greatest[front] - least[rear])"
+    ),
+}
+
+
+@check_against(SIGHT)
+@pytest.mark.parametrize(("sight", "most"), [((0, 2, 0), 60.0), ((5, 0, 0), 30.0), ((0, 0, 50), 50.0)])
+def test_the_detectors_sight_is_sharp(
+    sight: tuple[float, float, float], most: float, fault: Fault | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """30 m/s behind 24 m/s: 2 s of headway are 60 m, 5 s to collision 30 m; all to the rear of the front."""
+
+    def kept(front: int, gap: float) -> bool:
+        r = two_cars(front, gap, -1.0, (12.0, 1.8))
+        return len(pairs.pairs_in_sight(r, common_pairs(r, np.ones(2, bool)), Sight(*sight))[0]) == 1
+
+    def check() -> None:
+        for front in (0, 1):
+            assert kept(front, most - 0.01)
+            assert not kept(front, most + 0.01)
+
+    if fault is not None and fault is not SIGHT["length of the rear"] and most == 50.0:
+        return  # neither speed matters for a distance
+    if fault is SIGHT["closing the other way"] and sight[0] == 0:
+        return
+    if fault is SIGHT["headway at the front's speed"] and sight[1] == 0:
+        return
+    judge(monkeypatch, fault, check)
+
+
+# --- the detectors' definitions ------------------------------------------------------------------
+
+DETECTORS = {
+    "headway at the front's speed": ("thwLimit*v_lon(a)", "thwLimit*v_lon(b)"),
+    "headway at the closing speed": ("thwLimit*v_lon(a)", "thwLimit*(v_lon(a) - v_lon(b))"),
+    "headway from rear to rear": (":= rear(b) - front(a)", ":= rear(b) - rear(a)"),
+    "headway to the front": (":= rear(b) - front(a)", ":= front(b) - front(a)"),
+    "time to collision without the front's speed": ("ttcLimit*(v_lon(a) - v_lon(b))", "ttcLimit*v_lon(a)"),
+    "limits exchanged": ("gapAhead(a, b) < thwLimit*v_lon(a)", "gapAhead(a, b) < ttcLimit*v_lon(a)"),
+}
+
+
+def detected(library_text: tuple[str, str] | None, gap: float, rear: float, front: float) -> set[str]:
+    """The decel detectors that find SV behind POV, which brakes at 5 m/s², in a single sample."""
+    library = bundled_library() if library_text is None else faulty_library(*library_text)
+    questions = ask(replace(default_settings(library), detectors=COMPARISON), 25)
+    sv = [(0.0, -28.0, rear, 0.0, 0.0, 0.0)]
+    pov = [(gap + 4.5, -28.0, front, 0.0, -5.0, 0.0)]
+    recording = make_recording([Track(2, 1, sv), Track(2, 1, pov)])
+    found = find_detections(recording, questions, common_pairs(recording, np.ones(2, bool)))
+    assert all((x.sv, x.pov) == (1, 2) for x in found)
+    return {x.detector for x in found}
+
+
+@pytest.mark.parametrize("fault", [None, *DETECTORS.values()], ids=["no fault", *DETECTORS])
+def test_headway_and_time_to_collision(fault: tuple[str, str] | None) -> None:
+    """Headway is the gap by the rear car's speed (2 s), time to collision by the difference (4 s)."""
+    cases = [
+        (59.9, 30.0, 20.0, {"decel_thw"}),  # 2.997 s at the front's speed
+        (60.1, 30.0, 20.0, set()),
+        (39.9, 30.0, 20.0, {"decel_thw", "decel_ttc"}),  # 3.99 s to collision
+        (40.1, 30.0, 20.0, {"decel_thw"}),
+        (40.1, 20.0, 30.0, set()),  # 1.3 s at the front's speed
+        (39.9, 20.0, 30.0, {"decel_thw"}),
+        (70.0, 30.0, 5.0, {"decel_ttc"}),
+    ]
+    held = all(detected(fault, gap, rear, front) == expected for gap, rear, front, expected in cases)
+    assert held == (fault is None)
+
+
+# --- shares of classes ---------------------------------------------------------------------------
+
+SHARES = {
+    "over all sizes": Fault(
+        classify,
+        'sum(shares["situations"].get(number, 0) for number in one["of"])',
+        'sum(shares["situations"].values())',
+    ),
+    "over traces": Fault(
+        classify,
+        'sum(shares["situations"].get(number, 0) for number in one["of"])',
+        'shares["traces"]',
+    ),
+    "over covered traces": Fault(
+        classify,
+        'sum(shares["situations"].get(number, 0) for number in one["of"])',
+        'shares["covered"]',
+    ),
+}
+
+
+@check_against(SHARES)
+def test_shares_are_of_situations_with_as_many_vehicles(
+    fault: Fault | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """6 and 2 of 8 situations of two vehicles are 75 and 25 %, 4 of 4 of three vehicles are all."""
+
+    def one(number: int, vehicles: list[str], situations: int) -> dict[str, object]:
+        told = {"name": f"class_{number}", "where": "main road", "description": f"{number} happens"}
+        counts = {"situations": situations, "traces": situations, "verdict": "WITNESSED"}
+        return told | counts | {"vehicles": vehicles, "scenarios": [number], "happens": [number]}
+
+    data = {
+        "classes": [
+            one(1, ["SV", "POV"], 6),
+            one(4, ["SV", "POV"], 2),
+            one(2, ["SV", "POV1", "POV2"], 4),
+        ],
+        "shares": {"situations": {"2": 8, "3": 4}, "traces": 10, "covered": 9, "source": "here"},
+    }
+
+    def check() -> None:
+        rows = {line.split()[0]: line for line in classify.as_table(data).splitlines()[1:]}
+        assert {name: row.split()[5] for name, row in rows.items()} == {
+            "class_1": "75.0",
+            "class_4": "25.0",
+            "class_2": "100.0",
+        }
+
+    judge(monkeypatch, fault, check)

@@ -1,0 +1,121 @@
+"""Windows of one recording that overlap: what both show counts once, and what only one shows counts."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roadproof.traffic.counting import Counted
+from roadproof.traffic.experiment import Experiment, run_experiment
+from roadproof.traffic.questions import COMPARISON, default_settings
+from roadproof.traffic.repeats import STEPS, moments_of
+from roadproof.traffic.results import Totals
+from traffic.tiny_commonroad import Car, document
+
+SPEEDS = {"rear": (20.0, 0.02), "front": (12.0, 0.03)}
+STEPS_SEEN = 40
+
+
+def motion(speed: float, pull: float, k: int) -> tuple[float, float]:
+    """Speed and acceleration at step ``k``, of a driver whose acceleration grows."""
+    return speed + pull * (0.1 * k) ** 2 / 2, pull * 0.1 * k
+
+
+def car(number: int, begin: float, who: str, first: int, last: int) -> Car:
+    speed, pull = SPEEDS[who]
+    way = np.cumsum([0.0] + [0.1 * motion(speed, pull, k)[0] for k in range(last)])
+    centres = tuple((begin + float(way[k]), 1.75) for k in range(first, last))
+    return Car(number, 0, centres, motion=tuple(motion(speed, pull, k) for k in range(first, last)))
+
+
+def window(path: Path, first: int, last: int, ids: tuple[int, int] = (1, 2)) -> None:
+    """Steps ``first`` to ``last`` of a drive in which a car closes in on another until it is too near."""
+    path.write_text(
+        document((car(ids[0], 10.0, "rear", first, last), car(ids[1], 75.0, "front", first, last)))
+    )
+
+
+def evaluate(folder: Path, out: Path) -> Totals:
+    settings = replace(default_settings(), scenarios=(4, 12))  # the road begins as a merge zone
+    return run_experiment(Experiment(folder, out, settings)).totals
+
+
+def traces(totals: Totals) -> list[int]:
+    return [row.traces for row in totals.rows if row.set_name == "base"]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "windows").mkdir()
+    window(tmp_path / "windows" / "a.xml", 0, STEPS_SEEN)
+    return tmp_path / "windows"
+
+
+def test_a_window_alone_counts(folder: Path, tmp_path: Path) -> None:
+    totals = evaluate(folder, tmp_path / "out")
+    assert (traces(totals), totals.violating, totals.repeats) == ([1, 1], 1, [])
+    assert all(row.matching == 1 for row in totals.rows)
+
+
+@pytest.mark.parametrize(("first", "ids"), [(0, (7, 8)), (3, (1, 2)), (6, (9, 4))])
+def test_what_an_earlier_window_shows_is_left_out(
+    first: int, ids: tuple[int, int], folder: Path, tmp_path: Path
+) -> None:
+    """Other ids, another time 0: the trace, the violation and the matches count once, and that is said."""
+    window(folder / "b.xml", first, STEPS_SEEN, ids)
+    totals = evaluate(folder, tmp_path / "out")
+    assert (traces(totals), totals.violating, totals.repeated) == ([1, 1], 1, 2)
+    assert all(row.matching == 1 for row in totals.rows)
+    told = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert {"recording": "b", "pair": sorted(ids), "what": "trace", "minDanger": "0", "shownIn": "a"} in told[
+        "repeats"
+    ]
+    rows = (tmp_path / "out" / "pairs.csv").read_text().splitlines()
+    assert len(rows) == 3
+    assert all(row.startswith("a,") for row in rows[1:])
+
+
+def test_windows_that_follow_each_other_both_count(folder: Path, tmp_path: Path) -> None:
+    """Another car, elsewhere in time: nothing is the same."""
+    (folder / "b.xml").write_text(
+        document(
+            (
+                car(1, 12.0, "front", 0, STEPS_SEEN),
+                Car(2, 0, ((64.0, 1.75),) * STEPS_SEEN, motion=((0.0, 0.0),) * STEPS_SEEN),
+            )
+        )
+    )
+    totals = evaluate(folder, tmp_path / "out")
+    assert totals.repeats == []
+    assert traces(totals)[0] == 2
+
+
+def test_detections_count_once(folder: Path, tmp_path: Path) -> None:
+    window(folder / "b.xml", 2, STEPS_SEEN)
+    settings = replace(default_settings(), detectors=COMPARISON)
+    one = run_experiment(Experiment(folder / "a.xml", tmp_path / "one", settings)).totals
+    both = run_experiment(Experiment(folder, tmp_path / "both", settings)).totals
+    assert both.detected == one.detected
+    assert (both.recordings, one.recordings) == (2, 1)
+
+
+def test_moments_are_those_of_motion_not_of_place() -> None:
+    """Five changing samples make a moment; standing, steady motion and the last four make none."""
+    changing = np.array([[10.0 + 0.1 * k, 0.1] for k in range(12)])
+    steady = np.array([[12.192, 0.0]] * 12)
+    made = moments_of(np.concatenate((changing, steady, changing[3:])), np.array([0, 12, 24, 33]))
+    assert (made[:12] != 0).tolist() == [True] * (12 - STEPS + 1) + [False] * (STEPS - 1)
+    assert not made[12:24].any()
+    assert made[24:].tolist() == made[3:12].tolist()
+
+
+def test_the_same_recording_repeats_nothing() -> None:
+    counted = Counted()
+    assert counted.is_new("a", (1, 2), "trace", 0, (5, 6, 0))
+    assert counted.is_new("a", (1, 2), "trace", 0, (6, 7))
+    assert counted.is_new("b", (1, 2), "trace", 0, (0, 8))  # 0 is no moment
+    assert counted.is_new("b", (1, 2), "trace", 1, (5,))  # another minDanger
+    assert not counted.is_new("b", (3, 4), "trace", 0, (9, 7))
+    assert [(r.recording, r.first, r.shown_in) for r in counted.repeats] == [("b", 3, "a")]
