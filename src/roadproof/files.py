@@ -21,7 +21,7 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
     path = _target(path)
     try:
         if _is_no_file(path):
-            with path.open("wb") as file:
+            with path.open("ab") as file:
                 yield file
             return
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
