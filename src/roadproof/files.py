@@ -15,9 +15,15 @@ from roadproof.errors import InputError
 def whole_file(path: Path) -> Iterator[BinaryIO]:
     """A file to write bytes to, by way of a hidden one beside it, which is gone if anything fails.
 
-    The folder must exist. Raises ``InputError`` where the file cannot be written.
+    The folder must exist. What is no file, such as /dev/null, is written to as it stands; a link is
+    followed. Raises ``InputError`` where the file cannot be written.
     """
+    path = _target(path)
     try:
+        if _is_no_file(path):
+            with path.open("ab") as file:
+                yield file
+            return
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
             with os.fdopen(handle, "wb") as file:
@@ -29,6 +35,17 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
             raise
     except OSError as error:
         raise cannot_write(path, error) from None
+
+
+def _target(path: Path) -> Path:
+    """The file that a link leads to; those of /dev are no files to be replaced, wherever they lead."""
+    return path.resolve() if path.is_symlink() and not _is_no_file(path) else path
+
+
+def _is_no_file(path: Path) -> bool:
+    if path.is_dir() or not path.exists():
+        return False
+    return not path.is_file() or path.absolute().parts[1:2] in (("dev",), ("proc",))
 
 
 _ADVICE = {

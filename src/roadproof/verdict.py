@@ -15,6 +15,8 @@ class Verdict(StrEnum):
     IMPOSSIBLE = "IMPOSSIBLE"  # a proof for all time that there is none
     NONE_WITHIN = "NONE-WITHIN"  # none within horizon, grid and limits
     UNKNOWN = "UNKNOWN"  # says why
+    COVERED = "COVERED"  # of a set that misses no disturbance; certificates
+    GAPS = "GAPS"  # of a set that misses some; judged drives
     CROSSCHECK_FAILED = "CROSSCHECK-FAILED"  # readers of the same formula disagree
 
 
@@ -28,6 +30,8 @@ class ExitCode(IntEnum):
     CROSSCHECK_FAILED = 30
     OUR_FAULT = 70
     INTERRUPTED = 130
+    READER_GONE = 141  # as shells report SIGPIPE; not 0, since the answer was not delivered
+    ENDED = 143  # as shells report SIGTERM
 
 
 def exit_code(outcomes: Iterable[tuple[Verdict, Verdict]]) -> ExitCode:

@@ -125,9 +125,9 @@ def run(args: argparse.Namespace) -> int:
         "view": "dense",
         "verdict": str(Verdict.CROSSCHECK_FAILED)
         if broken
-        else "COVERED"
+        else str(Verdict.COVERED)
         if proved
-        else "GAPS"
+        else str(Verdict.GAPS)
         if gaps
         else str(Verdict.UNKNOWN),
         "claims": evidence.claims(covered),
@@ -301,7 +301,7 @@ def _print(data: dict[str, Any]) -> None:
     if data["traffic"] is not None:
         traffic = data["traffic"]
         print(f"of {traffic['disturbances']} disturbances in traffic {len(traffic['missed'])} are missed")
-    if data["verdict"] == "COVERED":
+    if data["verdict"] == str(Verdict.COVERED):
         print(f"set {name} misses no danger that arises from safety between two vehicles")
     if data["verdict"] == str(Verdict.CROSSCHECK_FAILED):
         print("traffic shows what is proved not to be, which is our fault: please report it")

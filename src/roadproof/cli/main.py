@@ -39,7 +39,6 @@ COMMANDS = {
     "explore": "roadproof.cli.explore",
 }
 TRACEBACK = "ROADPROOF_TRACEBACK"
-_READER_GONE = 141  # what shells report for SIGPIPE; not 0, since the answer was not delivered
 
 _EXAMPLES = """\
 examples:
@@ -84,12 +83,10 @@ def answer(arguments: list[str]) -> int:
         return _complain("interrupted", ExitCode.INTERRUPTED)
     except BrokenPipeError:
         forget_output()  # the reader has gone away
-        return _READER_GONE
+        return ExitCode.READER_GONE
     except Exception as error:
-        if isinstance(error, OSError) and error.errno in FULL:
-            forget_output()
-            reason = os.strerror(error.errno).replace("No space", "no space")
-            return _complain(f"cannot write the answer: {reason}; make room there", ExitCode.BAD_INPUT)
+        if isinstance(error, OSError) and error.errno is not None:
+            return _complain(_of_system(error), ExitCode.BAD_INPUT)
         if os.environ.get(TRACEBACK):
             raise
         reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
@@ -160,6 +157,16 @@ def _print_version() -> int:
 
     print(f"roadproof {version('roadproof')}")
     return ExitCode.AS_EXPECTED
+
+
+def _of_system(error: OSError) -> str:
+    """What a failing file or disk is told as; what stdout still holds is lost where the disk is full."""
+    reason = os.strerror(error.errno or 0)
+    if error.filename is not None:
+        return f"cannot use {error.filename}: {reason}"
+    if error.errno in FULL:
+        forget_output()
+    return f"cannot write the answer: {reason[0].lower()}{reason[1:]}; make room there, or write elsewhere"
 
 
 def _complain(message: str, code: int) -> int:

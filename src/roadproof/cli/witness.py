@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.cli.numbers import whole
-from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
+from roadproof.cli.options import add_json_option, json_text, load_library_of, write_json
 from roadproof.cli.progress import clear
 from roadproof.cli.search_options import add_search_options, read_request
 from roadproof.cli.working import add_working_options, count_workers, work_in_order
@@ -65,11 +65,17 @@ def run(args: argparse.Namespace) -> int:
     tasks = [Task(r, k + 1, args.out, not args.no_pictures) for k, r in enumerate(requests)]
     if count_workers(tasks, args.jobs) > 1:
         _warm_up()
-    for outcome in work_in_order(fulfil, tasks, args.jobs, "questions", undecided):
-        outcomes.append(outcome)
+    written = False
+    for done in work_in_order(fulfil, tasks, args.jobs, "questions", undecided):
+        outcomes.append(done.outcome)
+        written = written or bool(done.files)
         if args.json != "-":
             clear()
-            print(_line(outcome, args.verbose), flush=True)
+            print(_line(done.outcome, args.verbose), flush=True)
+            if done.files:
+                print(f"  written to {args.out}: {', '.join(done.files)}", flush=True)
+    if args.out is not None and not written and args.json != "-":
+        print(f"nothing is written to {args.out}, as there is no drive")
     if args.json:
         verdicts = [outcome.as_json() for outcome in outcomes]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
@@ -147,16 +153,25 @@ def make_folder(folder: Path) -> None:
         raise InputError(f"cannot write into {folder}: choose another --out")
 
 
-def undecided(task: Task, reason: str) -> "Outcome":
+@dataclass(frozen=True)
+class Done:
+    """The outcome of a task, and the names of the files with its drives."""
+
+    outcome: "Outcome"
+    files: tuple[str, ...] = ()
+
+
+def undecided(task: Task, reason: str) -> Done:
     """The outcome of a request that nothing is known of."""
     from roadproof.witness.ask import Outcome
 
     request = task.request
     told = (request.what, request.road or "", Verdict.UNKNOWN, reason)
-    return Outcome(None, request.set_name, *told, drives=(), natural=False, seconds={"all": 0.0}, sizes={})
+    nothing = Outcome(None, request.set_name, *told, (), natural=False, seconds={"all": 0.0}, sizes={})
+    return Done(nothing)
 
 
-def fulfil(task: Task) -> "Outcome":
+def fulfil(task: Task) -> Done:
     """Answer one request and write its drives: drive file, CSV, picture."""
     from roadproof.export.drive_csv import csv_of
     from roadproof.report.drive import draw_drive
@@ -165,13 +180,20 @@ def fulfil(task: Task) -> "Outcome":
 
     outcome = answer(task.request)
     if task.folder is None:
-        return outcome
+        return Done(outcome)
+    files: list[str] = []
+
+    def write(name: str, content: bytes) -> None:
+        write_whole(folder / name, content)
+        files.append(name)
+
+    folder = task.folder
     name = f"formula-{task.number:02d}" if outcome.scenario is None else f"scenario-{outcome.scenario:02d}"
     for k, data in enumerate(outcome.drives):
         stem = f"{name}-{outcome.set_name}" + (f"-{k + 1}" if len(outcome.drives) > 1 else "")
-        write_json(data, str(task.folder / f"{stem}.json"))
-        write_text(task.folder / f"{stem}.csv", csv_of(data))
+        write(f"{stem}.json", json_text(data).encode())
+        write(f"{stem}.csv", csv_of(data).encode())
         if task.pictures:
             for kind, content in draw_drive(data, load_library(task.request.specs)).items():
-                write_whole(task.folder / f"{stem}.{kind}", content)
-    return outcome
+                write(f"{stem}.{kind}", content)
+    return Done(outcome, tuple(files))
