@@ -89,7 +89,9 @@ def _drive(dice, road, grid, count):
 
 def _motion(dice, grid, centre):
     start = Fraction(dice.choice((0, 1, -30, 40, 80, -80)) + dice.randint(-3, 3), dice.choice((1, 3)))
-    side = dice.choice((Fraction(9, 5), Fraction(7), Fraction(3), Fraction(10, 3), Fraction(-1), Fraction(-17, 10)))
+    side = dice.choice(
+        (Fraction(9, 5), Fraction(7), Fraction(3), Fraction(10, 3), Fraction(-1), Fraction(-17, 10))
+    )
     v = dice.choice((Fraction(15), Fraction(40), Fraction(25), Fraction(dice.randint(46, 119), 3)))
     w = dice.choice((Fraction(0), Fraction(0), Fraction(3, 2), -Fraction(3, 2), v / 10))
     if abs(w) > 2:
