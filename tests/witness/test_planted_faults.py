@@ -6,6 +6,7 @@ from fractions import Fraction
 import pytest
 
 from planting import plant
+from roadproof.effort import Effort
 from roadproof.encode import build
 from roadproof.solve import bounds
 from roadproof.spec.bind import default_values
@@ -39,14 +40,14 @@ def denied(means=None):
     found = []
     for name, what in DRIVES.items():
         asked = pose(BASE, what, replace(REQUEST, what=what))
-        if search.show_none(asked, means or Means(time_limit=30.0)).verdict is Verdict.NONE_WITHIN:
+        if search.show_none(asked, means or Means(effort=Effort(30))).verdict is Verdict.NONE_WITHIN:
             found.append(name)
     return found
 
 
 def test_drives_are_not_denied_without_a_fault():
     assert denied() == []
-    assert denied(Means(engine="smt", time_limit=30.0)) == []
+    assert denied(Means(engine="smt", effort=Effort(30))) == []
 
 
 FAULTS = {
@@ -153,10 +154,10 @@ def doubted(monkeypatch):
     with monkeypatch.context() as solvers:
         solvers.setattr(search, "solve_mixed", lambda *_, **__: search.Solution("unknown"))
         solvers.setattr(search, "solve_exactly", lambda *_, **__: search.Solution("unknown"))
-        said.add(search.show_none(asked, Means(time_limit=30.0)).verdict)
+        said.add(search.show_none(asked, Means(effort=Effort(30))).verdict)
     with monkeypatch.context() as refusing:
         refusing.setattr(search._Search, "_complaint", lambda *_: "no")
-        said.add(search.show_none(asked, Means(time_limit=30.0)).verdict)
+        said.add(search.show_none(asked, Means(effort=Effort(30))).verdict)
     return said
 
 
