@@ -1,6 +1,8 @@
 """Deliberate faults in unrolling, facts, motion, bounds and big-M: neighbouring checks catch each."""
 
+from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import pytest
 from hypothesis import Phase, find, settings
@@ -9,12 +11,17 @@ from hypothesis.errors import NoSuchExample
 
 from encode import cases
 from encode.test_motion import columns_of, motions, satisfied
-from roadproof.encode import facts, motion, unroll
-from roadproof.encode.circuit import All, any_of, evaluate, implicant
+from planting import plant
+from roadproof.encode import facts, motion, place, unroll
+from roadproof.encode.circuit import All, AnyOf, Leaf, any_of, evaluate, implicant
+from roadproof.encode.motion import Layout
 from roadproof.encode.polynomial import Fact, affine, variable
+from roadproof.encode.problem import Column, Problem, Row
+from roadproof.encode.unroll import Grid
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.solve import bounds, milp
+from roadproof.world.models import load_vehicle
 from solve.small import exactly, inner_is_safe, outer_is_safe, problems
 
 search = settings(deadline=None, derandomize=True, max_examples=1000, database=None, phases=[Phase.generate])
@@ -97,9 +104,9 @@ def test_a_maximum_read_as_a_conjunction_is_caught(monkeypatch):
 def test_positions_by_the_speed_at_the_start_are_caught(monkeypatch):
     def euler(name, vehicle, layout, natural, inside):
         for k in range(layout.grid.steps):
-            for place, speed in (("s", "v_lon"), ("d", "v_lat")):
-                moved = [(layout.column(name, place, k + 1), Fraction(1))]
-                moved += [(layout.column(name, place, k), Fraction(-1))]
+            for where, speed in (("s", "v_lon"), ("d", "v_lat")):
+                moved = [(layout.column(name, where, k + 1), Fraction(1))]
+                moved += [(layout.column(name, where, k), Fraction(-1))]
                 moved += [(layout.column(name, speed, k), -layout.grid.dt)]
                 yield motion.row_of(affine(moved), Fraction(0), Fraction(0))
 
@@ -193,3 +200,116 @@ def test_an_implicant_of_the_wrong_part_would_not_be_true():
     parts = [facts.Leaf("low"), facts.Leaf("high")]
     assert implicant(any_of(parts), lambda x: 1.0 if x == "high" else -1.0) == ("high",)
     assert implicant(All(()), lambda _: 0.0) == ()
+
+
+def decided_wrongly():
+    """Facts that are 0 at an end of their box, and are said to be true or false all over it."""
+    column = (Column("x", Fraction(0), Fraction(1)),)
+    wrong = set()
+    for factor, constant in ((1, -1), (-1, 0), (1, 0), (-1, 1)):
+        for strict in (False, True):
+            fact = Fact(affine([(0, Fraction(factor))], Fraction(constant)), strict)
+            somewhere = exactly(Problem(column, (), All((Leaf(fact),)))) == "found"
+            values = (Fraction(constant), Fraction(factor + constant))
+            everywhere = all(value > 0 or (value == 0 and not strict) for value in values)
+            inner, outer = (bounds.approximate(fact, [(0.0, 1.0)], side) for side in ("inner", "outer"))
+            if somewhere and AnyOf in (type(inner), type(outer)):
+                wrong.add("false")
+            if not everywhere and isinstance(inner, All):
+                wrong.add("true")
+    return wrong
+
+
+AT_ZERO = {
+    "greatest value 0 is false": ("high == 0 and fact.strict", "high == 0", {"false"}),
+    "greatest value 0 is false on the outer side": ("high < -slack", "high <= slack", {"false"}),
+    "least value 0 is true": ("low == 0 and not fact.strict", "low == 0", {"true"}),
+    "greatest value 0 is true": ("low > 0 or", "high >= 0 or", {"true"}),
+}
+
+
+@pytest.mark.parametrize("fault", AT_ZERO)
+def test_a_fact_that_is_0_at_an_end_is_not_decided_by_it(fault, monkeypatch):
+    right, wrong, noticed = AT_ZERO[fault]
+    assert decided_wrongly() == set()
+    plant(monkeypatch, bounds, "_leaf", right, wrong)
+    assert decided_wrongly() == noticed
+
+
+def relaxation_loses_something():
+    """Whether a problem that is feasible by a hair is infeasible once bounds and rows are doubles."""
+    third, tenth = Fraction(1, 3), Fraction(1, 10)
+    columns = tuple(Column(f"x{k}", third * k, third * k + tenth) for k in range(3))
+    # x0 is 0 by the first row, x1 is 1/3 and x2 is 2/3 by facts.
+    rows = (Row({0: third, 1: -third}, None, -(third**2)), Row({0: tenth, 2: third}, None, 2 * third**2))
+    facts = [affine([(0, Fraction(-1))]), affine([(1, Fraction(-7))], 7 * third)]
+    squares = [
+        (variable(1) * variable(1)).scaled(Fraction(sign)) + affine([], -sign * third**2) for sign in (1, -1)
+    ]
+    problem = Problem(columns, rows, All(tuple(Leaf(Fact(p, False)) for p in (*facts, *squares))))
+    assert exactly(problem) == "found"
+    return milp.solve_mixed(problem, milp.box_of(problem), "outer", 2).status == "infeasible"
+
+
+INWARDS = {
+    "rows": (milp, "solve_mixed", "float(row.high) + slack", "float(row.high) - 10 * slack"),
+    "bounds of columns": (milp, "solve_mixed", "loosened(box) if", "[(a + 1e-4, b) for a, b in box] if"),
+    "facts": (bounds, "_leaf", "Bound(affine, -slack)", "Bound(affine, 10 * slack)"),
+}
+
+
+@pytest.mark.parametrize("fault", INWARDS)
+def test_rounding_inwards_is_caught(fault, monkeypatch):
+    assert not relaxation_loses_something()
+    plant(monkeypatch, *INWARDS[fault])
+    assert relaxation_loses_something()
+
+
+def overlap_differs():
+    """Whether boxes of a car and a long truck are said to be apart where they overlap, or the reverse.
+
+    They are far from each other at one sample, and at the other somewhere around each other.
+    """
+    car = load_vehicle("car")
+    truck = replace(car, length=Fraction(16), width=Fraction(5, 2))
+    layout = Layout(("A", "B"), Grid(Fraction(1), 1))
+    none = (Fraction(0), Fraction(0))
+    kept, at_samples = (
+        place.stay_apart(layout, ("A", car), ("B", truck), none, between) for between in (True, False)
+    )
+    for k, along, across in product((0, 1), range(-18, 19), (Fraction(n, 10) for n in range(-30, 31, 2))):
+        values = dict.fromkeys(range(16), Fraction(0))
+        values[layout.column("B", "s", 1 - k)] = Fraction(1000 if along > 0 else -1000)
+        values[layout.column("B", "s", k)] = Fraction(along)
+        values[layout.column("B", "d", k)] = across
+        overlap = -car.length < along < truck.length and -car.width < across < truck.width
+
+        def holds(fact, at=values):
+            return fact.polynomial.value(at.__getitem__) >= 0
+
+        if evaluate(at_samples, holds) == overlap or (overlap and evaluate(kept, holds)):
+            return True
+    return False
+
+
+APART = {
+    "the other vehicle's size": ("(low, _), (high, body)", "(low, body), (high, _)"),
+    "lengths for widths": ('("d", "width", gaps[1])', '("d", "length", gaps[1])'),
+    "widths for lengths": ('("s", "length", gaps[0])', '("s", "width", gaps[0])'),
+    "one side only": ("((first, second), (second, first))", "((first, second),)"),
+    "the last sample is left out": ("_spells(layout.grid.steps, between)", "_spells(0, between)"),
+    "the first sample is left out": ("_spells(layout.grid.steps, between)", "[(layout.grid.steps,)]"),
+}
+
+
+@pytest.mark.parametrize("fault", APART)
+def test_boxes_measured_wrongly_are_caught(fault, monkeypatch):
+    assert not overlap_differs()
+    plant(monkeypatch, place, "stay_apart", *APART[fault])
+    assert overlap_differs()
+
+
+@pytest.mark.parametrize("signal", ["j_lon", "a_up", "v", "x_lat", ""])
+def test_a_signal_that_is_not_known_is_refused(signal):
+    with pytest.raises(ValueError, match=f"signal={signal}"):
+        Layout(("A",), Grid(Fraction(1), 1)).state("A", signal, 0)

@@ -6,7 +6,9 @@ from fractions import Fraction
 import pytest
 
 from judge.test_exact import motion
+from planting import plant
 from roadproof.errors import UsageError
+from roadproof.judge import replay
 from roadproof.judge.algebraic import real_roots
 from roadproof.judge.replay import first_breach, first_overlap, states_at
 from roadproof.world.drive import Drive
@@ -102,3 +104,27 @@ def test_wrong_questions():
         first_overlap(drive, -ONE)
     with pytest.raises(UsageError, match="time=-1"):
         states_at(drive, -ONE)
+
+
+def horizon_is_kept():
+    """What begins at the horizon is found, and what begins after it is not."""
+    together = Drive({"A": motion(0, 2), "B": motion(1, 2)})
+    meeting = Drive({"A": motion(0, 2, 25), "B": motion(19, 2, 20)})  # just after 2.9 s
+    hard = Drive({"A": motion(0, 2, 25, 0, [(1, 0, 0)], last=(5, 0))})  # from 1 s on
+    found = [first_overlap(together, Fraction(0)), first_breach(hard, {"A": Car()}, ONE)]
+    missed = [first_overlap(meeting, Fraction(29, 10)), first_breach(hard, {"A": Car()}, Fraction(99, 100))]
+    return None not in found and missed == [None, None]
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("begin > Cut(horizon, False)", "begin >= Cut(horizon, False)"),
+        ("begin > Cut(horizon, False)", "begin > Cut(horizon, True)"),
+        ("begin > Cut(horizon, False)", "begin.point > 2 * horizon"),
+    ],
+)
+def test_faults_at_the_horizon_are_caught(right, wrong, monkeypatch):
+    assert horizon_is_kept()
+    plant(monkeypatch, replay, "_first", right, wrong)
+    assert not horizon_is_kept()

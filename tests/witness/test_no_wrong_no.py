@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+from roadproof.effort import Effort
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.spec.bind import default_values
 from roadproof.verdict import Verdict
@@ -14,7 +15,7 @@ from roadproof.witness.question import Means
 from roadproof.witness.search import show_none
 from witness.known import BASE, LIBRARY, holds_on_samples, known
 
-REQUEST = Request("", values=default_values(LIBRARY), means=Means(time_limit=30))
+REQUEST = Request("", values=default_values(LIBRARY), means=Means(effort=Effort(30)))
 SHORT = {"horizon": Fraction(9, 5)}
 
 
@@ -29,7 +30,7 @@ def test_random_drives_are_not_denied(engine):
     for seed in range(20):
         case = known(seed)
         assert holds_on_samples(case.text, case.road, case.drive, case.grid, case.lanes)
-        verdict = show_none(case.question(), Means(engine=engine, time_limit=20.0)).verdict
+        verdict = show_none(case.question(), Means(engine=engine, effort=Effort(30))).verdict
         assert verdict is not Verdict.NONE_WITHIN, f"seed {seed}: {case.text}"
         verdicts.add(verdict)
     assert Verdict.WITNESSED in verdicts
@@ -124,7 +125,7 @@ def test_which_vehicle_comes_first_makes_no_difference(what, verdict):
     question = pose(BASE, what.format("SV", "POV", "POV2"), replace(REQUEST, what="", natural=False, **SHORT))
     for turn in (("SV", "POV", "POV2"), ("POV2", "SV", "POV"), ("POV", "POV2", "SV")):
         turned = replace(question, vehicles={name: question.vehicles[name] for name in turn})
-        assert show_none(turned, Means(time_limit=30.0)).verdict is verdict
+        assert show_none(turned, Means(effort=Effort(30))).verdict is verdict
 
 
 def test_a_road_that_ends_has_drives(tmp_path):

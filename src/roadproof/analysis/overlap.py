@@ -219,7 +219,7 @@ class _Deciding:
             if outcome.drives:
                 return Entry(*pair, Verdict.WITNESSED, formula, drive=outcome.drives[0])
             verdicts.append(outcome.verdict)
-            reasons.append(outcome.reason or f"proved impossible: {formula}")
+            reasons.append(outcome.told(("--horizon",)) or f"proved impossible: {formula}")
         if all(verdict is Verdict.IMPOSSIBLE for verdict in verdicts):
             entry = self._impossible(pair, texts, tuple(self._core(x) for x in texts))
             if entry is not None:

@@ -76,8 +76,9 @@ def stay_on_road(
     ``lasting``, at the last sample in one without end along, unless the whole road ends.
     """
     allowed = rectangles(road.lanelets)
-    endless = [r for r in allowed if r[0][1] is None]
+    endless = tuple(r for r in allowed if r[0][1] is None)
     last = layout.grid.steps
+    spells: list[tuple[tuple[int, ...], tuple[Rectangle, ...]]]
     spells = [(spell, allowed) for spell in _spells(last, between)]
     if lasting and endless:
         spells.append(((last,), endless))

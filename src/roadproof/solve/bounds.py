@@ -110,8 +110,8 @@ def approximate(fact: ColumnFact, box: Box, side: Side, pieces: int = 1) -> Circ
         totals = [linear]
         for bounds, _ in chosen:
             totals = [total + bound for total in totals for bound in bounds]
-        bounds = [_leaf(total, fact, box, side) for total in totals]
-        cases.append(all_of([*(Leaf(c) for c in conditions), *bounds]))
+        leaves = [_leaf(total, fact, box, side) for total in totals]
+        cases.append(all_of([*(Leaf(c) for c in conditions), *leaves]))
     return any_of(cases)
 
 

@@ -1,7 +1,7 @@
 """One question from names and numbers to an outcome that can be written, printed and sent around."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -73,6 +73,10 @@ class Outcome:
     sizes: Mapping[str, int]
     impossibility: Impossibility | None = None
     limits: Limits | None = None
+
+    def told(self, options: Sequence[str]) -> str:
+        """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
+        return self.reason if self.limits is None else self.limits.text(options)
 
     def as_json(self) -> dict[str, Any]:
         """The outcome as plain data."""

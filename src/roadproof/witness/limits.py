@@ -57,7 +57,8 @@ class Limits:
         if self.values:
             parts.append(f"parameters {_listed({k: f'{float(v):g}' for k, v in self.values.items()})}")
         shown = f" ({', '.join(self.shown)})" if self.shown else ""
-        return f"{', '.join(parts)}; widen with {', '.join(options)}{shown}"
+        hint = f"; widen with {', '.join(options)}" if options else ""
+        return f"{', '.join(parts)}{hint}{shown}"
 
     def as_json(self) -> dict[str, Any]:
         """The limits as plain data; rationals as text."""
