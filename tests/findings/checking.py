@@ -33,7 +33,7 @@ class Sessions:
         return tuple(session.command for session in sessions_of((ROOT / self.page).read_text("utf-8")))
 
 
-type Item = Sessions | Statement | Picture
+Item = Sessions | Statement | Picture
 
 
 def check_sessions(item: Sessions, results: Results, update: bool) -> list[Wrong]:

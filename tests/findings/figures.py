@@ -35,7 +35,7 @@ class Outcome:
     folder: Path
 
 
-type Source = str | Callable[[Outcome], object]
+Source = str | Callable[[Outcome], object]
 
 
 @dataclass(frozen=True)
