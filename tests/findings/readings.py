@@ -1,6 +1,5 @@
 """Figures that an output says with more than one of its lines, or in the files beside it."""
 
-import csv
 import json
 import re
 from collections import Counter
@@ -72,7 +71,9 @@ def happenings(outcome: Outcome) -> tuple[int, str, str]:
     names = [name.split("_")[1:] for name in re.findall(r"^(class_\S+)", outcome.printed, re.M)]
     two = [tuple(map(int, name)) for name in names if name != ["2"]]
     alone = sorted(x[0] for x in two if len(x) == 1)
-    together = [f"{x[0]} with {', '.join(map(str, x[1:]))}" for x in sorted(two, key=lambda x: (len(x), x)) if x[1:]]
+    together = [
+        f"{x[0]} with {', '.join(map(str, x[1:]))}" for x in sorted(two, key=lambda x: (len(x), x)) if x[1:]
+    ]
     return len(two), ", ".join(map(str, alone)), ", ".join(together)
 
 
@@ -93,9 +94,17 @@ def shares_of_base(outcome: Outcome) -> tuple[object, ...]:
     part = shares(outcome)
     del part["2"]
     first = [part.pop(name) for name in ("3", "4", "1", "7", "6")]
-    threes = f"{first[0]:.0f}" if f"{first[0]:.0f}" == f"{first[1]:.0f}" else f"{first[0]:.0f} and {first[1]:.0f}"
+    threes = (
+        f"{first[0]:.0f}" if f"{first[0]:.0f}" == f"{first[1]:.0f}" else f"{first[0]:.0f} and {first[1]:.0f}"
+    )
     none = [name.replace("_", " with ") for name, share in part.items() if share == 0]
-    return threes, *(f"{x:.0f}" for x in first[2:]), len(part), max(part.values()), ", ".join(sorted(none, key=len, reverse=True))
+    return (
+        threes,
+        *(f"{x:.0f}" for x in first[2:]),
+        len(part),
+        max(part.values()),
+        ", ".join(sorted(none, key=len, reverse=True)),
+    )
 
 
 def accepted(outcome: Outcome) -> str:
@@ -162,6 +171,73 @@ def roles_differ(outcome: Outcome, min_danger: str) -> int:
     return sum(x[-1] == min_danger for x in us101_counts(outcome)["checks"]["scenario3And4Differ"])
 
 
-def count_rows(outcome: Outcome, name: str) -> int:
-    with (outcome.folder / name).open(encoding="utf-8", newline="") as file:
-        return sum(1 for _ in csv.DictReader(file))
+def vanishing(outcome: Outcome) -> tuple[int, int]:
+    """Disturbances with minDanger 0 that are none with 0.6, and all of them."""
+    every, lasting = disturbances(outcome)
+    return every - lasting, every
+
+
+def samples_on_no_lane(outcome: Outcome) -> int:
+    """Samples whose centre is on no lane, in all recordings."""
+    notes = [note for those in us101_counts(outcome)["notes"].values() for note in those]
+    return sum(int(m[1]) for note in notes if (m := re.match(r"(\d+) of \d+ samples have the centre", note)))
+
+
+def others_with_a_lane(outcome: Outcome) -> int:
+    """Traces that match nothing although there is a common lane."""
+    found = re.search(r"(\d+) traces match .* (\d+) of them without", outcome.printed)
+    assert found is not None, outcome.printed
+    return int(found[1]) - int(found[2])
+
+
+def pairs_drives_proofs(outcome: Outcome) -> tuple[int, int, int]:
+    """Pairs of scenarios: all, with a drive, with a proof."""
+    together, apart = pairs_with(outcome, "WITNESSED"), pairs_with(outcome, "IMPOSSIBLE")
+    return len(together | apart), len(together), len(apart)
+
+
+def doubts_and_traces(outcome: Outcome) -> tuple[str, ...]:
+    """Of changes to a set: those in doubt, all, those that only a trace tells apart."""
+    found = re.search(r"^(\d+) changes: .* (\d+) by a trace, (\d+) in doubt", outcome.printed, re.M)
+    assert found is not None, outcome.printed
+    return found[3], found[1], found[2]
+
+
+def gaps_of_no_condition(outcome: Outcome) -> int:
+    """Drives of the class in which in every scenario two conditions or more are false."""
+    found = re.search(r"two or more are false\n +WITNESSED +(.*)", outcome.printed)
+    return len(re.findall(r"drive \d+", found[1])) if found else 0
+
+
+def beside_the_lane_in_traffic(outcome: Outcome) -> int:
+    """Disturbances that scenario 1 misses because SV and POV are in no lane together."""
+    part = outcome.printed.partition("scenario 1, behaviourPOV_1")[2].partition("\nscenario ")[0]
+    found = re.search(r"danger\(SV, POV\) in cutIn .*?(\d+) in traffic", part)
+    return int(found[1]) if found else 0
+
+
+def picture_of_a_gap_beside_the_lane(outcome: Outcome) -> str:
+    """The file with the first gap that scenario 1 misses because of the danger in ``cutIn``."""
+    index = read(outcome, "gaps/index.json")
+    [entry] = [
+        x
+        for x in index["classes"]
+        if x["component"] == "behaviourPOV_1" and x["condition"] == "danger(SV, POV) in cutIn"
+    ]
+    drive: str = index["gaps"][entry["gaps"][0] - 1]["drive"]
+    return drive.removesuffix(".json") + ".png"
+
+
+def edges_of_a_sector(outcome: Outcome) -> str:
+    """How many implications are proved between scenarios of each road sector, if that is the same for all."""
+    edges = re.findall(r"^\S+?-(\d+) -> \S+?-(\d+)$", outcome.printed, re.M)
+    counts = Counter((int(a) - 1) // 8 for a, _ in edges)
+    return ", ".join(map(str, sorted(set(counts.values()))))
+
+
+def range_of_both(outcome: Outcome) -> tuple[str, str]:
+    """How much slower and faster, if that is the same for all scenarios."""
+    found = measures(outcome)
+    least = {value.removeprefix("-") for (_, sense), value in found.items() if sense == "least"}
+    greatest = {value for (_, sense), value in found.items() if sense == "greatest"}
+    return ", ".join(sorted(least)), ", ".join(sorted(greatest))
