@@ -16,7 +16,7 @@ from itertools import pairwise
 from pathlib import Path
 
 GAP = "…"
-HANGS = 600.0  # seconds after which a command is said to hang; no page depends on how fast it is
+HANGS = 1800.0  # seconds after which a command is said to hang; no page depends on how fast it is
 
 
 @dataclass(frozen=True)
