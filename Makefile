@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test demo lint unit format clean
+.PHONY: test demo findings lint unit format clean
 
 test: lint unit
 
@@ -25,6 +25,10 @@ demo: $(READY)
 	rm -rf out/proofs
 	$(BIN)/roadproof prove --out out/proofs
 	$(BIN)/roadproof check out/proofs
+
+# Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
+findings: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m findings $(ARGS)
 
 format: $(READY)
 	$(BIN)/ruff check --fix-only .

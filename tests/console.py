@@ -12,10 +12,11 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
+from itertools import pairwise
 from pathlib import Path
 
 GAP = "…"
-HANGS = 600.0  # seconds after which a command is said to hang; no page depends on how fast it is
+HANGS = 1800.0  # seconds after which a command is said to hang; no page depends on how fast it is
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def cut_alike(printed: Sequence[str], expected: Sequence[str]) -> list[str]:
     found = _alignment(printed, [expected[i] for i in wanted])
     anchors = [(-1, -1), *((a, wanted[b]) for a, b in found), (len(printed), len(expected))]
     result: list[str] = []
-    for (before, above), (after, below) in zip(anchors, anchors[1:], strict=False):
+    for (before, above), (after, below) in pairwise(anchors):
         new, old = [line.rstrip() for line in printed[before + 1 : after]], expected[above + 1 : below]
         if GAP in old:
             head, tail = old.index(GAP), len(old) - 1 - old[::-1].index(GAP)

@@ -10,11 +10,10 @@ import sys
 import time
 from pathlib import Path
 
-from findings.statements import PICTURES, SESSIONS, STATEMENTS
-
 from findings.checking import Item, Sessions, Wrong, check_picture, check_sessions, check_statement
 from findings.figures import Picture, Statement
 from findings.results import ROOT, Results
+from findings.statements import PICTURES, SESSIONS, STATEMENTS
 
 
 def main() -> int:
@@ -34,7 +33,7 @@ def main() -> int:
     wrong, missing = 0, 0
     for number, item in enumerate(items, start=1):
         print(f"[{number}/{len(items)}] {name_of(item)}", file=sys.stderr, flush=True)
-        if results.lacks_data(item.commands()) or (args.kept and not results.has(item.commands())):
+        if results.lacks_data(item.commands) or (args.kept and not results.has(item.commands)):
             print(f"not compared: {name_of(item)}")
             missing += 1
             continue
@@ -63,9 +62,9 @@ def name_of(item: Item) -> str:
         case Sessions():
             return f"{item.page}: its sessions"
         case Statement():
-            return f"{item.page}: {'; '.join(item.commands())}"
+            return f"{item.page}: {'; '.join(item.commands)}"
         case Picture():
-            return f"{item.file}: {'; '.join(item.commands())}"
+            return f"{item.file}: {'; '.join(item.commands)}"
 
 
 def is_quick(item: Item) -> bool:

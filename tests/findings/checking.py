@@ -29,18 +29,19 @@ class Sessions:
     page: str
     beside: tuple[Path, ...] = ()
 
+    @property
     def commands(self) -> tuple[str, ...]:
         return tuple(session.command for session in sessions_of((ROOT / self.page).read_text("utf-8")))
 
 
-type Item = Sessions | Statement | Picture
+Item = Sessions | Statement | Picture
 
 
 def check_sessions(item: Sessions, results: Results, update: bool) -> list[Wrong]:
     path = ROOT / item.page
     page = path.read_text("utf-8")
     sessions = sessions_of(page)
-    printed = results.session(item.commands(), files_of(page), item.beside)
+    printed = results.session(item.commands, files_of(page), item.beside)
     wrong = [
         Wrong(item.page, session.line, f"$ {session.command}", "\n          ".join(lines))
         for session, lines in zip(sessions, printed, strict=True)
@@ -57,7 +58,7 @@ def check_statement(item: Statement, results: Results, update: bool) -> list[Wro
     page = path.read_text("utf-8")
     outcome = results.ask(item.commands)
     differences = [d for figures in item.figures for d in compare(figures, page, outcome)]
-    differences += _exits(page, item.commands[-1], outcome.exit)
+    differences += _exits(page, item.named or item.commands[-1], outcome.exit)
     if differences and update:
         path.write_text(_put_right(page, differences), "utf-8")
     return [
@@ -67,10 +68,10 @@ def check_statement(item: Statement, results: Results, update: bool) -> list[Wro
 
 
 def check_picture(item: Picture, results: Results, update: bool) -> list[Wrong]:
-    results.ask(item.commands)
-    made = results.folder_of(item.commands) / "work" / item.made
+    outcome = results.ask(item.commands)
+    made = outcome.folder / item.made(outcome)
     if not made.is_file():
-        return [Wrong(item.file, 0, "a picture", f"{item.made} is not written by $ {item.commands[-1]}")]
+        return [Wrong(item.file, 0, "a picture", f"{made.name} is not written by $ {item.commands[-1]}")]
     if (ROOT / item.file).is_file() and made.read_bytes() == (ROOT / item.file).read_bytes():
         return []
     if update:

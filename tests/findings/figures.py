@@ -35,7 +35,7 @@ class Outcome:
     folder: Path
 
 
-type Source = str | Callable[[Outcome], object]
+Source = str | Callable[[Outcome], object]
 
 
 @dataclass(frozen=True)
@@ -55,15 +55,16 @@ class Statement:
     commands: tuple[str, ...]
     figures: tuple[Figures, ...] = ()
     quick: bool = False  # asked in every run of the tests
+    named: str = ""  # how the page names the last command, where it leaves something out
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture on a page, and the file that the last command writes."""
+    """A picture on a page; ``made`` gives the file that the commands write."""
 
     file: str
     commands: tuple[str, ...]
-    made: str
+    made: Callable[[Outcome], str]
 
 
 @dataclass(frozen=True)
@@ -91,8 +92,8 @@ def compare(figures: Figures, page: str, outcome: Outcome) -> Iterator[Differenc
         return
     values = _values(figures, outcome)
     groups = matches[0].groups()
-    if len(values) != len(groups):
-        yield Difference(" … ".join(groups), f"not in the output: {figures.source}")
+    if values is None or len(values) != len(groups):
+        yield Difference(matches[0][0], f"not in the output: {figures.source}")
         return
     for number, (said, value) in enumerate(zip(groups, values, strict=True), start=1):
         if normal(said) != normal(value):
@@ -105,22 +106,23 @@ def covered(figures: Figures, page: str) -> list[Place]:
     return [Place(*m.span(k)) for m in matches for k in range(1, len(m.groups()) + 1)]
 
 
-def _values(figures: Figures, outcome: Outcome) -> Sequence[str]:
+def _values(figures: Figures, outcome: Outcome) -> Sequence[str] | None:
+    """The figures in the output; None where it does not have them, or has several."""
     if not isinstance(figures.source, str):
         found = figures.source(outcome)
         return [str(x) for x in found] if isinstance(found, tuple) else [str(found)]
     found_all = {m.groups() for m in re.finditer(_regex(figures.source), outcome.printed)}
-    return found_all.pop() if len(found_all) == 1 else ()
+    return found_all.pop() if len(found_all) == 1 else None
 
 
 def _regex(pattern: str) -> str:
     """``{}`` is the least text in one line that lets the rest fit; a last one goes to the end of its word."""
-    parts = [r"\s+".join(map(re.escape, re.split(r"\s+", part))) for part in pattern.split("{}")]
+    parts = [r"\s+".join(map(re.escape, re.split(r" +", part))) for part in pattern.split("{}")]
     return "(.+?)".join(parts) if parts[-1] else "(.+?)".join(parts[:-1]) + r"(\S+?)(?=[\s.,;:)]*(?:\s|$))"
 
 
 def normal(figure: str) -> str:
-    """Figures that say the same have the same normal form: 1,098 and 1098, two and 2, 'a and b' and 'a, b'."""
+    """The same for figures that say the same: 1,098 and 1098, two and 2, 'a and b' and 'a, b'."""
     plain = re.sub(r"(?<=\d),(?=\d{3}\b)", "", figure.strip()).replace(", and ", ", ").replace(" and ", ", ")
     word = plain.lower()
     return str(WORDS.index(word)) if word in WORDS else plain

@@ -63,7 +63,7 @@ class Results:
     def _run(self, command: str, work: Path, target: Path, complaints: IO[bytes]) -> None:
         begun = time.monotonic()
         done = subprocess.run(
-            ["bash", "-c", command.replace(US101, str(self.us101))],
+            ["bash", "-c", self._here(command)],
             cwd=work,
             env=environment(),
             stdout=subprocess.PIPE,
@@ -76,6 +76,10 @@ class Results:
             "printed": done.stdout.decode("utf-8").replace(str(self.us101), US101),
         }
         target.write_text(json.dumps(data, indent=1, ensure_ascii=False), "utf-8")
+
+    def _here(self, command: str) -> str:
+        """A command of a page, which is run elsewhere than in the checkout."""
+        return command.replace(US101, str(self.us101)).replace("benchmarks/", f"{ROOT}/benchmarks/")
 
     def session(
         self, commands: Sequence[str], files: Mapping[str, str], beside: Sequence[Path]

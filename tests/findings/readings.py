@@ -1,0 +1,243 @@
+"""Figures that an output says with more than one of its lines, or in the files beside it."""
+
+import json
+import re
+from collections import Counter
+from itertools import combinations
+from typing import Any
+
+from findings.figures import WORDS, Outcome
+
+US101 = "out/us101"
+
+
+def read(outcome: Outcome, name: str) -> Any:
+    """A JSON file that the command wrote."""
+    return json.loads((outcome.folder / name).read_text("utf-8"))
+
+
+def pairs_with(outcome: Outcome, verdict: str) -> set[tuple[int, int]]:
+    """The pairs of scenarios in a line of ``roadproof overlap`` such as ``8 WITNESSED: 1-5, 2-4``."""
+    found = re.search(rf"^ *\d+ {verdict}: (.*)$", outcome.printed, re.M)
+    return {(int(a), int(b)) for a, b in re.findall(r"(\d+)-(\d+)", found[1])} if found else set()
+
+
+def pairs_of_a_sector(outcome: Outcome) -> tuple[str, int]:
+    """Of two-vehicle scenarios of one sector: the pairs that hold together, the number of the others.
+
+    Empty where the road sectors differ.
+    """
+    numbers = (1, 3, 4, 5, 6, 7, 8)
+    every = pairs_with(outcome, "WITNESSED")
+    of_sector = [
+        [(a, b) for a, b in combinations(numbers, 2) if (a + shift, b + shift) in every]
+        for shift in (0, 8, 16)
+    ]
+    if of_sector[0] != of_sector[1] or of_sector[0] != of_sector[2]:
+        return ("not alike in the road sectors", 0)
+    return _as_list(of_sector[0]), 21 - len(of_sector[0])
+
+
+def disturbances_apart(outcome: Outcome) -> tuple[int, str, int, int, int]:
+    """Kinds of disturbances that exclude each other in all sectors: how many, which, and pairs by verdict."""
+    apart, together = pairs_with(outcome, "IMPOSSIBLE"), pairs_with(outcome, "WITNESSED")
+    kinds = sorted({_kinds(pair) for pair in apart} - {_kinds(pair) for pair in together})
+    return len(kinds), _as_list(kinds), len(apart), len(apart | together), len(together)
+
+
+def _kinds(pair: tuple[int, int]) -> tuple[int, int]:
+    first, second = sorted((number - 1) % 8 + 1 for number in pair)
+    return first, second
+
+
+def _as_list(pairs: list[tuple[int, int]]) -> str:
+    return ", ".join(f"{a}-{b}" for a, b in pairs)
+
+
+def partners_of_2(outcome: Outcome) -> str:
+    """The scenarios that hold together with scenario 2."""
+    return ", ".join(str(b) for a, b in sorted(pairs_with(outcome, "WITNESSED")) if a == 2)
+
+
+def all_witnessed(outcome: Outcome) -> str:
+    """How many classes there are, if each has a drive."""
+    found = re.search(r"^(\d+) classes: (.*)$", outcome.printed, re.M)
+    assert found is not None, outcome.printed
+    return found[1] if found[2] == f"{found[1]} WITNESSED" else found[0]
+
+
+def happenings(outcome: Outcome) -> tuple[int, str, str]:
+    """What happens between two vehicles: how many, scenarios alone, scenarios together."""
+    names = [name.split("_")[1:] for name in re.findall(r"^(class_\S+)", outcome.printed, re.M)]
+    two = [tuple(map(int, name)) for name in names if name != ["2"]]
+    alone = sorted(x[0] for x in two if len(x) == 1)
+    together = [
+        f"{x[0]} with {', '.join(map(str, x[1:]))}" for x in sorted(two, key=lambda x: (len(x), x)) if x[1:]
+    ]
+    return len(two), ", ".join(map(str, alone)), ", ".join(together)
+
+
+def kinds_of_places(outcome: Outcome) -> int:
+    """In how many choices of road sectors each class is there; 0 where that is not the same for all."""
+    counts = Counter(tuple(x["happens"]) for x in read(outcome, "classes/index.json")["classes"])
+    return counts.popitem()[1] if len(set(counts.values())) == 1 else 0
+
+
+def shares(outcome: Outcome) -> dict[str, float]:
+    """The share of each class among the situations of as many vehicles, in per cent."""
+    rows = re.findall(r"^class_(\S+) .*? (\d+) +([\d.]+) % ", outcome.printed, re.M)
+    return {name: float(part) for name, _, part in rows}
+
+
+def shares_of_base(outcome: Outcome) -> tuple[object, ...]:
+    """Those of classes 3 and 4, 1, 7, 6; how many others there are, with the most; those without any."""
+    part = shares(outcome)
+    del part["2"]
+    first = [part.pop(name) for name in ("3", "4", "1", "7", "6")]
+    threes = (
+        f"{first[0]:.0f}" if f"{first[0]:.0f}" == f"{first[1]:.0f}" else f"{first[0]:.0f} and {first[1]:.0f}"
+    )
+    none = [name.replace("_", " with ") for name, share in part.items() if share == 0]
+    return (
+        threes,
+        *(f"{x:.0f}" for x in first[2:]),
+        len(part),
+        max(part.values()),
+        ", ".join(sorted(none, key=len, reverse=True)),
+    )
+
+
+def accepted(outcome: Outcome) -> str:
+    """How many files ``roadproof check`` accepts, if that is all of them."""
+    found = re.search(r"(\d+) of (\d+) accepted", outcome.printed)
+    assert found is not None, outcome.printed
+    return found[1] if found[1] == found[2] else found[0]
+
+
+def boundaries(outcome: Outcome) -> dict[int, str]:
+    """By scenario the greatest value with a drive."""
+    found = re.findall(r"^scenario (\d+), .*?greatest \S+ with a drive: (\S+) ", outcome.printed, re.M | re.S)
+    return {int(number): value for number, value in found}
+
+
+def measures(outcome: Outcome) -> dict[tuple[int, str], str]:
+    """By scenario and sense (least, greatest) the extreme that was found."""
+    result: dict[tuple[int, str], str] = {}
+    for part in re.split(r"^scenario ", outcome.printed, flags=re.M)[1:]:
+        number = int(part.partition(",")[0])
+        for sense, value in re.findall(r"^  (least|greatest) .*?: (\S+) \S+ on a judged drive", part, re.M):
+            result[number, sense] = value
+    return result
+
+
+def drives_that_serve(outcome: Outcome) -> tuple[int, int, str]:
+    """Scenarios, values at which all of them have a drive (0 if one has not), how many drives serve those."""
+    every = re.findall(r"at (\d+) of (\d+) values", outcome.printed)
+    served = sorted({int(x) for x in re.findall(r"searches, (\d+) drives?", outcome.printed)})
+    values = {int(b) for a, b in every if a == b}
+    complete = len(values) == 1 and all(a == b for a, b in every)
+    return len(every), values.pop() if complete else 0, " or ".join(WORDS[x] for x in served)
+
+
+def us101_rows(outcome: Outcome) -> tuple[str, ...]:
+    """The cells of the results table of US-101, row by row."""
+    lines = (outcome.folder / US101 / "results.md").read_text("utf-8").splitlines()
+    return tuple(line.split("| here | ")[1].rstrip(" |") for line in lines if "| here |" in line)
+
+
+def us101_counts(outcome: Outcome) -> dict[str, Any]:
+    """What ``results.json`` says of US-101."""
+    data = read(outcome, f"{US101}/results.json")
+    assert isinstance(data, dict)
+    return data
+
+
+def disturbances(outcome: Outcome) -> tuple[int, int]:
+    """With minDanger 0 and with 0.6."""
+    traces = {row["minDanger"]: row["traces"] for row in us101_counts(outcome)["table"]}
+    return traces["0"], traces["3/5"]
+
+
+def matched(outcome: Outcome, min_danger: str, set_name: str) -> tuple[int, int]:
+    """Traces, and those that match a scenario of a set."""
+    for row in us101_counts(outcome)["table"]:
+        if (row["minDanger"], row["set"]) == (min_danger, set_name):
+            return row["traces"], row["matching"]
+    return 0, 0
+
+
+def roles_differ(outcome: Outcome, min_danger: str) -> int:
+    """Pairs for which scenarios 3 and 4 differ in base."""
+    return sum(x[-1] == min_danger for x in us101_counts(outcome)["checks"]["scenario3And4Differ"])
+
+
+def vanishing(outcome: Outcome) -> tuple[int, int]:
+    """Disturbances with minDanger 0 that are none with 0.6, and all of them."""
+    every, lasting = disturbances(outcome)
+    return every - lasting, every
+
+
+def samples_on_no_lane(outcome: Outcome) -> int:
+    """Samples whose centre is on no lane, in all recordings."""
+    notes = [note for those in us101_counts(outcome)["notes"].values() for note in those]
+    return sum(int(m[1]) for note in notes if (m := re.match(r"(\d+) of \d+ samples have the centre", note)))
+
+
+def others_with_a_lane(outcome: Outcome) -> int:
+    """Traces that match nothing although there is a common lane."""
+    found = re.search(r"(\d+) traces match .* (\d+) of them without", outcome.printed)
+    assert found is not None, outcome.printed
+    return int(found[1]) - int(found[2])
+
+
+def pairs_drives_proofs(outcome: Outcome) -> tuple[int, int, int]:
+    """Pairs of scenarios: all, with a drive, with a proof."""
+    together, apart = pairs_with(outcome, "WITNESSED"), pairs_with(outcome, "IMPOSSIBLE")
+    return len(together | apart), len(together), len(apart)
+
+
+def doubts_and_traces(outcome: Outcome) -> tuple[str, ...]:
+    """Of changes to a set: those in doubt, all, those that only a trace tells apart."""
+    found = re.search(r"^(\d+) changes: .* (\d+) by a trace, (\d+) in doubt", outcome.printed, re.M)
+    assert found is not None, outcome.printed
+    return found[3], found[1], found[2]
+
+
+def gaps_of_no_condition(outcome: Outcome) -> int:
+    """Drives of the class in which in every scenario two conditions or more are false."""
+    found = re.search(r"two or more are false\n +WITNESSED +(.*)", outcome.printed)
+    return len(re.findall(r"drive \d+", found[1])) if found else 0
+
+
+def beside_the_lane_in_traffic(outcome: Outcome) -> int:
+    """Disturbances that scenario 1 misses because SV and POV are in no lane together."""
+    part = outcome.printed.partition("scenario 1, behaviourPOV_1")[2].partition("\nscenario ")[0]
+    found = re.search(r"danger\(SV, POV\) in cutIn .*?(\d+) in traffic", part)
+    return int(found[1]) if found else 0
+
+
+def picture_of_a_gap_beside_the_lane(outcome: Outcome) -> str:
+    """The file with the first gap that scenario 1 misses because of the danger in ``cutIn``."""
+    index = read(outcome, "gaps/index.json")
+    [entry] = [
+        x
+        for x in index["classes"]
+        if x["component"] == "behaviourPOV_1" and x["condition"] == "danger(SV, POV) in cutIn"
+    ]
+    drive: str = index["gaps"][entry["gaps"][0] - 1]["drive"]
+    return drive.removesuffix(".json") + ".png"
+
+
+def edges_of_a_sector(outcome: Outcome) -> str:
+    """How many implications are proved between scenarios of each road sector, if that is the same for all."""
+    edges = re.findall(r"^\S+?-(\d+) -> \S+?-(\d+)$", outcome.printed, re.M)
+    counts = Counter((int(a) - 1) // 8 for a, _ in edges)
+    return ", ".join(map(str, sorted(set(counts.values()))))
+
+
+def range_of_both(outcome: Outcome) -> tuple[str, str]:
+    """How much slower and faster, if that is the same for all scenarios."""
+    found = measures(outcome)
+    least = {value.removeprefix("-") for (_, sense), value in found.items() if sense == "least"}
+    greatest = {value for (_, sense), value in found.items() if sense == "greatest"}
+    return ", ".join(sorted(least)), ", ".join(sorted(greatest))

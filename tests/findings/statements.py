@@ -1,0 +1,555 @@
+"""Which command makes which figure of which page. `{}` stands where a figure is, on the page and in the output."""
+
+from findings import readings as r
+from findings.checking import Sessions
+from findings.figures import Figures, Picture, Statement
+from findings.results import ROOT
+
+FINDINGS, PERFORMANCE = "docs/findings.md", "docs/performance.md"
+
+SESSIONS = (
+    Sessions("README.md"),
+    Sessions("docs/language.md"),
+    Sessions("docs/highd.md"),
+    *(
+        Sessions(
+            f"examples/{name}/README.md",
+            tuple(p for p in sorted((ROOT / "examples" / name).iterdir()) if p.name != "README.md"),
+        )
+        for name in ("time-to-collision", "traffic")
+    ),
+)
+
+OVERLAP = "roadproof overlap --out overlap"
+CLASSES = "roadproof classify --out classes"
+REDUNDANCY = "roadproof redundancy --out redundant"
+ORDER = "roadproof order --out order"
+OVERTAKING = "roadproof witness 'scenario_1(SV,POV,L) and s(POV) < s(SV) - length(SV)' --out pictured"
+RECORDINGS = "roadproof simulate --out recordings --seconds 120 --lanes 3 --seed 3"
+COVERAGE = {
+    "base": "roadproof coverage --set base --on recordings",
+    "extA": "roadproof coverage --set extA --on recordings",
+    "ext": "roadproof coverage --set ext --on recordings --out gaps",
+    "complete": "roadproof coverage --set complete --on recordings",
+}
+
+PICTURES = (
+    Picture("docs/pictures/overtaking.png", (OVERTAKING,), lambda _: "pictured/formula-01-base.png"),
+    Picture("docs/pictures/overlap-base.png", (OVERLAP,), lambda _: "overlap/overlap.png"),
+    Picture("docs/pictures/classes-base.png", (CLASSES,), lambda _: "classes/classes.png"),
+    Picture("docs/pictures/gap-ext.png", (RECORDINGS, COVERAGE["ext"]), r.picture_of_a_gap_beside_the_lane),
+)
+
+HOLD_TOGETHER = (
+    Statement(
+        FINDINGS,
+        (OVERLAP,),
+        (
+            Figures("Of the {} pairs of `base`", "{} pairs in "),
+            Figures(
+                "of the main road exactly {} hold together on a drive; the other {} are proved impossible",
+                r.pairs_of_a_sector,
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof overlap --among 1-8",),
+        (Figures("Scenario 2 meets {}, no other disturbance", r.partners_of_2),),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof overlap --among 4,12,20",),
+        (Figures("hold together: {} are drives", "WITNESSED: {}\n"),),
+        quick=True,
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof overlap --lanes any",),
+        (
+            Figures(
+                "With a lane for each, {} pairs of disturbances still exclude each other**: {}, because one has POV "
+                "in front and the other behind; these are {} of the {} pairs, the other {} are drives",
+                r.disturbances_apart,
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof overlap --lanes any --roles any",),
+        (
+            Figures("excludes anything**: all {} pairs are drives", "{} WITNESSED:"),
+            Figures("all {} pairs are drives", "{} pairs in "),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof overlap --among 1,4",),
+        (Figures("Scenario 1 and scenario 4 exclude each other", "1 IMPOSSIBLE: 1-4"),),
+        quick=True,
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof overlap --among 1,4 --start any",),
+        (Figures("and follow one another otherwise", "1 WITNESSED: 1-4"),),
+        quick=True,
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof overlap --among 1,4 --json -",),
+        (Figures("are few clashes, printed as cores", '"not sameLane(POV, SV, L)",'),),
+        quick=True,
+    ),
+)
+
+CLASSIFIED = (
+    Statement(
+        FINDINGS,
+        (CLASSES,),
+        (
+            Figures("fall into {} classes**", r.all_witnessed),
+            Figures("each of the {} has a judged drive", r.all_witnessed),
+            Figures("{} of what happens between SV and POV, and scenario 2", lambda x: r.happenings(x)[0]),
+            Figures("between three vehicles, each in {} choices of road sectors", r.kinds_of_places),
+            Figures(
+                "exactly the scenarios ({} claims)", lambda x: len(r.read(x, "classes/index.json")["claims"])
+            ),
+            Figures("What happens is one of {}**: {} alone, {}. Of the choices", r.happenings),
+            Figures(
+                "names its scenarios**: {} situations", "{} situations with a scenario, each in exactly one"
+            ),
+            Figures("recording of {} s with {} traces", "recording of {} s, seed 1: {} traces,"),
+            Figures("Traces in no scenario: {}, ", "traces, {} ("),
+            Figures(
+                "In `base` classes 3 and 4 have {} % each, 1 has {} %, 7 has {} %, 6 has {} %; the other {} have "
+                "{} % or less, and {} do not occur there",
+                r.shares_of_base,
+            ),
+        ),
+    ),
+    *(
+        Statement(
+            FINDINGS,
+            (f"roadproof classify --set {name}",),
+            (
+                Figures("`extA` and `ext` have the same {} classes**", r.all_witnessed),
+                Figures("What happens is one of {}**: {} alone, {}. Of the choices", r.happenings),
+                Figures(situations, "{} situations with a scenario, each in exactly one"),
+                Figures(traces, "traces, {} ("),
+            ),
+        )
+        for name, situations, traces in (
+            ("extA", "situations with a scenario in `base`, {} in `extA`", "in no scenario: 122, {}, "),
+            ("ext", "in `extA`, {} in `ext`", "in no scenario: 122, 101, {} and "),
+        )
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof classify --set complete",),
+        (
+            Figures("`complete` has {}**", r.all_witnessed),
+            Figures("**, {} of what happens between two vehicles", lambda x: r.happenings(x)[0]),
+            Figures("in `ext`, {} in `complete`", "{} situations with a scenario, each in exactly one"),
+            Figures("75 and {}. The same four commands", "traces, {} ("),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof prove 'scenario_4(SV,POV,L) and scenario_6(SV,POV,L) -> scenario_8(SV,POV,L)'",),
+        (Figures("4 and 6 hold together only with 8", "PROVED scenario_4"),),
+        quick=True,
+    ),
+    Statement(FINDINGS, ("roadproof classify --among 1-8 --out classes",)),
+    Statement(
+        FINDINGS,
+        ("roadproof classify --set ext --among 1-8 --on ../shared/data/us101",),
+        (
+            Figures(
+                "On US-101 the same holds**: {} situations", "{} situations with a scenario, each in exactly"
+            ),
+            Figures("of those of two vehicles {} % are in class 1", lambda x: r.shares(x)["1"]),
+            Figures(
+                "in class 1, {} in a class of several scenarios",
+                lambda x: sum(share > 0 for name, share in r.shares(x).items() if "_" in name),
+            ),
+        ),
+    ),
+)
+
+LEFT_OUT = (
+    Statement(
+        FINDINGS,
+        ("roadproof redundancy --among 3",),
+        (
+            Figures(
+                "The whole condition on lanes may be dropped",
+                "redundant: sameLane(SV, POV, L) or inAdjLanes(SV, POV, L) in initialCondition_3(SV,POV,L) as true",
+            ),
+            Figures(
+                "The disjunct `inAdjLanes` of scenarios 3 and 4 is redundant",
+                "redundant: some M in adjacentLanes(L): atLane(POV, M) in inAdjLanes(SV,POV,L) as false",
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof redundancy --among 1,5,6,8",),
+        (
+            Figures(
+                "the condition `sameLane` at the start of scenario 8",
+                "scenario 8: redundant: sameLane(SV, POV, L) in initialCondition_8(SV,POV,L) as true",
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof redundancy --among 2",),
+        (
+            Figures(
+                "All that scenario 2 asks of SV's lane is redundant for motion",
+                "scenario 2: redundant for motion: laneKeep(SV, L) U not sameLane(SV, POV1, L) in",
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        (REDUNDANCY,),
+        (
+            Figures(
+                "of {} changes to the 24 scenarios {} are proved redundant, {} more for motion, {} are told apart "
+                "by a judged drive, and {} by a judged trace",
+                "{} changes: {} redundant, {} more for motion, {} told apart by a drive, {} by a trace, 0 in doubt",
+            ),
+            Figures("over points in time; {} is in doubt", "by a trace, {} in doubt"),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        (REDUNDANCY, "roadproof check redundant"),
+        (Figures("accepts the {} files", r.accepted),),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof redundancy --among 7",),
+        (Figures("Every part of scenario 7 is needed", "changes: 0 redundant, 0 more for motion"),),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof redundancy --set ext",),
+        (
+            Figures(
+                "In `ext`, {} of {} changes is in doubt (POV2 in L when POV1 is, in scenario 2), {} are told apart by "
+                "a trace only",
+                r.doubts_and_traces,
+            ),
+        ),
+    ),
+)
+
+EMPTY = Figures(
+    "`base` and `extA`: of {} classes {} have a drive and {} are proved empty",
+    "of {} classes {} have a judged drive, {} are proved empty, 0 are undecided",
+)
+NO_SINGLE = "in every scenario two or more are false {}"
+
+MISSED = (
+    *(
+        Statement(
+            FINDINGS,
+            (RECORDINGS, COVERAGE[name]),
+            (
+                EMPTY,
+                Figures(
+                    "In `base` and `extA` there is {}: two vehicles with fronts level", r.gaps_of_no_condition
+                ),
+                Figures(missed, "disturbances in traffic {} are missed"),
+                Figures("Of {} disturbances in 120 s", "of {} disturbances in traffic"),
+            ),
+        )
+        for name, missed in (("base", "three lanes `base` misses {}, `extA`"), ("extA", ", `extA` {}, `ext`"))
+    ),
+    Statement(
+        FINDINGS,
+        (RECORDINGS, COVERAGE["ext"]),
+        (
+            Figures(
+                "`ext`: of {} classes {} have a drive and {} are proved empty",
+                "of {} classes {} have a judged drive, {} are proved empty, 0 are undecided",
+            ),
+            Figures("one condition of one scenario is to blame", NO_SINGLE.format("IMPOSSIBLE")),
+            Figures("`ext` {} and `complete`", "disturbances in traffic {} are missed"),
+            Figures(
+                "Of {} of the nine that `ext` misses scenario 1 would hold", r.beside_the_lane_in_traffic
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        (RECORDINGS, COVERAGE["complete"]),
+        (
+            Figures("and `complete` {}; every one", "disturbances in traffic {} are missed"),
+            Figures("Coverage can be had", "set complete misses no danger that arises from safety"),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof coverage --set complete --needed",),
+        (
+            Figures("None of the {} can be left out", lambda x: x.printed.count(": needed, by a drive on ")),
+            Figures(
+                "extends `ext` by {} replaced definitions",
+                lambda x: x.printed.count(": needed, by a drive on "),
+            ),
+        ),
+    ),
+    Statement(FINDINGS, ("roadproof show cutIn --set complete",), quick=True),
+)
+
+IMPLIED = (
+    Statement(
+        FINDINGS,
+        (ORDER,),
+        (
+            Figures("Of {} scenarios, {} formulas are different", "{} scenarios, {} formulas:"),
+            Figures(
+                "between the {} formulas {} edges are proved",
+                "scenarios, {} formulas: {} edges proved",
+            ),
+            Figures(
+                "with the {} implications that follow by a chain",
+                lambda x: (
+                    len(r.read(x, "order/index.json")["proved"]) - len(r.read(x, "order/index.json")["edges"])
+                ),
+            ),
+            Figures(
+                "the other {} are refuted by {} drives, and {} is in doubt",
+                "{} implications refuted by {} drives, {} in doubt",
+            ),
+            Figures("edges are proved, {} in each road sector", r.edges_of_a_sector),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        (
+            "roadproof witness 'scenario_4@ext(SV,POV,L) and not scenario_4@extA(SV,POV,L)' --road main-2 "
+            "--effort 150",
+        ),
+        (Figures("is the hardest of these drives", "WITNESSED road main-2"),),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof witness 'scenario_5(SV,POV,L) and not scenario_1(SV,POV,L)'",),
+        (Figures("That scenario 5 does not imply scenario 1 takes a drive", "WITNESSED road"),),
+    ),
+)
+
+VALUES = (
+    Statement(
+        FINDINGS,
+        ("roadproof explore --all --vary minDanger=0:60",),
+        (
+            Figures(
+                "in all {} scenarios of `base`**: each has a drive at every one of {} values of `minDanger` up to 60 "
+                "s, and {} drives serve all of them",
+                r.drives_that_serve,
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 1 3 4 5 6 7 8 --vary minSafe=0:6",),
+        (
+            Figures("scenario 4 has drives up to `minSafe` = {} s", lambda x: r.boundaries(x)[4]),
+            Figures(
+                "the others up to {} s (1), {} s (3), {} s (5), {} s (6), {} s (7) and {} s (8)",
+                lambda x: tuple(r.boundaries(x)[k] for k in (1, 3, 5, 6, 7, 8)),
+            ),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 4 --vary minSafe=0:6 --horizon 12 --steps 6",),
+        (Figures("scenario 4 has drives at all {} values up to 6 s", "at {} of 6 values\n"),),
+    ),
+    *(
+        Statement(
+            FINDINGS,
+            (f"roadproof explore {a} {b} --least '{measure}'",),
+            (
+                Figures(said, lambda x, a=a, b=b: (r.measures(x)[a, "least"], r.measures(x)[b, "least"])),
+                Figures("that it is never 0 is proved", "at 0 m/s IMPOSSIBLE"),
+            ),
+        )
+        for a, b, measure, said in (
+            (3, 7, "v_lon(POV) - v_lon(SV)", "drives with {} m/s for 3, {} m/s for 7"),
+            (4, 8, "v_lon(SV) - v_lon(POV)", "{} m/s for 4 and {} m/s for 8 were judged"),
+        )
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 1 6 --least 'v_lon(SV) - v_lon(POV)' --greatest 'v_lon(SV) - v_lon(POV)'",),
+        (Figures("SV starts from {} m/s slower to {} m/s faster", r.range_of_both),),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 4 --vary POV.a_lon.min=-6:0",),
+        (Figures("drives remain where POV never decelerates", "at 11 of 11 values"),),
+        quick=True,
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 3 --vary vehicle.a_lon.max=0:3",),
+        (Figures("nobody has to accelerate for scenario 3", "at 11 of 11 values"),),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 4 --least 's(POV) - s(SV) - length(POV)'",),
+        (
+            Figures(
+                "the least gap is {} m", "least s(POV) - s(SV) - length(POV) at the start: {} m on a judged"
+            ),
+            Figures("and less is proved impossible", "m IMPOSSIBLE [1]"),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        (
+            "roadproof explore 4 --greatest 's(POV) - s(SV)' --when 'danger(SV,POV)' --reach 200 --precision 2",
+        ),
+        (
+            Figures("Danger in scenario 4 lasts up to {} m", "when danger(SV,POV): {} m on a judged drive"),
+            Figures("judged drive; at {} m there is none within 6 s", "{} m NONE-WITHIN ["),
+        ),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 4 --vary rho=0:3",),
+        (Figures("A response time `rho` of more than {} s", "greatest rho with a drive: {} s; at"),),
+    ),
+    Statement(
+        FINDINGS,
+        ("roadproof explore 4 --vary rho=0:3 --reach 200",),
+        (Figures("within 200 m there are drives at all {} values up to 3 s", "at {} of 11 values\n"),),
+    ),
+)
+
+LIMITS = (
+    Statement(
+        FINDINGS,
+        ("roadproof witness 'scenario_1(SV,POV,L) and F scenario_3(SV,POV,L)' --horizon 9 --effort 400",),
+        (Figures("1 and then 3 is a drive of {} s", "horizon {} s"),),
+    ),
+    *(
+        Statement(FINDINGS, (f"roadproof overlap --among {pair} --start any --effort 300",))
+        for pair in ("3,4", "2,3")
+    ),
+)
+
+EVALUATE = "roadproof evaluate ../shared/data/us101 --out out/us101 --no-pictures"
+US101 = "docs/us101.md"
+ROWS = "\n".join(
+    f"| {danger} | {name} | {{}} |" for danger in ("0", "0.6") for name in ("base", "extA", "ext")
+)
+
+MEASURED = (
+    Statement(
+        US101,
+        (EVALUATE,),
+        (
+            Figures(ROWS, r.us101_rows),
+            Figures("{} pairs violate the RSS distance", lambda x: r.us101_counts(x)["violating"]),
+            Figures("of these, {} (minDanger 0) and {} (0.6) do so", r.disturbances),
+            Figures("from 0 to 0.6 s, {} of {} disturbances vanish", r.vanishing),
+            Figures(
+                "s3 and s4 differ in base** for {} pairs with minDanger 0, and for {} of these with 0.6",
+                lambda x: (r.roles_differ(x, "0"), r.roles_differ(x, "3/5")),
+            ),
+            Figures("base ⊆ extA ⊆ ext for every pair", "every match a disturbance: no violation"),
+            Figures(
+                "(pairs): cut-in {} by TTC < 4 s, {} by THW < 2 s, {} without a metric; deceleration {}, {} and {}.",
+                lambda x: tuple(r.us101_counts(x)["detectors"].values()),
+            ),
+            Figures(
+                "Of {} answers {} depend on what comes",
+                lambda x: (r.us101_counts(x)["asked"], r.us101_counts(x)["undecided"]),
+            ),
+            Figures(
+                "{} of them would be a match under `--end clip`", "{} would be another match under the other"
+            ),
+            Figures("trucks (9 of {})", "here: 8 recordings, {} vehicles"),
+            Figures("One sample of {} has the centre", "vehicles (Car evaluated), {} samples"),
+            Figures("{} sample of 14", r.samples_on_no_lane),
+            Figures(
+                "**overlap** in {} frames, by up to {} m",
+                "vehicles 504 and 513 overlap in {} frames, by up to {} m",
+            ),
+        ),
+    ),
+    Statement(
+        US101,
+        (EVALUATE, "python benchmarks/us101.py ../shared/data/us101 out/us101"),
+        (
+            Figures("Of the {} traces that match no scenario of ext", "{} traces match no scenario of ext"),
+            Figures("scenario 2 included, {} are of vehicles", "minDanger 0, {} of them without"),
+            Figures("These pairs and the other {} are listed", r.others_with_a_lane),
+            Figures("clipped at ±{} m/s² in the data, and {} % of all", "greatest is {} m/s², {} % of all"),
+        ),
+    ),
+    Statement(
+        US101,
+        (f"{EVALUATE} --option lateral_rss=signed",),
+        (Figures(ROWS, r.us101_rows),),
+    ),
+)
+
+TIMED = (
+    Statement(
+        PERFORMANCE,
+        (OVERLAP,),
+        (Figures("`roadproof overlap`: {} pairs of base, {} drives and {} proofs", r.pairs_drives_proofs),),
+        named="roadproof overlap",
+    ),
+    Statement(
+        PERFORMANCE,
+        ("roadproof overlap --lanes any",),
+        (Figures("any`: {} drives, {} proofs", lambda x: r.pairs_drives_proofs(x)[1:]),),
+    ),
+    Statement(
+        PERFORMANCE,
+        (ORDER,),
+        (
+            Figures(
+                "order`: {} formulas, {} proofs, {} implications refuted",
+                lambda x: tuple(
+                    len(r.read(x, "order/index.json")[key]) for key in ("kinds", "proved", "missing")
+                ),
+            ),
+        ),
+        named="roadproof order",
+    ),
+    Statement(
+        PERFORMANCE,
+        (REDUNDANCY,),
+        (Figures("redundancy`: {} changes of base", "{} changes:"),),
+        named="roadproof redundancy",
+    ),
+    Statement(
+        PERFORMANCE,
+        (CLASSES,),
+        (
+            Figures(
+                "DIR`: {} classes of base, {} proofs, {} drives, shares",
+                lambda x: (
+                    r.all_witnessed(x),
+                    len(r.read(x, "classes/index.json")["claims"]),
+                    r.all_witnessed(x),
+                ),
+            ),
+        ),
+        named="roadproof classify --out DIR",
+    ),
+)
+
+STATEMENTS = (
+    *HOLD_TOGETHER, *CLASSIFIED, *LEFT_OUT, *MISSED, *IMPLIED, *VALUES, *LIMITS, *MEASURED, *TIMED,
+)  # fmt: skip

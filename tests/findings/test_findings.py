@@ -1,0 +1,119 @@
+"""The documents say what comes out: their quick statements here, all of them in `make findings`."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from console import agree, cut_alike
+from findings import checking
+from findings.checking import check_statement
+from findings.figures import Difference, Figures, Outcome, Statement, commands_named, compare, covered
+from findings.results import ROOT, Results
+from findings.statements import PICTURES, STATEMENTS
+
+QUICK = [statement for statement in STATEMENTS if statement.quick]
+PAGES = ("docs/findings.md", "docs/us101.md")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    return Results(tmp_path_factory.mktemp("findings"))
+
+
+@pytest.mark.parametrize("statement", QUICK, ids=lambda s: s.commands[-1])
+def test_a_page_says_what_comes_out(statement: Statement, results: Results) -> None:
+    assert [str(x) for x in check_statement(statement, results, update=False)] == []
+
+
+@pytest.mark.parametrize("statement", STATEMENTS, ids=lambda s: f"{s.page}-{s.commands[-1]}")
+def test_every_figure_is_on_its_page_once(statement: Statement) -> None:
+    page = ROOT.joinpath(statement.page).read_text("utf-8")
+    assert f"`{statement.named or statement.commands[-1]}`" in page
+    for figures in statement.figures:
+        assert len(covered(figures, page)) == figures.said.count("{}"), figures.said
+        assert len(compare_without_output(figures, page)) <= 1, figures.said
+
+
+def compare_without_output(figures: Figures, page: str) -> list[Difference]:
+    quoted = Figures(figures.said, lambda _: ("?",) * figures.said.count("{}"))
+    return [d for d in compare(quoted, page, Outcome("", 0, Path())) if d.place is None]
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_command_of_a_page_is_run(name: str) -> None:
+    run = {command for statement in STATEMENTS for command in statement.commands}
+    named = commands_named(ROOT.joinpath(name).read_text("utf-8"))
+    assert named
+    assert [command for command in named if command not in run and "DIR" not in command] == []
+
+
+def test_pictures_are_those_of_pages() -> None:
+    pages = "".join(path.read_text("utf-8") for path in (ROOT / "README.md", *ROOT.glob("docs/*.md")))
+    pictures = {path.name for path in ROOT.glob("docs/pictures/*.png")}
+    assert {Path(picture.file).name for picture in PICTURES} == pictures
+    assert all(f"pictures/{name})" in pages for name in pictures)
+
+
+PAGE = "Of the 1,236 changes two are odd, others are not: 1-5, 3-6 and 4-8. `echo said` (exit 3)\n"
+
+
+def differences(said: str, source: str, printed: str) -> list[tuple[str, str]]:
+    return [(d.said, d.found) for d in compare(Figures(said, source), PAGE, Outcome(printed, 0, Path()))]
+
+
+def test_a_figure_that_is_the_same_in_another_hand_agrees() -> None:
+    assert differences("the {} changes {} are odd", "{} changes, {} odd", "1236 changes, 2 odd") == []
+    assert differences("are not: {}. `echo", "left: {}\n", "left: 1-5, 3-6, 4-8\n") == []
+
+
+def test_a_figure_that_differs_is_told_in_the_hand_of_the_page() -> None:
+    found = differences("the {} changes {} are odd", "{} changes, {} odd", "1237 changes, 3 odd")
+    assert found == [("1,236", "1,237"), ("two", "three")]
+
+
+def test_what_the_page_or_the_output_does_not_have_differs() -> None:
+    assert differences("of all {} things", "{} things", "3 things")
+    assert differences("the {} changes", "{} things", "1236 changes")
+    assert differences("the {} changes", "{} changes", "1236 changes, 1237 changes")
+    assert differences("others are not", "others are not", "others are")
+    assert differences("others are not", "others", "others are") == []
+
+
+def test_a_page_is_put_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, results: Results) -> None:
+    monkeypatch.setattr(checking, "ROOT", tmp_path)
+    (tmp_path / "page.md").write_text(PAGE, "utf-8")
+    statement = Statement("page.md", ("echo said",), (Figures("the {} changes", lambda _: 17),))
+    wrong = check_statement(statement, results, update=True)
+    assert [(x.line, x.said) for x in wrong] == [(1, "1,236"), (1, " (exit 3)")]
+    assert (tmp_path / "page.md").read_text("utf-8") == PAGE.replace("1,236", "17").replace(" (exit 3)", "")
+    assert check_statement(statement, results, update=False) == []
+
+
+def test_a_run_that_was_broken_off_goes_on(tmp_path: Path) -> None:
+    results, commands = Results(tmp_path), ("echo one >> log", "cat log; exit 5")
+    folder = results.folder_of(commands)
+    folder.mkdir(parents=True)
+    folder.joinpath("work").mkdir()
+    folder.joinpath("work/log").write_text("kept\n")
+    folder.joinpath("1.json").write_text(json.dumps({"printed": "", "exit": 0}))
+    assert not results.has(commands)
+    assert (results.ask(commands).printed, results.ask(commands).exit) == ("kept\n", 5)
+    assert results.has(commands)
+
+
+def test_a_session_that_is_cut_says_so() -> None:
+    assert agree(["a", "b", "c", "d"], ["a", "…", "d"])
+    assert agree(["a", "d"], ["a", "…", "d"])
+    assert agree(["took 3 s"], ["took …"])
+    assert agree(["took 3 s, 4 found"], ["took … found"])
+    assert not agree(["a", "b", "c"], ["a", "b"])
+    assert not agree(["a", "b", "x"], ["a", "…", "c"])
+    assert not agree(["a"], ["a", "…", "a"])
+
+
+def test_a_session_that_is_put_right_stays_cut() -> None:
+    printed = ["head", "1 new", "2", "3", "in 5 s"]
+    assert cut_alike(printed, ["head", "1 old", "…", "in … s"]) == ["head", "1 new", "…", "in … s"]
+    assert cut_alike(printed, ["…", "in … s"]) == ["…", "in … s"]
+    assert cut_alike(["new"], ["old"]) == ["new"]
