@@ -351,6 +351,11 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         option, value, *definitions = items
         return syntax.WhenBlock(str(option), str(value), tuple(definitions), _at(meta))
 
+    def lane(self, meta: Meta, items: list[Any]) -> Statement:
+        vehicle, *ranges, doc = items
+        numbers = tuple(number for r in ranges for number in r)
+        return syntax.LaneDeclaration(str(vehicle), numbers, _doc(doc), _at(meta))
+
     def library(self, _: Meta, items: list[Any]) -> tuple[Statement, ...]:
         return tuple(items)
 

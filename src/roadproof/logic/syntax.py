@@ -191,8 +191,18 @@ class WhenBlock:
     at: Position = field(default_factory=_nowhere, compare=False)
 
 
+@dataclass(frozen=True)
+class LaneDeclaration:
+    """``lane of POV for 7, 15, 23``: in these scenarios L is this vehicle's lane at the start."""
+
+    vehicle: str
+    scenarios: tuple[int, ...]
+    doc: str
+    at: Position = field(default_factory=_nowhere, compare=False)
+
+
 Statement: TypeAlias = (
-    ParameterDeclaration | OptionDeclaration | Definition | EachBlock | SetBlock | WhenBlock
+    ParameterDeclaration | OptionDeclaration | Definition | EachBlock | SetBlock | WhenBlock | LaneDeclaration
 )
 
 

@@ -11,6 +11,7 @@ from difflib import get_close_matches
 from functools import cache
 from importlib import resources
 from pathlib import Path
+from typing import assert_never
 
 from roadproof.errors import InputError, Position, TextError
 from roadproof.files import read_limited
@@ -20,6 +21,7 @@ from roadproof.logic.syntax import (
     Definition,
     EachBlock,
     Expression,
+    LaneDeclaration,
     OptionDeclaration,
     ParameterDeclaration,
     SetBlock,
@@ -43,7 +45,10 @@ class Source:
 
 @dataclass(frozen=True)
 class Library:
-    """Everything that specification files declare; names are unique in each mapping."""
+    """Everything that specification files declare; names are unique in each mapping.
+
+    ``lanes``: by scenario, whose lane L is where that is not SV's (semantics §5).
+    """
 
     parameters: Mapping[str, ParameterDeclaration]
     options: Mapping[str, OptionDeclaration]
@@ -51,6 +56,7 @@ class Library:
     sets: Mapping[str, SetBlock]
     variants: Mapping[tuple[str, str], tuple[Definition, ...]]
     sources: Mapping[str, Source]
+    lanes: Mapping[int, LaneDeclaration]
 
     @property
     def bounds(self) -> dict[str, str]:
@@ -168,10 +174,17 @@ class _Building:
         self.sets = dict(below.sets) if below else {}
         self.variants = dict(below.variants) if below else {}
         self.sources = dict(below.sources) if below else {}
+        self.lanes = dict(below.lanes) if below else {}
 
     def library(self) -> Library:
         return Library(
-            self.parameters, self.options, self.definitions, self.sets, self.variants, self.sources
+            self.parameters,
+            self.options,
+            self.definitions,
+            self.sets,
+            self.variants,
+            self.sources,
+            self.lanes,
         )
 
     def add(self, statements: Iterable[Statement], source: Source) -> None:
@@ -192,6 +205,12 @@ class _Building:
                         self._define(definition, fresh, source)
                 case SetBlock() | WhenBlock():
                     blocks.append(statement)
+                case LaneDeclaration():
+                    for number in statement.scenarios:
+                        _once(fresh, "lane of scenario", str(number), statement.at)
+                        self.lanes[number] = statement
+                case _:
+                    assert_never(statement)
         for block in blocks:
             self._override(block, fresh, source)
 

@@ -1,0 +1,216 @@
+"""The template of the scenarios, and what its definitions are called: no other file knows these names.
+
+A scenario is ``scenario_i := initSafe and roadSector_i and disturb_i`` with ``disturb_i :=
+initialCondition_i and behaviourSV_i and behaviourPOV_i`` (paper, eq. scenarioAsInitSafePlusDisturb and
+disturbFormat). Its arguments are SV, POVs and a lane L. The numbers, the vehicles, the road sectors and
+whose lane L is come from the specification.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from roadproof.errors import InputError
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, transform
+from roadproof.spec.compose import both, either, eventually
+from roadproof.spec.elaborate import apply_definition, signature
+from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
+
+MIN_SAFE, MIN_DANGER = "minSafe", "minDanger"
+RSS_PARAMETERS = ("rho", "a_max", "b_min", "b_max", "a_max_lat", "b_min_lat")
+SUBJECT, LANE = "SV", "L"
+
+Zone: TypeAlias = Literal["main", "merge", "depart"]
+_ZONES: dict[Zone, str] = {"main": "onMainRoad", "merge": "inMergeZone", "depart": "inDepartZone"}
+_SCENARIO = re.compile(r"scenario_(\d{1,6})")
+_COMPONENTS = ("behaviourSV", "behaviourPOV", "initialCondition")
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A scenario by number, in a spec set."""
+
+    number: int
+    set_name: str
+
+    def __str__(self) -> str:
+        return f"{self.number}@{self.set_name}"
+
+
+# --- scenarios ----------------------------------------------------------------------------------
+
+
+def numbers_of(specification: Specification) -> tuple[int, ...]:
+    """The numbers of the scenarios that a specification defines, in order."""
+    found = (number_in(name) for name in specification.definitions)
+    return tuple(sorted(number for number in found if number is not None))
+
+
+def number_in(name: str) -> int | None:
+    """The number of a scenario in the name of its definition; None for another name."""
+    found = _SCENARIO.fullmatch(name)
+    return None if found is None else int(found[1])
+
+
+def name_of(number: int) -> str:
+    """What the definition of a scenario is called."""
+    return f"scenario_{number}"
+
+
+def vehicles_of(specification: Specification, scenario: Scenario) -> tuple[str, ...]:
+    """The vehicles among the arguments of a scenario, which are SV, POVs and L. Raises ``InputError``."""
+    name = name_of(scenario.number)
+    *vehicles, lane = signature(specification.in_set(scenario.set_name), name)
+    if lane != LANE or not vehicles or vehicles[0] != SUBJECT:
+        raise InputError(f"{name} takes {', '.join((*vehicles, lane))}: a scenario takes SV, POVs and L")
+    return tuple(vehicles)
+
+
+def applied(
+    specification: Specification, scenario: Scenario, vehicles: Sequence[str] = (), lane: str = LANE
+) -> Query:
+    """A scenario applied to vehicles (its own where none are given) and a lane."""
+    roles = tuple(vehicles) or vehicles_of(specification, scenario)
+    name = _in_set(name_of(scenario.number), scenario, specification)
+    return apply_definition(specification, name, (*roles, lane))
+
+
+def lane_owner(specification: Specification, scenario: Scenario) -> str:
+    """The vehicle whose lane at the start is L. Raises ``InputError`` where it is not one of the scenario's."""
+    declared = specification.library.lanes.get(scenario.number)
+    if declared is None:
+        return SUBJECT
+    vehicles = vehicles_of(specification, scenario)
+    if declared.vehicle not in vehicles:
+        raise InputError(
+            f"lane of {declared.vehicle} for {scenario.number}: the scenario has {', '.join(vehicles)}; "
+            "name one of them"
+        )
+    return declared.vehicle
+
+
+def endangered(vehicles: Sequence[str]) -> tuple[str, str]:
+    """SV and the vehicle that it comes into danger with, of a scenario's vehicles: the last POV."""
+    return vehicles[0], vehicles[-1]
+
+
+# --- parts of the template ----------------------------------------------------------------------
+
+
+def sector(specification: Specification, number: int, vehicles: Sequence[str]) -> Query:
+    """That ``vehicles`` are where a scenario happens. Raises ``TextError``."""
+    return apply_definition(specification, f"roadSector_{number}", tuple(vehicles))
+
+
+def sector_words(specification: Specification, number: int) -> str:
+    """Where a scenario happens, in words; empty where nothing is said of it."""
+    definition = specification.definitions.get(f"roadSector_{number}")
+    return "" if definition is None else specification.describe(definition)
+
+
+def disturbance(specification: Specification, number: int, vehicles: Sequence[str]) -> Query:
+    """What happens in a scenario, after safety and wherever it is, in the lane L. Raises ``TextError``."""
+    return apply_definition(specification, f"disturb_{number}", (*vehicles, LANE))
+
+
+def initial_condition(specification: Specification, number: int, vehicles: Sequence[str]) -> Query:
+    """What a scenario asks of its start beside safety and sector, in the lane L. Raises ``TextError``."""
+    return apply_definition(specification, f"initialCondition_{number}", (*vehicles, LANE))
+
+
+def components(specification: Specification, number: int, vehicles: Sequence[str]) -> list[Query]:
+    """The components of a disturbance that speak of no others than ``vehicles`` and L: behaviours first."""
+    found = []
+    for kind in _COMPONENTS:
+        name = f"{kind}_{number}"
+        if name in specification.definitions:
+            arguments = signature(specification, name)
+            if {*arguments} <= {*vehicles, LANE}:
+                found.append(apply_definition(specification, name, arguments))
+    return found
+
+
+def follows_template(specification: Specification, number: int) -> bool:
+    """Whether a scenario has a road sector and a disturbance of its own, as the template says."""
+    return {f"roadSector_{number}", f"disturb_{number}"} <= {*specification.definitions}
+
+
+def is_disturbance(name: str, number: int) -> bool:
+    """Whether a definition is what happens in the scenario."""
+    return name == f"disturb_{number}"
+
+
+def is_sector(name: str) -> bool:
+    """Whether a definition, or an application of one, is a road sector."""
+    return name.startswith("roadSector_")
+
+
+def without_sectors(formula: Formula) -> Formula:
+    """``formula`` without names, and with every application of a road sector replaced by true."""
+
+    def change(part: Formula) -> Formula:
+        if not isinstance(part, f.Named):
+            return part
+        return f.TRUE if is_sector(part.name) else part.body
+
+    return transform(formula, change)
+
+
+def likes_of(specification: Specification) -> dict[int, int]:
+    """For every scenario the first one that differs from it in the road sector only."""
+    first: dict[Formula, int] = {}
+    likes: dict[int, int] = {}
+    for number in numbers_of(specification):
+        query = applied(specification, Scenario(number, specification.set_name))
+        likes[number] = first.setdefault(without_sectors(query.formula), number)
+    return likes
+
+
+# --- safety, danger, lanes ----------------------------------------------------------------------
+
+
+def violation(specification: Specification, a: str, b: str) -> Query:
+    """Two vehicles are nearer than the RSS distances (eq. rssViolation and danger_lat)."""
+    return apply_definition(specification, "rssViolation", (a, b))
+
+
+def safe(specification: Specification, a: str, b: str) -> Query:
+    """Two vehicles are safe for minSafe from now on."""
+    return apply_definition(specification, "initSafe", (a, b))
+
+
+def danger(specification: Specification, a: str, b: str) -> Query:
+    """Two vehicles violate the RSS distances for minDanger from now on."""
+    return apply_definition(specification, "danger", (a, b))
+
+
+def danger_comes(specification: Specification, a: str, b: str) -> Query:
+    """Two vehicles are safe now and in danger later."""
+    return both(safe(specification, a, b), eventually(danger(specification, a, b)))
+
+
+def too_near_ahead(specification: Specification, behind: str, ahead: str) -> Query:
+    """One vehicle is ahead of the other, nearer than the longitudinal RSS distance (eq. lon_RSS)."""
+    return apply_definition(specification, "dangerAhead", (behind, ahead))
+
+
+def in_lane(specification: Specification, vehicle: str, lane: str = LANE) -> Query:
+    """A vehicle occupies a lanelet of a lane."""
+    return apply_definition(specification, "atLane", (vehicle, lane))
+
+
+def in_zone(specification: Specification, vehicle: str, zone: Zone) -> Query:
+    """A vehicle occupies a lanelet of a zone."""
+    return apply_definition(specification, _ZONES[zone], (vehicle,))
+
+
+def in_some_zone(specification: Specification, vehicle: str) -> Query:
+    """A vehicle occupies a lanelet of one of the zones."""
+    return either(*(in_zone(specification, vehicle, zone) for zone in _ZONES))
+
+
+def _in_set(name: str, scenario: Scenario, home: Specification) -> str:
+    return name if scenario.set_name == home.set_name else f"{name}@{scenario.set_name}"

@@ -1,0 +1,76 @@
+"""The template: what Python knows of the scenarios comes from the specification."""
+
+import pytest
+
+from roadproof.errors import InputError, TextError
+from roadproof.logic.rewrite import without_names
+from roadproof.spec import scenarios
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Source, Specification, build_library, bundled_library
+from roadproof.spec.scenarios import Scenario
+
+BASE = bundled_library().select()
+
+
+def with_text(text: str, set_name: str = "base") -> Specification:
+    return build_library([Source("mine.spec", text)], bundled_library()).select(set_name)
+
+
+def test_the_paper_has_24_scenarios_in_three_sectors() -> None:
+    assert scenarios.numbers_of(BASE) == tuple(range(1, 25))
+    assert scenarios.likes_of(BASE) == {n: (n - 1) % 8 + 1 for n in range(1, 25)}
+    sectors = [without_names(scenarios.sector(BASE, n, ("SV", "POV")).formula) for n in range(1, 25)]
+    assert [sectors.index(s) + 1 for s in sectors] == [1] * 8 + [9] * 8 + [17] * 8
+
+
+@pytest.mark.parametrize("number", range(1, 25))
+def test_l_is_the_lane_of_sv_but_for_lane_changes_towards_pov(number: int) -> None:
+    owner = "POV" if number in (7, 15, 23) else "SV"
+    assert scenarios.lane_owner(BASE, Scenario(number, "ext")) == owner
+
+
+def test_a_file_may_say_whose_lane_it_is() -> None:
+    mine = with_text('lane of POV2 for 2, 10 "odd"\nlane of SV for 7\n')
+    assert scenarios.lane_owner(mine, Scenario(10, "base")) == "POV2"
+    assert scenarios.lane_owner(mine, Scenario(7, "base")) == "SV"
+    assert scenarios.lane_owner(mine, Scenario(15, "base")) == "POV"
+    with pytest.raises(InputError, match="lane of POV2 for 4: the scenario has SV, POV; name one of them"):
+        scenarios.lane_owner(with_text("lane of POV2 for 4"), Scenario(4, "base"))
+    with pytest.raises(TextError, match="lane of scenario '7' is given twice"):
+        with_text("lane of SV for 7, 8\nlane of POV for 6..7")
+
+
+def test_applications_are_what_a_reader_would_write() -> None:
+    ext = Scenario(2, "ext")
+    written = {
+        "scenario_2@ext(SV, POV1, POV2, L)": scenarios.applied(BASE, ext),
+        "scenario_4(POV2, SV, L2)": scenarios.applied(BASE, Scenario(4, "base"), ("POV2", "SV"), "L2"),
+        "initSafe(SV, POV) and F danger(SV, POV)": scenarios.danger_comes(BASE, "SV", "POV"),
+        "roadSector_9(SV, POV1, POV2)": scenarios.sector(BASE, 9, ("SV", "POV1", "POV2")),
+        "disturb_4(SV, POV, L)": scenarios.disturbance(BASE, 4, ("SV", "POV")),
+        "inMergeZone(SV)": scenarios.in_zone(BASE, "SV", "merge"),
+    }
+    for text, query in written.items():
+        assert query.text == text
+    for text in written:
+        assert read_claim(BASE, text).formula == written[text].formula
+
+
+def test_a_scenario_of_ones_own_has_to_take_what_scenarios_take() -> None:
+    mine = with_text("def scenario_30(SV, POV: vehicle) := danger(SV, POV)")
+    assert scenarios.numbers_of(mine)[-1] == 30
+    with pytest.raises(InputError, match="scenario_30 takes SV, POV: a scenario takes SV, POVs and L"):
+        scenarios.vehicles_of(mine, Scenario(30, "base"))
+    assert not scenarios.follows_template(mine, 30)
+    assert scenarios.follows_template(mine, 24)
+
+
+def test_components_come_from_the_template() -> None:
+    pair = [q.text for q in scenarios.components(BASE, 4, ("SV", "POV"))]
+    assert pair == [
+        "behaviourSV_4(SV, POV, L)",
+        "behaviourPOV_4(POV, SV, L)",
+        "initialCondition_4(SV, POV, L)",
+    ]
+    assert len(scenarios.components(BASE, 2, ("SV", "POV1", "POV2"))) == 3
+    assert scenarios.components(BASE, 2, ("SV", "POV1")) == []
