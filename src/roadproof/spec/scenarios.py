@@ -79,7 +79,7 @@ def applied(
 
 
 def lane_owner(specification: Specification, scenario: Scenario) -> str:
-    """The vehicle whose lane at the start is L. Raises ``InputError`` where it is not one of the scenario's."""
+    """The vehicle whose lane at the start is L. Raises ``InputError`` where the scenario has none such."""
     declared = specification.library.lanes.get(scenario.number)
     if declared is None:
         return SUBJECT
