@@ -97,19 +97,19 @@ def parameter_values(args: argparse.Namespace, library: "Library") -> dict[str, 
     A value without unit is in the unit of the declaration. Raises ``InputError`` for unknown names,
     values that are no rational, units of another dimension, and values out of the declared bound.
     """
-    from roadproof.spec.bind import default_values
+    from roadproof.spec.bind import values_with
     from roadproof.spec.library import unknown
 
-    values = default_values(library)
+    values: dict[str, Fraction] = {}
     for name, text in _assignments("--param", args.params):
         if name not in library.parameters:
             raise InputError(f"--param {name}={text}: {unknown('parameter', name, library.parameters)}")
         declared = library.parameters[name]
-        value = read_value("--param", name, text, declared.unit)
-        if (declared.bound == ">" and value <= 0) or (declared.bound == ">=" and value < 0):
-            raise InputError(f"--param {name}={text}: the library demands {name} {declared.bound} 0")
-        values[name] = value
-    return values
+        values[name] = read_value("--param", name, text, declared.unit)
+    try:
+        return values_with(library, values)
+    except InputError as error:
+        raise InputError(f"--param {error}") from None
 
 
 def read_value(option: str, name: str, text: str, unit: str) -> Fraction:

@@ -25,6 +25,7 @@ DEEPEST_NESTING = 100
 LONGEST_NUMBER = 200
 LONGEST_EXPONENT = 30
 GREATEST_POWER = 8
+LONGEST_CLAIM = 100_000
 _PARENTHESES = re.compile(r'[()\[\]{}]|"[^"\n]*"|#[^\n]*')
 
 
@@ -38,6 +39,12 @@ def parse_library(text: str, source: str) -> tuple[Statement, ...]:
 
 def parse_claim(text: str, source: str = "claim") -> syntax.Claim:
     """A formula, with an optional ``given a, b: vehicle; L: lane:`` in front. Raises ``TextError``."""
+    if len(text) > LONGEST_CLAIM:
+        raise TextError(
+            f"the formula is too long: {len(text)} characters, at most {LONGEST_CLAIM} are allowed",
+            None,
+            "Give its parts names with def.",
+        ).locate(source, text)
     claim = cast(syntax.Claim, _parse(text, source, "claim"))
     _check_depth(claim.body, Position(1, 1), source, text)
     return claim

@@ -8,7 +8,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import terms_of, with_values
-from roadproof.spec.library import Library, unknown
+from roadproof.spec.library import Library, is_within, source_of, unknown
 from roadproof.spec.quantity import UNITS
 from roadproof.world.road import Lanelet, Road
 
@@ -16,6 +16,22 @@ from roadproof.world.road import Lanelet, Road
 def default_values(library: Library) -> dict[str, Fraction]:
     """The declared value of every parameter, in SI units."""
     return {name: p.value * UNITS[p.unit][0] for name, p in library.parameters.items()}
+
+
+def values_with(library: Library, given: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """The value of every parameter, those of ``given`` in place of the declared ones, in SI units.
+
+    Raises ``InputError`` for a name that is not declared and for a value outside its declared bound.
+    """
+    for name, value in given.items():
+        if name not in library.parameters:
+            raise InputError(f"{name}={value}: {unknown('parameter', name, library.parameters)}")
+        declared = library.parameters[name]
+        if not is_within(declared.bound, value):
+            where = source_of(library, declared).name
+            at = f"{where}, line {declared.at.line}, column {declared.at.column}: "
+            raise InputError(f"{name}={value}: {at}the library demands {name} {declared.bound} 0")
+    return {**default_values(library), **given}
 
 
 def bind(formula: Formula, road: Road, lanes: Mapping[str, str], values: Mapping[str, Fraction]) -> Formula:

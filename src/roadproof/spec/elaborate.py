@@ -22,6 +22,7 @@ from roadproof.logic.terms import Dimension
 from roadproof.spec.library import BUILT_IN, Specification, source_of, unknown
 from roadproof.spec.quantity import SECONDS, UNITS, Quantity, product_dimension, same_dimension, unit_name
 from roadproof.spec.query import Query
+from roadproof.spec.size import Sizes
 
 DEEPEST_FORMULA = 100
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")
@@ -139,6 +140,7 @@ class _Elaborator:
     stack: list[str] = field(default_factory=list)
     depth: int = 0
     known: dict[tuple[str, str, tuple[Value, ...]], Formula | Quantity] = field(default_factory=dict)
+    sizes: Sizes = field(default_factory=Sizes)
 
     # --- names ---------------------------------------------------------------------------------
 
@@ -208,7 +210,9 @@ class _Elaborator:
     def _in_other_set(self, call: syntax.Call, name: str, qualifier: str, scope: Scope) -> Formula | Quantity:
         if qualifier not in self.specification.library.sets:
             raise TextError(unknown("spec set", qualifier, self.specification.library.sets), call.at)
-        inner = _Elaborator(self.specification.in_set(qualifier), self, self.free, depth=self.depth)
+        inner = _Elaborator(
+            self.specification.in_set(qualifier), self, self.free, depth=self.depth, sizes=self.sizes
+        )
         return inner.call(syntax.Call(name, call.arguments, call.at), scope)
 
     def apply(self, definition: Definition, bound: Scope, at: Position) -> Formula | Quantity:
@@ -325,7 +329,10 @@ class _Elaborator:
                     expression.at,
                     "Look for a chain of definitions that only call each other.",
                 )
-            return self._expression(expression, scope)
+            self.sizes.count_reading(expression.at)
+            made = self._expression(expression, scope)
+            self.sizes.check(made.term if isinstance(made, Quantity) else made, expression.at)
+            return made
         finally:
             self.depth -= 1
 

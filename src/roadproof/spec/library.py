@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from fractions import Fraction
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -194,7 +195,15 @@ class _Building:
             match statement:
                 case ParameterDeclaration():
                     _once(fresh, "parameter", statement.name, statement.at)
+                    if not is_within(statement.bound, statement.value):
+                        raise TextError(
+                            f"{statement.name}={statement.value} {statement.unit}: it is declared with "
+                            f"{statement.name} {statement.bound} 0",
+                            statement.at,
+                            "Give a value within the bound, or another bound.",
+                        )
                     self.parameters[statement.name] = statement
+                    self.sources[_key(statement)] = source
                 case OptionDeclaration():
                     _once(fresh, "option", statement.name, statement.at)
                     self.options[statement.name] = statement
@@ -253,13 +262,18 @@ BUILT_IN = frozenset(
 )
 
 
-def _key(definition: Definition) -> str:
-    return f"{definition.name}:{definition.at.line}:{definition.at.column}"
+def is_within(bound: str, value: Fraction) -> bool:
+    """Whether a value keeps the bound that a parameter is declared with: ``>``, ``>=`` (against 0) or none."""
+    return value > 0 if bound == ">" else value >= 0 if bound == ">=" else True
 
 
-def source_of(library: Library, definition: Definition) -> Source:
-    """Where a definition was written."""
-    return library.sources.get(_key(definition), Source("", ""))
+def _key(declared: Definition | ParameterDeclaration) -> str:
+    return f"{declared.name}:{declared.at.line}:{declared.at.column}"
+
+
+def source_of(library: Library, declared: Definition | ParameterDeclaration) -> Source:
+    """Where a definition or a parameter was written."""
+    return library.sources.get(_key(declared), Source("", ""))
 
 
 def _once(fresh: set[tuple[str, str]], kind: str, name: str, at: Position) -> None:
