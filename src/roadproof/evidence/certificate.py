@@ -6,7 +6,7 @@ every query from the instances, compares it with the file, and asks a solver tha
 """
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,8 @@ from typing import Any
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import Lemma, Site, derive_lemma_queries, derive_query
+from roadproof.evidence.finding import Outcome
+from roadproof.evidence.strict import Fields, read_json, text
 from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
@@ -78,8 +80,22 @@ def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str
 
     ``ask`` answers sat, unsat or unknown to an SMT-LIB script.
     """
+    outcome, reason = rule(certificate, library, ask)
+    return None if outcome is Outcome.ACCEPTED else reason
+
+
+def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> tuple[Outcome, str]:
+    """Whether the certificate proves its claim, and why where it does not.
+
+    Unreadable where the library does not have what the claim speaks of; undecided where ``ask`` answers
+    unknown.
+    """
     try:
         specification = library.select(certificate.set_name, certificate.options)
+        read_claim(specification, certificate.claim)
+    except RoadproofError as error:
+        return Outcome.UNREADABLE, str(error)
+    try:
         derived = certify(
             specification,
             certificate.claim,
@@ -90,20 +106,28 @@ def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str
             certificate.scenario,
         )
     except RoadproofError as error:
-        return f"the query cannot be derived: {error}"
-    if derived.assumptions != certificate.assumptions:
-        return (
-            f"the assumptions are {', '.join(derived.assumptions)}, not {', '.join(certificate.assumptions)}"
-        )
-    if derived.options != certificate.options:
-        return f"it does not name the options {_listed(derived.options)}, but {_listed(certificate.options)}"
-    if derived.queries != certificate.queries:
-        return "the stored query is not the one that claim and instances give"
+        return Outcome.REJECTED, f"the query cannot be derived: {error}"
+    difference = _difference(derived, certificate)
+    if difference:
+        return Outcome.REJECTED, difference
     for title, query in derived.queries:
         answer = ask(query)
+        if answer == "unknown":
+            return Outcome.UNDECIDED, f"the query '{title}' was answered unknown, not unsat"
         if answer != "unsat":
-            return f"the query '{title}' was answered {answer}, not unsat"
-    return None
+            return Outcome.REJECTED, f"the query '{title}' was answered {answer}, not unsat"
+    return Outcome.ACCEPTED, ""
+
+
+def _difference(derived: Certificate, stored: Certificate) -> str:
+    """What the file says otherwise than claim and instances give, or nothing."""
+    if derived.assumptions != stored.assumptions:
+        return f"the assumptions are {', '.join(derived.assumptions)}, not {', '.join(stored.assumptions)}"
+    if derived.options != stored.options:
+        return f"it does not name the options {_listed(derived.options)}, but {_listed(stored.options)}"
+    if derived.queries != stored.queries:
+        return "the stored query is not the one that claim and instances give"
+    return ""
 
 
 def _listed(options: Mapping[str, str]) -> str:
@@ -146,48 +170,77 @@ def to_json(certificate: Certificate) -> str:
 
 def read_certificate(path: Path) -> Certificate:
     """A certificate from a file. Raises ``InputError`` where it is none."""
-    try:
-        data = json.loads(path.read_text("utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path} is not JSON text: {error}") from None
-    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        raise InputError(f"{path} is no certificate: its schema must be {SCHEMA}")
-    try:
-        return _from_data(data)
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
-        raise InputError(f"{path} is a damaged certificate: {type(error).__name__} {error}") from None
+    return from_json(read_json(path), str(path))
 
 
-def _from_data(data: Mapping[str, Any]) -> Certificate:
-    if data["view"] != VIEW:
-        raise ValueError(f"view={data['view']!r}: a certificate is about {VIEW} time")
-    table = [str(text) for text in data["formulas"]]
+_FIELDS = frozenset(
+    ("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions")
+    + ("formulas", "times", "instances", "lemmas", "queries")
+)
 
-    def site(entry: list[Any]) -> Site:
-        number, sign, moment, *rest = entry
-        if sign not in ("+", "-") or number < 0:
-            raise ValueError(f"bad site {entry}")
-        return Site(table[number], sign == "+", str(moment), str(rest[0]) if rest else "")
 
-    scenario = data["scenario"]
+def from_json(content: object, where: str) -> Certificate:
+    """The inverse of ``to_json``, of parsed text. Raises ``InputError``."""
+    data = Fields(content, where, _FIELDS)
+    if data.text("schema") != SCHEMA:
+        raise InputError(f"{where} is no certificate: its schema must be {SCHEMA}")
+    if data.text("view") != VIEW:
+        raise InputError(f"{where}: view={data.text('view')!r}: a certificate is about {VIEW} time")
+    table = data.texts("formulas")
+    names = [(_site(entry[1:], table, where), text(entry[0], where)) for entry in _rows(data, "times")]
+    instances = [
+        (_site(entry[:-1], table, where), _texts(entry[-1], where)) for entry in _rows(data, "instances")
+    ]
+    for what, sites in (("times", names), ("instances", instances)):
+        if len({site for site, _ in sites}) < len(sites):
+            raise InputError(f"{where}, {what}: one quantifier is listed twice")
     return Certificate(
-        str(data["property"]),
-        None if scenario is None else int(scenario),
-        str(data["claim"]),
-        str(data["set"]),
-        {str(k): str(v) for k, v in data["options"].items()},
-        _texts(data["assumptions"]),
-        {site(entry[:-1]): _texts(entry[-1]) for entry in data["instances"]},
-        {site(entry[1:]): str(entry[0]) for entry in data["times"]},
-        tuple(
-            Lemma(tuple((str(n), bool(p)) for n, p in lemma["clause"]), _texts(lemma["at"]))
-            for lemma in data["lemmas"]
-        ),
-        tuple((str(q["title"]), "\n".join(q["smtlib"]) + "\n") for q in data["queries"]),
+        data.text("property"),
+        data.whole("scenario") if data.get("scenario") is not None else None,
+        data.text("claim"),
+        data.text("set"),
+        data.named_texts("options"),
+        data.texts("assumptions"),
+        dict(instances),
+        dict(names),
+        tuple(_lemma(entry, f"{where}, lemmas") for entry in data.items("lemmas")),
+        tuple(_query(entry, f"{where}, queries") for entry in data.items("queries")),
     )
 
 
-def _texts(items: Iterable[Any]) -> tuple[str, ...]:
-    return tuple(str(item) for item in items)
+def _rows(data: Fields, field: str) -> list[list[Any]]:
+    rows = data.items(field)
+    for row in rows:
+        if not isinstance(row, list) or len(row) not in (4, 5):
+            raise InputError(f"{data.where}, {field}: {str(row)[:60]!r} is no entry of 4 or 5 parts")
+    return rows
+
+
+def _site(entry: list[Any], table: Sequence[str], where: str) -> Site:
+    number, sign, *moments = entry
+    if type(number) is not int or not 0 <= number < len(table):
+        raise InputError(f"{where}: there is no formula number {str(number)[:20]}")
+    if sign not in ("+", "-"):
+        raise InputError(f"{where}: sign={str(sign)[:20]!r} must be + or -")
+    return Site(table[number], sign == "+", *_texts(moments, where))
+
+
+def _lemma(content: object, where: str) -> Lemma:
+    data = Fields(content, where, ("clause", "at"))
+    literals: list[tuple[str, bool]] = []
+    for literal in data.items("clause"):
+        if not isinstance(literal, list) or len(literal) != 2 or type(literal[1]) is not bool:
+            raise InputError(f"{where}: {str(literal)[:60]!r} is no pair of an atom and a truth value")
+        literals.append((text(literal[0], where), literal[1]))
+    return Lemma(tuple(literals), data.texts("at"))
+
+
+def _query(content: object, where: str) -> tuple[str, str]:
+    data = Fields(content, where, ("title", "smtlib"))
+    return data.text("title"), "\n".join(data.texts("smtlib")) + "\n"
+
+
+def _texts(items: object, where: str) -> tuple[str, ...]:
+    if not isinstance(items, list):
+        raise InputError(f"{where}: {str(items)[:60]!r} is no list")
+    return tuple(text(item, where) for item in items)

@@ -4,27 +4,29 @@ Numbers are rationals as text; null is without bound. Reading checks every field
 elaborates the formula with the library at hand and asks the exact judge, no solver.
 """
 
-import json
-import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sized
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, cast, get_args
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.files import read_limited
+from roadproof.evidence.strict import Fields, is_rational, rational, read_json, text
 from roadproof.judge.exact import Judgement, judge
 from roadproof.judge.replay import first_overlap
-from roadproof.spec.bind import bind, default_values
+from roadproof.spec.bind import bind, values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
 SCHEMA = "roadproof/drive/1"
-LARGEST_FILE = 5_000_000
-_RATIONAL = re.compile(r"-?\d{1,40}(/\d{1,40})?")
+MOST = {"lanelets": 1000, "adjacent": 1000, "vehicles": 20, "pieces": 2000}
+_FIELDS = frozenset(
+    ("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed", "parameters")
+    + ("road", "vehicles", "verdict")
+)
+_SIZES = ("length", "width", "s", "d", "v_lon", "v_lat")
 
 
 @dataclass(frozen=True)
@@ -48,10 +50,14 @@ class DriveFile:
 
 @dataclass(frozen=True)
 class Ruling:
-    """Whether the file's claim stands; ``reason`` says why where it does not."""
+    """Whether the file's claim stands; ``reason`` says why where it does not.
+
+    ``readable``: whether the library at hand has all that the claim speaks of.
+    """
 
     judgement: Judgement | None
     reason: str
+    readable: bool = True
 
     @property
     def accepted(self) -> bool:
@@ -61,14 +67,20 @@ class Ruling:
 def judge_file(file: DriveFile, library: Library) -> Ruling:
     """Judge the drive on the formula in dense and unbounded time, with no look at the file's verdict."""
     try:
-        query = read_claim(library.select(file.set_name, file.options), file.formula)
+        query = read_claim(library.select(file.set_name, file.options), file.formula, "formula")
+    except RoadproofError as error:
+        return Ruling(None, str(error), readable=False)
+    try:
         missing = set(query.lanes) - set(file.lanes)
         if missing:
             raise InputError(f"the file names no lane for {', '.join(sorted(missing))}")
+        for name, lane in file.lanes.items():
+            if lane not in file.road.lanes:
+                raise InputError(f"lane {name}={lane}: the road has {', '.join(file.road.lanes)}")
         absent = set(query.vehicles) - set(file.drive.vehicles)
         if absent:
             raise InputError(f"the file has no vehicle {', '.join(sorted(absent))}")
-        formula = bind(query.formula, file.road, file.lanes, {**default_values(library), **file.values})
+        formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
         judgement = judge(formula, file.drive)
     except RoadproofError as error:
         return Ruling(None, str(error))
@@ -132,122 +144,91 @@ def _motion_json(motion: Motion) -> dict[str, Any]:
 
 def load_drive(path: Path) -> DriveFile:
     """Read a drive file. Raises ``InputError`` naming file, field, value and rule."""
-    data = read_limited(path, LARGEST_FILE, "this is no drive file")
-    try:
-        content = json.loads(data.decode("utf-8"))
-    except (UnicodeDecodeError, ValueError, RecursionError):
-        raise InputError(f"{path} is no JSON") from None
-    return from_json(content, str(path))
+    return from_json(read_json(path), str(path))
 
 
 def from_json(content: object, where: str) -> DriveFile:
     """The inverse of ``as_json``. Raises ``InputError``."""
-    data = _Reader(content, where)
+    data = Fields(content, where, _FIELDS)
     if data.text("schema") != SCHEMA:
         raise InputError(f"{where}: schema={data.text('schema')!r}, but a drive file has {SCHEMA!r}")
-    lanes = {str(k): str(v) for k, v in data.mapping("lanes").items()} if "lanes" in data.content else {}
-    if data.content.get("lane") is not None:
-        lanes["L"] = data.text("lane")
-    values: dict[str, Fraction] = {}
-    options: dict[str, str] = {}
-    for name, value in data.mapping("parameters").items():
-        if isinstance(value, str) and _RATIONAL.fullmatch(value):
-            values[name] = _rational(value, f"{where}, parameters.{name}")
-        else:
-            options[name] = str(value)
-    scenario = data.content.get("scenario")
-    if scenario is not None and type(scenario) is not int:
-        raise InputError(f"{where}: scenario={scenario!r} is no whole number")
-    overlaps_allowed = data.content.get("overlaps_allowed", False)
-    if type(overlaps_allowed) is not bool:
-        raise InputError(f"{where}: overlaps_allowed={overlaps_allowed!r}; write true or false")
-    vehicles = {
-        str(name): _motion(entry, f"{where}, vehicle {name}")
-        for name, entry in data.mapping("vehicles").items()
-    }
     horizon = data.rational("horizon")
     if horizon < 0:
         raise InputError(f"{where}: horizon={horizon} is negative")
+    values: dict[str, Fraction] = {}
+    options: dict[str, str] = {}
+    for name, value in data.mapping("parameters").items():
+        if is_rational(value):
+            values[name] = rational(value, f"{where}, parameters.{name}")
+        else:
+            options[name] = text(value, f"{where}, parameters.{name}")
+    _few(data.mapping("vehicles"), "vehicles", where)
     return DriveFile(
-        scenario,
+        data.whole("scenario") if data.has("scenario") else None,
         data.text("set"),
         data.text("formula"),
         horizon,
-        lanes,
+        _lanes(data),
         values,
         options,
         _road(data.content.get("road"), f"{where}, road"),
-        Drive(vehicles),
-        overlaps_allowed,
+        Drive({k: _motion(v, f"{where}, vehicle {k}") for k, v in data.mapping("vehicles").items()}),
+        data.flag("overlaps_allowed") if "overlaps_allowed" in data.content else False,
     )
 
 
-class _Reader:
-    """Fields of a JSON object, each read as what it must be."""
-
-    def __init__(self, content: object, where: str) -> None:
-        if not isinstance(content, dict):
-            raise InputError(f"{where}: a JSON object is expected here")
-        self.content: dict[str, Any] = content
-        self.where = where
-
-    def _get(self, field: str) -> Any:
-        if field not in self.content:
-            raise InputError(f"{self.where}: '{field}' is missing")
-        return self.content[field]
-
-    def text(self, field: str) -> str:
-        value = self._get(field)
-        if not isinstance(value, str):
-            raise InputError(f"{self.where}: {field}={value!r} is no text")
-        return value
-
-    def mapping(self, field: str) -> dict[str, Any]:
-        value = self._get(field)
-        if not isinstance(value, dict):
-            raise InputError(f"{self.where}: '{field}' is no object")
-        return value
-
-    def items(self, field: str) -> list[Any]:
-        value = self._get(field)
-        if not isinstance(value, list):
-            raise InputError(f"{self.where}: '{field}' is no list")
-        return value
-
-    def rational(self, field: str) -> Fraction:
-        return _rational(self._get(field), f"{self.where}, {field}")
+def _few(items: Sized, what: str, where: str) -> None:
+    if len(items) > MOST[what]:
+        raise InputError(f"{where}: {len(items)} {what}, at most {MOST[what]} are read")
 
 
-def _rational(value: object, where: str) -> Fraction:
-    if not isinstance(value, str) or not _RATIONAL.fullmatch(value):
-        raise InputError(f'{where}: {str(value)[:60]!r} is no rational as text, such as "3/5"')
-    top, _, bottom = value.partition("/")
-    if bottom and int(bottom) == 0:
-        raise InputError(f"{where}: {value!r} divides by zero")
-    return Fraction(int(top), int(bottom or 1))
+def _lanes(data: Fields) -> dict[str, str]:
+    """``lane`` is what L stands for; ``lanes`` is there where there are others, and says the same of L."""
+    lane = {"L": data.text("lane")} if data.has("lane") else {}
+    if "lanes" not in data.content:
+        return lane
+    lanes = data.named_texts("lanes")
+    if lane.get("L") != lanes.get("L"):
+        raise InputError(f"{data.where}: lane={lane.get('L')}, but lanes.L={lanes.get('L')}")
+    return lanes
 
 
 def _road(content: object, where: str) -> Road:
-    data = _Reader(content, where)
+    data = Fields(content, where, ("name", "lanelets", "adjacent"))
+    _few(data.items("lanelets"), "lanelets", where)
+    _few(data.items("adjacent"), "adjacent", where)
     lanelets = tuple(_lanelet(x, f"{where}, lanelet {k + 1}") for k, x in enumerate(data.items("lanelets")))
+    ids = [lanelet.id for lanelet in lanelets]
+    twice = next((name for k, name in enumerate(ids) if name in ids[:k]), None)
+    if twice is not None:
+        raise InputError(f"{where}: two lanelets are called '{twice}'")
+    lanes = {lanelet.lane for lanelet in lanelets}
     adjacent: list[tuple[str, str]] = []
     for pair in data.items("adjacent"):
         if not isinstance(pair, list) or len(pair) != 2:
-            raise InputError(f"{where}: adjacent={pair!r} is no pair of lanes")
-        adjacent.append((str(pair[0]), str(pair[1])))
-    return Road(str(data.content.get("name", "road")), lanelets, pairs(adjacent))
+            raise InputError(f"{where}: adjacent={str(pair)[:60]!r} is no pair of lanes")
+        one, other = (text(lane, f"{where}, adjacent") for lane in pair)
+        if one == other:
+            raise InputError(f"{where}: adjacent=['{one}', '{other}']: no lane is beside itself")
+        for lane in (one, other):
+            if lane not in lanes:
+                raise InputError(f"{where}: adjacent=['{one}', '{other}']: there is no lane '{lane}'")
+        if (one, other) in adjacent or (other, one) in adjacent:
+            raise InputError(f"{where}: adjacent=['{one}', '{other}'] is given twice")
+        adjacent.append((one, other))
+    return Road(data.text("name"), lanelets, pairs(adjacent))
 
 
 def _lanelet(content: object, where: str) -> Lanelet:
-    data = _Reader(content, where)
+    data = Fields(content, where, ("id", "lane", "zone", "attribute", "s", "d"))
     zone, attribute = data.text("zone"), data.text("attribute")
     if zone not in get_args(Zone) or attribute not in get_args(Attribute):
         raise InputError(f"{where}: zone={zone!r}, attribute={attribute!r} are not of SPEC §4")
     s, d = data.items("s"), data.items("d")
     if len(s) != 2 or len(d) != 2:
         raise InputError(f"{where}: s and d are pairs")
-    bounds = tuple(None if bound is None else _rational(bound, f"{where}, s") for bound in s)
-    right, left = (_rational(bound, f"{where}, d") for bound in d)
+    bounds = tuple(None if bound is None else rational(bound, f"{where}, s") for bound in s)
+    right, left = (rational(bound, f"{where}, d") for bound in d)
     if right >= left or (bounds[0] is not None and bounds[1] is not None and bounds[0] >= bounds[1]):
         raise InputError(f"{where}: an empty lanelet")
     return Lanelet(
@@ -261,16 +242,14 @@ def _lanelet(content: object, where: str) -> Lanelet:
 
 
 def _motion(content: object, where: str) -> Motion:
-    data = _Reader(content, where)
+    data = Fields(content, where, (*_SIZES, "pieces"))
+    _few(data.items("pieces"), "pieces", where)
     pieces = []
     for k, entry in enumerate(data.items("pieces")):
-        piece = _Reader(entry, f"{where}, piece {k + 1}")
-        for_ever = piece._get("duration") is None
-        duration = None if for_ever else piece.rational("duration")
+        piece = Fields(entry, f"{where}, piece {k + 1}", ("duration", "a_lon", "a_lat"))
+        duration = None if piece.get("duration") is None else piece.rational("duration")
         pieces.append(Piece(duration, piece.rational("a_lon"), piece.rational("a_lat")))
-    length, width, s, d, v_lon, v_lat = (
-        data.rational(name) for name in ("length", "width", "s", "d", "v_lon", "v_lat")
-    )
+    length, width, s, d, v_lon, v_lat = (data.rational(name) for name in _SIZES)
     try:
         return Motion(length, width, s, d, v_lon, v_lat, tuple(pieces))
     except ValueError as error:

@@ -263,7 +263,7 @@ BUILT_IN = frozenset(
 
 
 def is_within(bound: str, value: Fraction) -> bool:
-    """Whether a value keeps the bound that a parameter is declared with: ``>``, ``>=`` (against 0) or none."""
+    """Whether a value keeps a declared bound: ``>``, ``>=`` (both against 0) or none."""
     return value > 0 if bound == ">" else value >= 0 if bound == ">=" else True
 
 

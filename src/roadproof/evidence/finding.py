@@ -1,0 +1,63 @@
+"""What comes out where evidence is checked."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from roadproof.verdict import ExitCode
+
+
+class Outcome(StrEnum):
+    """ACCEPTED: it shows what it says. UNDECIDED: the solver did not decide. UNREADABLE: nothing can be said,
+    since it is damaged, or speaks of definitions that are not at hand. FAULT: ours."""
+
+    ACCEPTED = "accepted"
+    REJECTED = "rejected"
+    UNDECIDED = "unknown"
+    UNREADABLE = "unreadable"
+    FAULT = "our fault"
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return _EXIT[self]
+
+
+_EXIT = {
+    Outcome.ACCEPTED: ExitCode.AS_EXPECTED,
+    Outcome.REJECTED: ExitCode.UNEXPECTED,
+    Outcome.UNDECIDED: ExitCode.UNKNOWN,
+    Outcome.UNREADABLE: ExitCode.BAD_INPUT,
+    Outcome.FAULT: ExitCode.OUR_FAULT,
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One claim of a file or of an index; ``reason`` says why it is not accepted.
+
+    ``verdict``, ``label`` and ``claim`` are those that the evidence itself gives. ``checked`` and
+    ``unchecked`` say in words what was looked at, and what was not.
+    """
+
+    where: str
+    kind: str
+    outcome: Outcome
+    reason: str = ""
+    verdict: str = ""
+    label: str = ""
+    claim: str = ""
+    checked: tuple[str, ...] = ()
+    unchecked: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """The finding in a line."""
+        if self.outcome is not Outcome.ACCEPTED:
+            named = f"{self.label}  " if self.label else ""
+            return f"{self.outcome:<9} {named}{self.where}: {self.reason}"
+        line = f"{self.verdict:<9} {f'{self.label}  ' if self.label else ''}{' '.join(self.claim.split())}"
+        notes = [*self.checked, *(f"not checked: {', '.join(self.unchecked)}",) * bool(self.unchecked)]
+        return line + (f"  [{'; '.join(notes)}]" if notes else "")
+
+
+def exit_code(findings: "list[Finding]") -> ExitCode:
+    """The gravest of all findings."""
+    return max((finding.outcome.exit_code for finding in findings), default=ExitCode.AS_EXPECTED)

@@ -1,0 +1,183 @@
+"""The one reader of evidence: JSON in which each field is there once, is known, and is what it must be.
+
+A file that two readers may understand differently is no evidence. Refused are: text that is not UTF-8, a key
+that is given twice or that nobody reads, NaN and Infinity, numbers of many digits, a text where a truth value
+or a number is meant and the other way round, a NUL in a text, deep nesting, large files.
+"""
+
+import json
+import math
+import re
+from collections.abc import Collection
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NoReturn
+
+from roadproof.errors import InputError
+from roadproof.files import read_limited
+
+LARGEST_EVIDENCE = 5_000_000  # bytes of a certificate or a drive file
+LARGEST_INDEX = 50_000_000  # bytes of an index, and of a journal
+DEEPEST = 40
+LONGEST_NUMBER = 30  # characters of a number in JSON; rationals are texts
+_RATIONAL = re.compile(r"-?[0-9]{1,40}(/[0-9]{1,40})?")
+_FORBIDDEN = re.compile("[\x00\ud800-\udfff]")
+
+
+def read_json(path: Path, most: int = LARGEST_EVIDENCE) -> object:
+    """What a file says. Raises ``InputError`` naming the file and the rule."""
+    data = read_limited(path, most, "evidence of that size is not read")
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: byte {error.start} is not UTF-8 text") from None
+    return parse_json(text, str(path))
+
+
+def parse_json(text: str, where: str) -> object:
+    """What a text says. Raises ``InputError`` with ``where`` in front."""
+    try:
+        content = json.loads(
+            text,
+            object_pairs_hook=lambda pairs: _object(pairs, where),
+            parse_int=lambda digits: int(_short(digits, where)),
+            parse_float=lambda digits: _finite(digits, where),
+            parse_constant=lambda name: _refuse(f"{where}: {name} is no number"),
+        )
+    except json.JSONDecodeError as error:
+        raise InputError(f"{where}: this is no JSON text: {error}") from None
+    except RecursionError:
+        raise InputError(f"{where}: it is nested deeper than {DEEPEST}") from None
+    _check(content, where)
+    return content
+
+
+def _object(pairs: list[tuple[str, Any]], where: str) -> dict[str, Any]:
+    made: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in made:
+            raise InputError(f"{where}: the key '{key[:60]}' is given twice in one object")
+        made[key] = value
+    return made
+
+
+def _short(digits: str, where: str) -> str:
+    if len(digits) > LONGEST_NUMBER:
+        raise InputError(f"{where}: a number of {len(digits)} characters; at most {LONGEST_NUMBER} are read")
+    return digits
+
+
+def _finite(digits: str, where: str) -> float:
+    value = float(_short(digits, where))
+    return value if math.isfinite(value) else _refuse(f"{where}: {digits} is no finite number")
+
+
+def _refuse(message: str) -> NoReturn:
+    raise InputError(message)
+
+
+def _check(content: object, where: str) -> None:
+    """Refuse deep nesting, and texts that no file of ours holds."""
+    level: list[object] = [content]
+    for _ in range(DEEPEST):
+        below: list[object] = []
+        for value in level:
+            if isinstance(value, dict):
+                below += value
+                below += value.values()
+            elif isinstance(value, list):
+                below += value
+            elif isinstance(value, str) and (found := _FORBIDDEN.search(value)):
+                raise InputError(f"{where}: a text holds the character U+{ord(found[0]):04X}")
+        if not below:
+            return
+        level = below
+    raise InputError(f"{where}: it is nested deeper than {DEEPEST}")
+
+
+class Fields:
+    """The fields of a JSON object, each read as what it must be; every error is an ``InputError``.
+
+    ``known`` are all fields that there may be; ``free`` ones may be there and are not read.
+    """
+
+    def __init__(self, content: object, where: str, known: Collection[str] | None = None) -> None:
+        if not isinstance(content, dict):
+            raise InputError(f"{where}: a JSON object is expected here")
+        strangers = [] if known is None else [key for key in content if key not in known]
+        if strangers:
+            raise InputError(f"{where}: nobody reads '{strangers[0][:60]}': remove it, or correct its name")
+        self.content: dict[str, Any] = content
+        self.where = where
+
+    def has(self, field: str) -> bool:
+        """Whether the field is there, and not null."""
+        return self.content.get(field) is not None
+
+    def get(self, field: str) -> Any:
+        if field not in self.content:
+            raise InputError(f"{self.where}: '{field}' is missing")
+        return self.content[field]
+
+    def text(self, field: str) -> str:
+        return text(self.get(field), f"{self.where}, {field}")
+
+    def texts(self, field: str) -> tuple[str, ...]:
+        return tuple(text(item, f"{self.where}, {field}") for item in self.items(field))
+
+    def flag(self, field: str) -> bool:
+        value = self.get(field)
+        if type(value) is not bool:
+            raise InputError(f"{self.where}: {field}={_shown(value)}; write true or false")
+        return value
+
+    def whole(self, field: str) -> int:
+        value = self.get(field)
+        if type(value) is not int:
+            raise InputError(f"{self.where}: {field}={_shown(value)} is no whole number")
+        return value
+
+    def mapping(self, field: str) -> dict[str, Any]:
+        value = self.get(field)
+        if not isinstance(value, dict):
+            raise InputError(f"{self.where}: '{field}' is no object")
+        return value
+
+    def named_texts(self, field: str) -> dict[str, str]:
+        """An object whose values are texts."""
+        return {k: text(v, f"{self.where}, {field}.{k}") for k, v in self.mapping(field).items()}
+
+    def items(self, field: str) -> list[Any]:
+        value = self.get(field)
+        if not isinstance(value, list):
+            raise InputError(f"{self.where}: '{field}' is no list")
+        return value
+
+    def rational(self, field: str) -> Fraction:
+        return rational(self.get(field), f"{self.where}, {field}")
+
+
+def text(value: object, where: str) -> str:
+    """A text. Raises ``InputError``."""
+    if not isinstance(value, str):
+        raise InputError(f"{where}: {_shown(value)} is no text")
+    return value
+
+
+def is_rational(value: object) -> bool:
+    """Whether a value is a rational as a text, such as "3/5"."""
+    return isinstance(value, str) and _RATIONAL.fullmatch(value) is not None
+
+
+def rational(value: object, where: str) -> Fraction:
+    """A rational as a text, such as "3/5". Raises ``InputError``."""
+    if not isinstance(value, str) or not is_rational(value):
+        raise InputError(f'{where}: {_shown(value)} is no rational as text, such as "3/5"')
+    top, _, bottom = value.partition("/")
+    if bottom and int(bottom) == 0:
+        raise InputError(f"{where}: {value!r} divides by zero")
+    return Fraction(int(top), int(bottom or 1))
+
+
+def _shown(value: object) -> str:
+    return repr(value)[:60]
