@@ -174,8 +174,7 @@ def read_certificate(path: Path) -> Certificate:
 
 
 _FIELDS = frozenset(
-    ("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions")
-    + ("formulas", "times", "instances", "lemmas", "queries")
+    "schema property scenario claim set options view assumptions formulas times instances lemmas queries".split()
 )
 
 

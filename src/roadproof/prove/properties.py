@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from pathlib import Path
 
@@ -40,6 +41,18 @@ def template_properties() -> list[Task]:
     tasks = [task for entry in tomllib.loads(text)["property"] for task in _tasks(entry)]
     headings = list(dict.fromkeys((task.id, task.title, task.set_name) for task in tasks))
     return sorted(tasks, key=lambda x: (headings.index((x.id, x.title, x.set_name)), x.scenario or 0))
+
+
+def find_label(claim: str, set_name: str) -> tuple[str, str, int | None] | None:
+    """Property, part and scenario of a claim in a set, where it is a template property."""
+    return _labels().get((" ".join(claim.split()), set_name))
+
+
+@cache
+def _labels() -> dict[tuple[str, str], tuple[str, str, int | None]]:
+    return {
+        (" ".join(x.claim.split()), x.set_name): (x.id, x.part, x.scenario) for x in template_properties()
+    }
 
 
 def _tasks(entry: dict[str, str | list[str]]) -> list[Task]:
