@@ -57,17 +57,8 @@ class Checker:
             outcome, reason = Outcome.REJECTED, misnamed("it", told, label)
         if outcome is Outcome.UNREADABLE:
             reason = with_hint(reason, file.claim)
-        named, checked = shown(label, file.set_name), ("for all time, roads and parameters in their bounds",)
-        return Finding(
-            str(path),
-            "certificate",
-            outcome,
-            reason,
-            "PROVED",
-            named,
-            file.claim,
-            checked if not reason else (),
-        )
+        named = shown(label, file.set_name)
+        return Finding(str(path), "certificate", outcome, reason, "PROVED", named, file.claim)
 
     def _drive(self, path: Path, content: object) -> Finding:
         file = witness.from_json(content, str(path))

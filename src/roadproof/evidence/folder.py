@@ -17,9 +17,9 @@ from roadproof.evidence.checking import without_place
 from roadproof.evidence.finding import Finding, Outcome
 from roadproof.evidence.journal import NAME as JOURNAL
 from roadproof.evidence.journal import Journal, read_journal
-from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.evidence.traces import judge_trace
 from roadproof.spec.library import Library
 
 INDEX = "index.json"
@@ -62,7 +62,9 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
             files.setdefault(path, given)
             continue
         inside, links = _walk(path)
-        problems += [Finding(str(x), "", Outcome.REJECTED, "a link is no evidence: copy the file") for x in links]
+        problems += [
+            Finding(str(x), "", Outcome.REJECTED, "a link is no evidence: copy the file") for x in links
+        ]
         homes = sorted({x.parent for x in inside if x.name in (INDEX, JOURNAL)})
         by_home = {home: _read_told(home, given, find_label) for home in homes}
         told += by_home.values()

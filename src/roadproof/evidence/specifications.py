@@ -12,9 +12,7 @@ from roadproof.evidence.strict import Fields
 from roadproof.spec.library import Library, load_library
 
 
-def read_beside(
-    data: Fields | None, folder: Path, given: Sequence[Path]
-) -> tuple[Library, tuple[Path, ...]]:
+def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tuple[Library, tuple[Path, ...]]:
     """The library with the files ``given``, and on top those that ``data`` names in its ``specs``.
 
     Raises ``InputError`` where one is not in ``folder``, or changes what is below it.

@@ -22,8 +22,9 @@ from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
 SCHEMA = "roadproof/drive/1"
 MOST = {"lanelets": 1000, "adjacent": 1000, "vehicles": 20, "pieces": 2000}
-_FIELDS = frozenset(
-    "schema scenario set formula horizon lane lanes overlaps_allowed parameters road vehicles verdict".split()
+_FIELDS = (
+    *("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed"),
+    *("parameters", "road", "vehicles", "verdict"),
 )
 _SIZES = ("length", "width", "s", "d", "v_lon", "v_lat")
 
