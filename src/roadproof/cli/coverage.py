@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.coverage_traffic import count_in_traffic
+from roadproof.cli.evidence import said_once, write_index
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -112,7 +113,8 @@ class GroupJob:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     asked, survey = _asked(args)
-    evidence = Evidence(args.out, survey)
+    said = {"set": args.set_name, "wider": list(survey.wider), **said_once(asked, args.out)}
+    evidence = Evidence(args.out, survey, SCHEMA, said)
     covered = _prove(asked, args.jobs)
     proved = all(x.verdict is Verdict.PROVED for x in covered)
     needs: list[Need] = []
@@ -125,8 +127,7 @@ def run(args: argparse.Namespace) -> int:
     broken = _broken(proved, classes, traffic)
     data = {
         "schema": SCHEMA,
-        "set": args.set_name,
-        "wider": list(survey.wider),
+        **said,
         "view": "dense",
         "verdict": str(Verdict.CROSSCHECK_FAILED)
         if broken
@@ -145,7 +146,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         write_json(data, args.json)
     if args.out is not None:
-        write_json(data, str(args.out / "index.json"))
+        write_index(args.out, data)
         if not args.no_pictures:
             evidence.draw(args.jobs)
     if args.json != "-":

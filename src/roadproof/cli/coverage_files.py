@@ -29,8 +29,8 @@ class PictureJob:
 class Evidence:
     """Answers by component; with a folder, drives and certificates are files there, beside a journal."""
 
-    def __init__(self, folder: Path | None, survey: "Survey") -> None:
-        from roadproof.analysis.journal import Journal, fingerprint
+    def __init__(self, folder: Path | None, survey: "Survey", schema: str, said: Mapping[str, Any]) -> None:
+        from roadproof.analysis.journal import Journal, Question
 
         self.folder = folder
         self.asked = survey.asked
@@ -39,8 +39,8 @@ class Evidence:
         self.shown: list[tuple[Entry, Entry]] = []
         if folder is not None:
             # Not the roads: what was decided on some of them stays so, and doubts are asked again.
-            question = {"coverage": " ".join(survey.wider), **survey.asked.question()}
-            self.journal = Journal(folder, fingerprint(survey.asked.load()[0], question))
+            question = Question(schema, said, survey.asked.question(), survey.asked.load()[0])
+            self.journal = Journal(folder, question)
             self.answers = {x["group"]: x["classes"] for x in self.journal.answers()}
 
     def has(self, group: "Group") -> bool:
@@ -90,7 +90,7 @@ class Evidence:
         for need in needs:
             drive = None if need.drive is None else self._drive(f"needed-{need.definition}.json", need.drive)
             names = {"definition": need.definition, "extends": need.parent, "verdict": str(need.verdict)}
-            entries.append({**names, "road": need.road, "drive": drive})
+            entries.append({**names, "road": need.road, "formula": need.formula, "drive": drive})
         return entries
 
     def draw(self, processes: int | None) -> None:
@@ -116,6 +116,7 @@ class Evidence:
             gaps.append(
                 {
                     "road": gap.road,
+                    "formula": gap.formula,
                     "first": gap.first,
                     "caught_by": [list(names) for names in gap.caught_by],
                     "classes": list(gap.classes),

@@ -9,8 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence import certificate, witness
-from roadproof.evidence.answers.entry import Entry, mismatch, stray_evidence
+from roadproof.evidence.answers.entry import Entry, mismatch, read_evidence, stray_evidence
 from roadproof.evidence.answers.proofs import FindLabel
 from roadproof.evidence.answers.read import faults_of, index_fields, read_index, read_record, said_of
 from roadproof.evidence.checking import without_place
@@ -183,10 +182,7 @@ def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Findin
     if finding.outcome is not Outcome.ACCEPTED:
         return replace(said, outcome=finding.outcome, reason=finding.reason)
     try:
-        content = read_json(path)
-        is_proof = finding.kind == "certificate"
-        file = (certificate if is_proof else witness).from_json(content, str(path))
-        reason = mismatch(entry, file)
+        reason = mismatch(entry, read_evidence(path))
     except RoadproofError as error:
         reason = str(error)
     if reason:

@@ -8,16 +8,18 @@ to say what its evidence says, and ``roadproof check`` checks that evidence agai
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from roadproof.errors import InputError
-from roadproof.evidence.answers.entry import evidence_name
-from roadproof.evidence.answers.read import record_fields
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers.entry import Entry, evidence_name, mismatch, read_evidence, stray_evidence
+from roadproof.evidence.answers.read import read_record, record_fields
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json
+from roadproof.evidence.traces import judge_trace
 from roadproof.files import read_limited
+from roadproof.spec.library import Library
 
 NAME = "answers.jsonl"
 SCHEMA = "roadproof/journal/1"
@@ -95,3 +97,29 @@ def _line(number: int, text: str, path: Path, fields: Sequence[str], question: s
     except InputError as error:
         return Line(number, record, str(error))
     return Line(number, record)
+
+
+def answers_of(journal: Journal, library: Library) -> Iterator[Line]:
+    """The lines with all that can be said without a solver: does each answer say what its evidence says?
+
+    Whether a drive holds and a certificate proves is for ``roadproof check``.
+    """
+    for line in journal.lines:
+        if line.record is None or line.fault:
+            yield line
+            continue
+        try:
+            entries = read_record(journal.head, line.record, library)
+            fault = next(filter(None, (_fault_of(entry, journal.path.parent) for entry in entries)), "")
+        except RoadproofError as error:
+            fault = str(error)
+        yield replace(line, fault=fault)
+
+
+def _fault_of(entry: Entry, folder: Path) -> str:
+    fault = entry.fault or stray_evidence(entry)
+    if fault or entry.shows == "nothing":
+        return fault
+    if entry.file is None:
+        return judge_trace(entry.trace, entry.common.specification, entry.claim or "", entry.where)[1]
+    return mismatch(entry, read_evidence(folder / entry.file))

@@ -1,5 +1,6 @@
 """The list of template properties, and claims that users bring."""
 
+import hashlib
 import re
 import tomllib
 from collections.abc import Sequence
@@ -12,6 +13,7 @@ from roadproof.errors import UsageError
 from roadproof.spec.library import read_specification, unknown
 from roadproof.verdict import Verdict
 
+OWN = "claim"  # the id of claims that users bring
 _RANGE = re.compile(r"\s*(\d+)\s*(?:\.\.\s*(\d+)\s*)?")
 _INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
 
@@ -30,7 +32,10 @@ class Task:
 
     @property
     def name(self) -> str:
-        """A name that no other task of the list has, fit for a file: ``P1-scenario-04-base``."""
+        """A name that no other claim has, fit for a file: ``P1-scenario-04-base``, ``claim-3f0a9c71-base``."""
+        if self.id == OWN:
+            digest = hashlib.sha256(" ".join(self.claim.split()).encode()).hexdigest()
+            return f"{OWN}-{digest[:8]}-{self.set_name}"
         middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
         return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}"
 

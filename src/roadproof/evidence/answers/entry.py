@@ -9,11 +9,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from pathlib import Path
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence import certificate, witness
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.strict import Fields, rational
+from roadproof.evidence.strict import Fields, rational, read_json
 from roadproof.evidence.witness import DriveFile
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -92,6 +94,14 @@ def evidence_name(data: Fields, field: str) -> str | None:
     if not name or "\\" in name or any(part in ("", ".", "..") for part in parts):
         raise InputError(f"{data.where}: {field}='{name[:80]}' is no file in the folder of the index")
     return name
+
+
+def read_evidence(path: Path) -> Certificate | DriveFile:
+    """A certificate or a drive file. Raises ``InputError``."""
+    content = read_json(path)
+    if Fields(content, str(path)).text("schema") == witness.SCHEMA:
+        return witness.from_json(content, str(path))
+    return certificate.from_json(content, str(path))
 
 
 def mismatch(entry: Entry, said: Certificate | DriveFile) -> str:

@@ -26,7 +26,7 @@ def _entry(line: Fields, common_of_set: Callable[[str], Common], find_label: Fin
     scenario = line.whole("scenario") if line.get("scenario") is not None else None
     told = (line.text("property"), line.text("part"), scenario)
     label = find_label(claim, set_name)
-    own = told[0] == OWN and scenario is None
+    own = told[0] == OWN and scenario is None and (not told[1] or told[1].isdecimal())
     return Entry(
         common_of_set(set_name),
         line.where,
