@@ -1,7 +1,6 @@
 """``roadproof check``: certificates and drive files, checked again without what made them."""
 
 import argparse
-from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +10,6 @@ from roadproof.cli.working import work_in_order
 
 if TYPE_CHECKING:
     from roadproof.evidence.finding import Finding
-    from roadproof.evidence.folder import Survey
 
 SUMMARY = "check certificates and drive files again, without the programs that made them"
 SCHEMA = "roadproof/check/2"
@@ -64,35 +62,25 @@ class Job:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.evidence.finding import Outcome, exit_code
+    from roadproof.evidence.finding import Outcome, exit_code, summary
     from roadproof.evidence.folder import conclude, survey
     from roadproof.prove.properties import find_label
     from roadproof.solve.smt import ask
 
-    ask("(check-sat)", args.solver)  # a solver that is missing is said once, before any work
+    ask("(set-logic QF_UF)(check-sat)", args.solver)  # a solver that is missing is said once, before any work
     surveyed = survey(args.paths, tuple(args.specs), find_label)
     jobs = [Job(path, specs, args.solver, args.timeout) for path, specs in surveyed.files.items()]
     found = dict(zip(surveyed.files, work_in_order(examine, jobs, args.jobs), strict=True))
     findings = list(conclude(surveyed, found))
     if args.json != "-":
-        _print(surveyed, findings, args.solver)
+        for path in (path for told in surveyed.told for path in told.specs):
+            print(f"read with {path}")
+        print("\n".join(map(str, findings)))
+        print(summary(findings, args.solver))
     if args.json:
         entries = [{**asdict(x), "accepted": x.outcome is Outcome.ACCEPTED} for x in findings]
         write_json({"schema": SCHEMA, "solver": args.solver, "findings": entries}, args.json)
     return exit_code(findings)
-
-
-def _print(surveyed: "Survey", findings: "Sequence[Finding]", solver: str) -> None:
-    from roadproof.evidence.finding import Outcome
-
-    for path in (path for told in surveyed.told for path in told.specs):
-        print(f"read with {path}")
-    for finding in findings:
-        print(finding)
-    accepted = sum(finding.outcome is Outcome.ACCEPTED for finding in findings)
-    others: Mapping[Outcome, int] = {x: sum(y.outcome is x for y in findings) for x in list(Outcome)[1:]}
-    told = "".join(f", {count} {outcome}" for outcome, count in others.items() if count)
-    print(f"{accepted} of {len(findings)} accepted by {solver} and the exact judge{told}")
 
 
 def examine(job: Job) -> "Finding":

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.coverage_traffic import count_in_traffic
-from roadproof.cli.evidence import said_once, write_index
+from roadproof.cli.evidence import write_index
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -113,8 +113,7 @@ class GroupJob:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     asked, survey = _asked(args)
-    said = {"set": args.set_name, "wider": list(survey.wider), **said_once(asked, args.out)}
-    evidence = Evidence(args.out, survey, SCHEMA, said)
+    evidence = Evidence(args.out, survey)
     covered = _prove(asked, args.jobs)
     proved = all(x.verdict is Verdict.PROVED for x in covered)
     needs: list[Need] = []
@@ -127,7 +126,7 @@ def run(args: argparse.Namespace) -> int:
     broken = _broken(proved, classes, traffic)
     data = {
         "schema": SCHEMA,
-        **said,
+        **evidence.said,
         "view": "dense",
         "verdict": str(Verdict.CROSSCHECK_FAILED)
         if broken

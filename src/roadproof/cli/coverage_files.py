@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.evidence import said_once
 from roadproof.cli.options import json_text, write_text
 from roadproof.cli.working import work
 
@@ -29,17 +30,20 @@ class PictureJob:
 class Evidence:
     """Answers by component; with a folder, drives and certificates are files there, beside a journal."""
 
-    def __init__(self, folder: Path | None, survey: "Survey", schema: str, said: Mapping[str, Any]) -> None:
+    def __init__(self, folder: Path | None, survey: "Survey") -> None:
         from roadproof.analysis.journal import Journal, Question
+        from roadproof.evidence.answers.coverage import SCHEMA
 
         self.folder = folder
         self.asked = survey.asked
+        names = {"set": survey.asked.sets[0], "wider": list(survey.wider)}
+        self.said: Entry = {**names, **said_once(survey.asked, folder)}
         self.answers: dict[str, list[Entry]] = {}
         self.journal: Journal | None = None
         self.shown: list[tuple[Entry, Entry]] = []
         if folder is not None:
             # Not the roads: what was decided on some of them stays so, and doubts are asked again.
-            question = Question(schema, said, survey.asked.question(), survey.asked.load()[0])
+            question = Question(SCHEMA, self.said, survey.asked.question(), survey.asked.load()[0])
             self.journal = Journal(folder, question)
             self.answers = {x["group"]: x["classes"] for x in self.journal.answers()}
 

@@ -13,7 +13,7 @@ from roadproof.evidence.answers.entry import Entry, mismatch, read_evidence, str
 from roadproof.evidence.answers.proofs import FindLabel
 from roadproof.evidence.answers.read import faults_of, index_fields, read_index, read_record, said_of
 from roadproof.evidence.checking import without_place
-from roadproof.evidence.finding import Finding, Outcome
+from roadproof.evidence.finding import NO_EVIDENCE, Finding, Outcome
 from roadproof.evidence.journal import NAME as JOURNAL
 from roadproof.evidence.journal import Journal, read_journal
 from roadproof.evidence.specifications import read_beside
@@ -164,16 +164,19 @@ def conclude(surveyed: Survey, found: Mapping[Path, Finding]) -> Iterator[Findin
 
 def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     """The entry's own words, where its evidence shows them."""
-    said = Finding(entry.where, "index", Outcome.ACCEPTED, "", entry.verdict, entry.label, entry.claim or "")
+    verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
+    said = Finding(entry.where, "index", Outcome.ACCEPTED, "", verdict, entry.label, entry.claim or "")
     rejected = replace(said, outcome=Outcome.REJECTED)
     reason = entry.fault or stray_evidence(entry)
     if reason:
         return replace(rejected, reason=reason)
     if entry.shows == "nothing":
-        return replace(said, unchecked=entry.unchecked)
+        return replace(said, kind=NO_EVIDENCE, unchecked=entry.unchecked)
     if entry.file is None:
         outcome, reason = judge_trace(entry.trace, entry.common.specification, entry.claim or "", entry.where)
-        return replace(said, outcome=outcome, reason=reason, checked=() if reason else ("a judged trace",))
+        return replace(
+            said, outcome=outcome, reason=reason, checked=() if reason else ("judged on its trace",)
+        )
     path = told.folder / entry.file
     if entry.file not in told.named or path not in found:
         return replace(rejected, reason=f"{entry.file} is not there, or another index is about it")
