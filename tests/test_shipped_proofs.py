@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from roadproof.cli.check import Job, examine
+from roadproof.effort import Effort
 from roadproof.evidence.certificate import read_certificate
+from roadproof.evidence.finding import Outcome
 from roadproof.prove.properties import template_properties
 from roadproof.verdict import Verdict
 
@@ -61,6 +63,8 @@ def pool() -> Iterator[ProcessPoolExecutor]:
 def test_all_evidence_is_accepted(solver: str, pool: ProcessPoolExecutor) -> None:
     if solver == "cvc5":
         pytest.importorskip("cvc5", reason="cvc5 is not installed: pip install roadproof[cvc5]")
-    jobs = [Job(path, (), solver, 60.0) for path in EVIDENCE]
-    rejected = [finding for finding in pool.map(examine, jobs, chunksize=8) if not finding.accepted]
+    jobs = [Job(path, (), solver, Effort()) for path in EVIDENCE]
+    rejected = [
+        finding for finding in pool.map(examine, jobs, chunksize=8) if finding.outcome is not Outcome.ACCEPTED
+    ]
     assert not rejected

@@ -1,84 +1,129 @@
 """Answers kept as they come, so that a run that was broken off goes on where it was.
 
-A folder holds the evidence files of the answers (certificates and drives) and ``answers.jsonl``: a first
-line that says what was asked, then a line for each answer with the names of its files.
+A folder holds the evidence files of the answers (certificates and drives) and ``answers.jsonl``, a journal as
+``evidence/journal.py`` reads it. An answer counts again only where its seal holds and it says what its
+evidence says; others are told of, and asked again.
 """
 
 import hashlib
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError, UsageError
+from roadproof.evidence.journal import NAME, answers_of, head_of, read_journal, seal_of
+from roadproof.files import make_folder, write_whole
 from roadproof.spec.library import Library
 
-NAME = "answers.jsonl"
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked: ``schema`` is that of the index, ``said`` what the index says once for all answers.
+
+    ``more`` is what else an answer depends on.
+    """
+
+    schema: str
+    said: Mapping[str, Any]
+    more: Mapping[str, str]
+    library: Library
+
+    @property
+    def fingerprint(self) -> str:
+        """A short text that changes with the question, with all that the library says, with the version."""
+        asked = json.dumps([self.schema, dict(self.said), dict(self.more)], sort_keys=True)
+        library = [
+            repr(sorted(getattr(self.library, part.name).items()))
+            for part in fields(self.library)
+            if part.name != "sources"
+        ]
+        texts = [version("roadproof"), asked, *library]
+        return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
 
 
-def fingerprint(library: Library, question: Mapping[str, str]) -> str:
-    """A short text that changes with the question and with any text of the library."""
-    texts = sorted({source.text for source in library.sources.values()})
-    return hashlib.sha256(json.dumps([dict(question), texts], sort_keys=True).encode()).hexdigest()[:16]
+def on_stderr(text: str) -> None:
+    import sys
+
+    print(text, file=sys.stderr, flush=True)
 
 
 class Journal:
     """The answers to one question in a folder; raises ``UsageError`` where it holds another's."""
 
-    def __init__(self, folder: Path, question: str) -> None:
+    def __init__(self, folder: Path, question: Question) -> None:
         self.folder = folder
         self.path = folder / NAME
-        self.question = question
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            if not self.path.exists():
-                self._append({"question": question})
-        except OSError as error:
-            raise InputError(
-                f"cannot write into {folder}: {error.strerror}; name another folder with --out"
-            ) from None
+        self.question = question.fingerprint
+        self.library = question.library
+        self.head = head_of(question.schema, self.question, question.said)
+        make_folder(folder)
+        if not self.path.exists():
+            self._write([self.head])
 
-    def answers(self) -> list[dict[str, Any]]:
-        """The answers whose evidence files are all still there; a last line cut short is left out.
+    def answers(self, say: Callable[[str], None] = on_stderr) -> list[dict[str, Any]]:
+        """The answers that count; those that do not are told of by ``say``, and removed.
 
-        An answer without evidence is a doubt, to be asked again.
+        An answer without evidence is a doubt, to be asked again. A last line cut short is left out.
         """
+        kept: list[dict[str, Any]] = []
         try:
-            lines = self.path.read_text("utf-8").splitlines()
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"cannot read {self.path}: {error}") from None
-        entries = [entry for line in lines if (entry := _parsed(line)) is not None]
-        if not entries or entries[0].get("question") != self.question:
+            journal = read_journal(self.path)
+        except InputError as error:
+            raise UsageError(f"{error}: name another folder with --out, or remove {self.path}") from None
+        if journal.head.content != self.head:
             raise UsageError(
                 f"{self.folder} holds the answers to another question, or to this one under another library: "
                 f"name another folder with --out, or remove {self.path}"
             )
-        return [e for e in entries[1:] if e.get("evidence") and self._all_there(e["evidence"])]
+        for line in answers_of(journal, self.library):
+            if line.fault:
+                say(f"asked again, since a kept answer does not count: {line.fault}")
+            elif line.record is not None and line.record.items("evidence"):
+                kept.append(line.record.content)
+        self._write([self.head, *kept])
+        return [self._with_paths(record, set(record["evidence"])) for record in kept]
 
     def add(self, answer: Mapping[str, Any]) -> None:
-        """Append one answer; the files that ``evidence`` names have been written before."""
-        self._append(answer)
-
-    def _all_there(self, names: Sequence[str]) -> bool:
-        return all((self.folder / name).is_file() for name in names)
-
-    def _append(self, entry: Mapping[str, Any]) -> None:
-        torn = self.path.exists() and self.path.stat().st_size > 0 and not self._ends_well()
+        """Append one answer under its seal; the files that ``evidence`` names have been written before."""
+        record = inside(dict(answer), self.folder)
+        record["seal"] = seal_of(record, self.question, self.folder)
         with self.path.open("a", encoding="utf-8") as file:
-            file.write(("\n" if torn else "") + json.dumps(entry, ensure_ascii=False) + "\n")
+            file.write(_line(record))
             file.flush()
             os.fsync(file.fileno())
 
-    def _ends_well(self) -> bool:
-        with self.path.open("rb") as file:
-            file.seek(-1, os.SEEK_END)
-            return file.read(1) == b"\n"
+    def _write(self, records: list[dict[str, Any]]) -> None:
+        write_whole(self.path, "".join(map(_line, records)).encode())
+
+    def _with_paths(self, data: Any, names: set[str]) -> Any:
+        """``data`` with the names of evidence files as paths from here."""
+        match data:
+            case dict():
+                return {k: v if k == "evidence" else self._with_paths(v, names) for k, v in data.items()}
+            case list():
+                return [self._with_paths(item, names) for item in data]
+            case str() if data in names:
+                return str(self.folder / data)
+            case _:
+                return data
 
 
-def _parsed(line: str) -> dict[str, Any] | None:
-    try:
-        entry = json.loads(line)
-    except ValueError:
-        return None
-    return entry if isinstance(entry, dict) else None
+def inside(data: Any, folder: Path) -> Any:
+    """``data`` with paths into ``folder`` as they are from there, so that the folder may be moved."""
+    match data:
+        case dict():
+            return {key: inside(value, folder) for key, value in data.items()}
+        case list():
+            return [inside(item, folder) for item in data]
+        case str() if data.startswith(f"{folder}{os.sep}"):
+            return Path(data).relative_to(folder).as_posix()
+        case _:
+            return data
+
+
+def _line(record: Mapping[str, Any]) -> str:
+    return json.dumps(record, ensure_ascii=False) + "\n"

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from roadproof.errors import InputError
-from roadproof.evidence.witness import DriveFile, Ruling, as_json, from_json, judge_file
+from roadproof.evidence.witness import DriveFile, Ruling, as_json, from_json, judge_file, times_data
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
@@ -67,10 +67,7 @@ def as_data(file: DriveFile, ruling: Ruling) -> dict[str, Any]:
     """A judged file as plain data, with what is true when."""
     assert ruling.accepted
     assert ruling.judgement is not None
-    times = [
-        {"formula": f"{part.name}({', '.join(part.arguments)})", "true": str(truth)}
-        for part, truth in ruling.judgement.named()
-    ]
+    times = times_data(ruling.judgement)
     return as_json(file, {"verdict": str(Verdict.WITNESSED), "view": "dense", "times": times})
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.evidence import keep_specifications, write_index
 from roadproof.cli.options import json_text, write_json, write_text
 from roadproof.files import make_folder, write_whole
 
@@ -73,8 +74,9 @@ def as_data(answers: Answers, folder: Path | None, seconds: float) -> tuple[dict
         "schema": SCHEMA,
         "set": answers.specification.set_name,
         "options": dict(answers.specification.options),
+        "parameters": {name: str(value) for name, value in sorted(answers.asked.values.items())},
         "scenarios": sorted(number for group in answers.classes.plan.groups for number in group.rows),
-        "specs": [FILE_NAME],
+        "specs": [*keep_specifications(folder, answers.asked.specs), FILE_NAME],
         "view": "dense",
         "text": answers.text,
         "classes": [{**entry, "drive": drive_of(one)} for one, entry in _classes(answers)],
@@ -165,7 +167,7 @@ def write(
             title = f"Classes of scenarios of set {data['set']}"
             for kind, picture in draw_classes(data, title).items():
                 write_whole(folder / f"classes.{kind}", picture)
-        write_json(data, str(folder / "index.json"))
+        write_index(folder, data)
     if args.json:
         write_json(data, args.json)
 

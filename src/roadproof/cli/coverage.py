@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.coverage_traffic import count_in_traffic
+from roadproof.cli.evidence import write_index
 from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
@@ -120,8 +121,7 @@ def run(args: argparse.Namespace) -> int:
     broken = _broken(proved, classes, traffic)
     data = {
         "schema": SCHEMA,
-        "set": args.set_name,
-        "wider": list(survey.wider),
+        **evidence.said,
         "view": "dense",
         "verdict": str(Verdict.CROSSCHECK_FAILED)
         if broken
@@ -140,7 +140,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         write_json(data, args.json)
     if args.out is not None:
-        write_json(data, str(args.out / "index.json"))
+        write_index(args.out, data)
         if not args.no_pictures:
             evidence.draw(args.jobs)
     if args.json != "-":

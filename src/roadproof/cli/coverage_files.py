@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.cli.evidence import said_once
 from roadproof.cli.options import json_text, write_text
 from roadproof.cli.working import work
 
@@ -30,17 +31,20 @@ class Evidence:
     """Answers by component; with a folder, drives and certificates are files there, beside a journal."""
 
     def __init__(self, folder: Path | None, survey: "Survey") -> None:
-        from roadproof.analysis.journal import Journal, fingerprint
+        from roadproof.analysis.journal import Journal, Question
+        from roadproof.evidence.answers.coverage import SCHEMA
 
         self.folder = folder
         self.asked = survey.asked
+        names = {"set": survey.asked.sets[0], "wider": list(survey.wider)}
+        self.said: Entry = {**names, **said_once(survey.asked, folder)}
         self.answers: dict[str, list[Entry]] = {}
         self.journal: Journal | None = None
         self.shown: list[tuple[Entry, Entry]] = []
         if folder is not None:
             # Not the roads: what was decided on some of them stays so, and doubts are asked again.
-            question = {"coverage": " ".join(survey.wider), **survey.asked.question()}
-            self.journal = Journal(folder, fingerprint(survey.asked.load()[0], question))
+            question = Question(SCHEMA, self.said, survey.asked.question(), survey.asked.load()[0])
+            self.journal = Journal(folder, question)
             self.answers = {x["group"]: x["classes"] for x in self.journal.answers()}
 
     def has(self, group: "Group") -> bool:
@@ -90,7 +94,7 @@ class Evidence:
         for need in needs:
             drive = None if need.drive is None else self._drive(f"needed-{need.definition}.json", need.drive)
             names = {"definition": need.definition, "extends": need.parent, "verdict": str(need.verdict)}
-            entries.append({**names, "road": need.road, "drive": drive})
+            entries.append({**names, "road": need.road, "formula": need.formula, "drive": drive})
         return entries
 
     def draw(self, processes: int | None) -> None:
@@ -116,6 +120,7 @@ class Evidence:
             gaps.append(
                 {
                     "road": gap.road,
+                    "formula": gap.formula,
                     "first": gap.first,
                     "caught_by": [list(names) for names in gap.caught_by],
                     "classes": list(gap.classes),

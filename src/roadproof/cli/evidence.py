@@ -1,14 +1,16 @@
 """Where evidence goes: files in a folder that a journal keeps, or inside the answer where there is none."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import json_text, write_text
+from roadproof.cli.options import json_text, write_json, write_text
+from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
     from roadproof.analysis.journal import Journal
+    from roadproof.analysis.overlap import Asked
 
 
 def evidence_folder(out: Path | None, target: str | None) -> Path | None:
@@ -17,6 +19,38 @@ def evidence_folder(out: Path | None, target: str | None) -> Path | None:
         path = Path(str(target))
         return path.with_name(f"{path.stem}-evidence")
     return out
+
+
+def keep_specifications(folder: Path | None, specs: Sequence[Path]) -> list[str]:
+    """The names of specification files, with copies in a folder of evidence: ``check`` reads them there."""
+    from roadproof.files import write_whole
+    from roadproof.spec.library import read_specification
+
+    names = [path.name for path in specs]
+    if len(set(names)) < len(names):
+        raise UsageError(f"two files of --spec have the same name: {', '.join(map(str, specs))}")
+    if folder is not None:
+        for path in specs:
+            write_whole(folder / path.name, read_specification(path).text.encode("utf-8"))
+    return names
+
+
+def said_once(asked: "Asked", folder: Path | None) -> dict[str, Any]:
+    """What an index says of all its answers: readings, values of parameters, specification files."""
+    _, specification = asked.load()
+    values = {name: str(value) for name, value in sorted(asked.values.items())}
+    return {
+        "options": dict(specification.options),
+        "parameters": values,
+        "specs": keep_specifications(folder, asked.specs),
+    }
+
+
+def write_index(folder: Path, data: Mapping[str, Any]) -> None:
+    """The index of a folder; files in it are named as they are from there."""
+    from roadproof.analysis.journal import inside
+
+    write_json(inside(dict(data), folder), str(folder / "index.json"))
 
 
 class Evidence:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.evidence import evidence_folder
+from roadproof.cli.evidence import evidence_folder, keep_specifications, write_index
 from roadproof.cli.explore_files import draw_all, with_evidence
 from roadproof.cli.explore_options import read_knobs, read_precision, read_steps
 from roadproof.cli.numbers import whole
@@ -106,14 +106,27 @@ def run(args: argparse.Namespace) -> int:
             clear()
             print(as_text(data), flush=True)
     seconds = round(time.monotonic() - begun, 1)
-    whole = {"schema": SCHEMA, "view": "dense", "seconds": seconds, "explored": explored}
+    whole = {"schema": SCHEMA, **_said_once(jobs[0], folder), "view": "dense", "seconds": seconds}
+    whole["explored"] = explored
     if args.json:
         write_json(whole, args.json)
-    if args.out is not None:
-        write_json(whole, str(args.out / "index.json"))
-        if not args.no_pictures:
-            draw_all(explored, args.out, library)
+    if folder is not None:
+        write_index(folder, whole)
+    if args.out is not None and not args.no_pictures:
+        draw_all(explored, args.out, library)
     return exit_code((verdict, verdict) for data in explored for verdict in _verdicts(data))
+
+
+def _said_once(job: Job, folder: Path | None) -> dict[str, Any]:
+    """What the index says of all findings; the values of what is varied are those of each finding."""
+    request = job.asked.request
+    varied = {knob.name for knob in job.asked.knobs}
+    values = {name: str(value) for name, value in sorted(request.values.items()) if name not in varied}
+    return {
+        "options": dict(request.options),
+        "parameters": values,
+        "specs": keep_specifications(folder, request.specs),
+    }
 
 
 def _jobs(args: argparse.Namespace, library: "Library") -> list[Job]:

@@ -9,7 +9,7 @@ from itertools import permutations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.evidence import Evidence, read_drive
+from roadproof.cli.evidence import Evidence, read_drive, said_once, write_index
 from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
@@ -68,8 +68,9 @@ class Job:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     asked, kinds = _asked(args)
-    answers = _settle(asked, kinds, args.out, args.jobs)
-    data = _as_data(asked, kinds, answers)
+    said = {"sets": list(asked.sets), **said_once(asked, args.out)}
+    answers = _settle(asked, kinds, args.out, said, args.jobs)
+    data = _as_data(asked, said, kinds, answers)
     data["seconds"] = round(time.monotonic() - begun, 1)
     if args.json:
         write_json(data, args.json)
@@ -102,21 +103,25 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
 
 
 def _settle(
-    asked: "Asked", kinds: "tuple[Kind, ...]", folder: Path | None, processes: int | None
+    asked: "Asked",
+    kinds: "tuple[Kind, ...]",
+    folder: Path | None,
+    said: Mapping[str, Any],
+    processes: int | None,
 ) -> list[dict[str, Any]]:
     """The answers for every family of kinds; those that a journal holds are not asked again.
 
     Doubts are left to the end, when the drives of all families are there to settle them.
     """
-    from roadproof.analysis.journal import Journal, fingerprint
+    from roadproof.analysis.journal import Journal, Question
     from roadproof.analysis.order.deciding import settle_doubts
     from roadproof.analysis.order.kinds import families_of
 
     families = {str(family[0].node): family for family in families_of(kinds)}
     journal = None
     if folder is not None:
-        question = {"order": " ".join(str(kind.node) for kind in kinds), **asked.question()}
-        journal = Journal(folder, fingerprint(asked.load()[0], question))
+        more = {"order": " ".join(str(kind.node) for kind in kinds), **asked.question()}
+        journal = Journal(folder, Question(SCHEMA, said, more, asked.load()[0]))
     known = {x["family"]: x for x in (journal.answers() if journal is not None else [])}
     jobs = [Job(asked, kinds, family) for name, family in families.items() if name not in known]
     doubtful: dict[str, Decided] = {}
@@ -173,7 +178,10 @@ def _file(node: "Node") -> str:
 
 
 def _as_data(
-    asked: "Asked", kinds: "tuple[Kind, ...]", answers: Sequence[Mapping[str, Any]]
+    asked: "Asked",
+    said: Mapping[str, Any],
+    kinds: "tuple[Kind, ...]",
+    answers: Sequence[Mapping[str, Any]],
 ) -> dict[str, Any]:
     """All answers together: the edges of the Hasse diagram, and for the other pairs what refutes them."""
     from roadproof.analysis.order.relation import reachable, transitive_reduction
@@ -194,7 +202,7 @@ def _as_data(
     reduced = transitive_reduction(pairs)
     return {
         "schema": SCHEMA,
-        "sets": list(asked.sets),
+        **said,
         "view": "dense",
         "kinds": [[str(node) for node in kind.nodes] for kind in kinds],
         "proved": proved,
@@ -230,7 +238,7 @@ def _write_pictures(data: Mapping[str, Any], folder: Path, pictures: bool) -> No
     from roadproof.files import write_whole
     from roadproof.report.order import as_dot, draw_order
 
-    write_json(data, str(folder / "index.json"))
+    write_index(folder, data)
     write_text(folder / "order.dot", as_dot(data["kinds"], data["edges"]))
     if pictures:
         title = f"implications in {', '.join(data['sets'])}; an arrow leads to what is implied"

@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.evidence import Evidence, evidence_folder
+from roadproof.cli.evidence import Evidence, evidence_folder, said_once, write_index
 from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
@@ -80,17 +80,19 @@ def run(args: argparse.Namespace) -> int:
     asked, pairs = _asked(args)
     question = {"lanes": args.lanes, "roles": args.roles, "start": args.start}
     folder = evidence_folder(args.out, args.json)
-    verdicts = _settle(asked, pairs, folder, args.jobs)
+    said = {"set": ",".join(asked.sets), **question, **said_once(asked, folder)}
+    verdicts = _settle(asked, pairs, folder, said, args.jobs)
     data = {
         "schema": SCHEMA,
-        "set": ",".join(asked.sets),
-        **question,
+        **said,
         "view": "dense",
         "seconds": round(time.monotonic() - begun, 2),
         "verdicts": verdicts,
     }
     if args.json:
         write_json(data, args.json)
+    if folder is not None:
+        write_index(folder, data)
     if args.out is not None:
         _write(data, args.out, len(asked.sets) > 1, not args.no_pictures)
     if args.json != "-":
@@ -130,16 +132,21 @@ def _horizon(args: argparse.Namespace) -> Fraction:
 
 
 def _settle(
-    asked: "Asked", pairs: "Sequence[Pair]", folder: Path | None, processes: int | None
+    asked: "Asked",
+    pairs: "Sequence[Pair]",
+    folder: Path | None,
+    said: Mapping[str, Any],
+    processes: int | None,
 ) -> list[dict[str, Any]]:
     """All verdicts in the order of ``pairs``; those that a journal holds are not asked again."""
-    from roadproof.analysis.journal import Journal, fingerprint
+    from roadproof.analysis.journal import Journal, Question
     from roadproof.analysis.overlap import groups_of
 
     def key(x: Mapping[str, Any]) -> tuple[int, str, int, str]:
         return x["a"], x["set_a"], x["b"], x["set_b"]
 
-    journal = Journal(folder, fingerprint(asked.load()[0], asked.question())) if folder is not None else None
+    question = Question(SCHEMA, said, asked.question(), asked.load()[0])
+    journal = Journal(folder, question) if folder is not None else None
     known = {key(x["verdict"]): x["verdict"] for x in (journal.answers() if journal is not None else [])}
     wanted = [(a.number, a.set_name, b.number, b.set_name) for a, b in pairs]
     left = [pair for pair, name in zip(pairs, wanted, strict=True) if name not in known]
@@ -214,7 +221,6 @@ def _write(data: Mapping[str, Any], folder: Path, across: bool, pictures: bool) 
     from roadproof.files import write_whole
     from roadproof.report.overlap import as_csv, draw_overlap
 
-    write_json(data, str(folder / "index.json"))
     write_text(folder / "overlap.csv", as_csv(data["verdicts"]))
     if pictures:
         title = f"set {data['set']}: lanes {data['lanes']}, roles {data['roles']}, start {data['start']}"

@@ -4,7 +4,6 @@ import argparse
 import re
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
@@ -14,18 +13,14 @@ from roadproof.cli.options import (
     load_library_of,
     read_seconds,
     write_json,
-    write_text,
 )
 from roadproof.cli.progress import clear
-from roadproof.cli.prove_answers import as_data, counterexample, details, line, table
+from roadproof.cli.prove_answers import as_data, details, line, table
+from roadproof.cli.prove_files import ProofFolder
 from roadproof.cli.prove_settle import Bounded, Job, Settled, settle, undecided
 from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import UsageError
-from roadproof.files import make_folder
 from roadproof.verdict import Verdict, exit_code
-
-if TYPE_CHECKING:
-    pass
 
 SUMMARY = "prove claims for all time, or refute them; without a claim, the template properties"
 SCHEMA = "roadproof/verdicts/1"
@@ -82,25 +77,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     jobs = _jobs(args)
-    if args.out is not None:
-        make_folder(args.out)
+    folder = None if args.out is None else ProofFolder(args.out, jobs[0].options, args.specs)
     own = not jobs[0].task.title
     settled: list[Settled] = []
-    files: dict[str, str] = {}
     for answer in work_in_order(settle, jobs, args.jobs, "claims", undecided):
         settled.append(answer)
-        if args.out is not None:
-            files |= _write_evidence(answer, args.out)
+        if folder is not None:
+            folder.add(answer)
         if args.json != "-" and (own or args.verbose):
             clear()
             print(details(answer) if own else line(answer), flush=True)
-    if args.out is not None:
-        index = [_index_entry(s, files.get(s.task.name)) for s in settled]
-        write_json({"schema": "roadproof/index/1", "claims": index}, str(args.out / "index.json"))
     if args.json != "-" and not own:
         print(table(settled))
         print(f"{len(settled)} claims in {time.monotonic() - begun:.1f} s")
     if args.json:
+        files = {} if folder is None else folder.files
         verdicts = [as_data(s, files.get(s.task.name)) for s in settled]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
     return exit_code((s.verdict, s.task.expected) for s in settled)
@@ -145,37 +136,3 @@ def _jobs(args: argparse.Namespace) -> list[Job]:
         raise UsageError(f"none of {', '.join(named)} is stated for set={args.set_name}: leave out --set")
     seek_drive, effort = not args.no_drive, read_effort(args)
     return [Job(task, tuple(args.specs), options, effort, seek_drive, bounded) for task in tasks]
-
-
-# --- files ---------------------------------------------------------------------------------------
-
-
-def _write_evidence(settled: Settled, folder: Path) -> dict[str, str]:
-    """The certificate, or else the refuting drive, as a file; its path by task name."""
-    from roadproof.evidence.certificate import to_json
-
-    name = settled.task.name
-    if settled.result.certificate is not None:
-        path = folder / f"{name}.json"
-        write_text(path, to_json(settled.result.certificate))
-    elif settled.drive is not None:
-        path = folder / f"{name}-drive.json"
-        write_json(settled.drive, str(path))
-    else:
-        return {}
-    return {name: str(path)}
-
-
-def _index_entry(settled: Settled, file: str | None) -> dict[str, Any]:
-    """What was asked and answered, and where the evidence is: a file beside the index, or in it."""
-    task = settled.task
-    entry = {
-        "property": task.id,
-        "part": task.part,
-        "scenario": task.scenario,
-        "set": task.set_name,
-        "claim": task.claim,
-        "verdict": str(settled.verdict),
-        "evidence": None if file is None else Path(file).name,
-    }
-    return entry if file is not None else {**entry, "counterexample": counterexample(settled)}

@@ -73,7 +73,7 @@ def settle(job: Job) -> Settled:
 
         seconds = time.monotonic() - begun
         result = Result(job.task.claim, job.task.set_name, Verdict.UNKNOWN, str(late), seconds)
-        return Settled(job.task, result, None, job.bounded is not None)
+        return Settled(job.task, result, None, bounded=job.bounded is not None)
 
 
 def _settle(job: Job) -> Settled:
@@ -131,7 +131,7 @@ def _settle_bounded(job: Job, bounded: Bounded) -> Settled:
     seconds = time.monotonic() - begun
     result = Result(job.task.claim, job.task.set_name, found.verdict, found.reason, seconds)
     limits = None if found.limits is None else found.limits.as_json()
-    return Settled(replace(job.task, expected=expected), result, found.drive, limits, True)
+    return Settled(replace(job.task, expected=expected), result, found.drive, limits, bounded=True)
 
 
 def _refuting_drive(job: Job) -> Mapping[str, Any] | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.evidence import Evidence, read_drive
+from roadproof.cli.evidence import Evidence, read_drive, said_once, write_index
 from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
     add_json_option,
@@ -68,10 +68,11 @@ class Job:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     asked, numbers = _asked(args)
-    verdicts = _settle(asked, numbers, args.whole, args.out, args.jobs)
+    said = {"set": args.set_name, **said_once(asked, args.out)}
+    verdicts = _settle(asked, numbers, args.whole, args.out, said, args.jobs)
     data = {
         "schema": SCHEMA,
-        "set": args.set_name,
+        **said,
         "view": "dense",
         "seconds": round(time.monotonic() - begun, 1),
         "verdicts": verdicts,
@@ -79,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         write_json(data, args.json)
     if args.out is not None:
-        write_json(data, str(args.out / "index.json"))
+        write_index(args.out, data)
     if args.json != "-":
         _print(verdicts, time.monotonic() - begun)
     doubt = any(x["verdict"] == Verdict.UNKNOWN for x in verdicts)
@@ -105,13 +106,18 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[int, ...]]":
 
 
 def _settle(
-    asked: "Asked", numbers: Sequence[int], whole: bool, folder: Path | None, processes: int | None
+    asked: "Asked",
+    numbers: Sequence[int],
+    whole: bool,
+    folder: Path | None,
+    said: Mapping[str, Any],
+    processes: int | None,
 ) -> list[dict[str, Any]]:
     """All verdicts in order; those that a journal holds are not asked again.
 
     One scenario of each kind comes first; those that differ from it in their road sector learn from it.
     """
-    from roadproof.analysis.journal import Journal, fingerprint
+    from roadproof.analysis.journal import Journal, Question
     from roadproof.analysis.meeting import Node
     from roadproof.analysis.overlap import likes_of
     from roadproof.analysis.redundancy import Learned
@@ -119,8 +125,8 @@ def _settle(
     library, specification = asked.load()
     journal = None
     if folder is not None:
-        question = {"whole": str(whole), "effort": f"{asked.effort.units:g}", **asked.question()}
-        journal = Journal(folder, fingerprint(library, question))
+        more = {"whole": str(whole), "effort": f"{asked.effort.units:g}", **asked.question()}
+        journal = Journal(folder, Question(SCHEMA, said, more, library))
     known: dict[int, list[dict[str, Any]]] = {
         x["scenario"]: x["verdicts"] for x in (journal.answers() if journal is not None else [])
     }

@@ -173,9 +173,9 @@ def read_certificate(path: Path) -> Certificate:
     return from_json(read_json(path), str(path))
 
 
-_FIELDS = frozenset(
-    ("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions")
-    + ("formulas", "times", "instances", "lemmas", "queries")
+_FIELDS = (
+    *("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions"),
+    *("formulas", "times", "instances", "lemmas", "queries"),
 )
 
 

@@ -1,5 +1,6 @@
 """What comes out where evidence is checked."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -30,6 +31,9 @@ _EXIT = {
 }
 
 
+NO_EVIDENCE = "none"  # the kind of an answer that promises nothing, or nothing that is for all time
+
+
 @dataclass(frozen=True)
 class Finding:
     """One claim of a file or of an index; ``reason`` says why it is not accepted.
@@ -58,6 +62,18 @@ class Finding:
         return line + (f"  [{'; '.join(notes)}]" if notes else "")
 
 
-def exit_code(findings: "list[Finding]") -> ExitCode:
+def exit_code(findings: Iterable[Finding]) -> ExitCode:
     """The gravest of all findings."""
     return max((finding.outcome.exit_code for finding in findings), default=ExitCode.AS_EXPECTED)
+
+
+def summary(findings: Sequence[Finding], solver: str) -> str:
+    """How many claims came out how, in a line."""
+    counted = [finding for finding in findings if finding.kind != NO_EVIDENCE]
+    accepted = sum(finding.outcome is Outcome.ACCEPTED for finding in counted)
+    line = f"{accepted} of {len(counted)} accepted by {solver} and the exact judge"
+    for outcome in (Outcome.REJECTED, Outcome.UNDECIDED, Outcome.UNREADABLE, Outcome.FAULT):
+        count = sum(finding.outcome is outcome for finding in counted)
+        line += f", {count} {outcome}" if count else ""
+    without = len(findings) - len(counted)
+    return line + (f"; {without} without evidence" if without else "")

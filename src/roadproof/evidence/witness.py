@@ -22,9 +22,9 @@ from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
 SCHEMA = "roadproof/drive/1"
 MOST = {"lanelets": 1000, "adjacent": 1000, "vehicles": 20, "pieces": 2000}
-_FIELDS = frozenset(
-    ("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed", "parameters")
-    + ("road", "vehicles", "verdict")
+_FIELDS = (
+    *("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed"),
+    *("parameters", "road", "vehicles", "verdict"),
 )
 _SIZES = ("length", "width", "s", "d", "v_lon", "v_lat")
 
@@ -117,6 +117,14 @@ def road_data(road: Road) -> dict[str, Any]:
     }
 
 
+def times_data(judgement: Judgement) -> list[dict[str, str]]:
+    """When each definition in the formula is true, as files tell it."""
+    return [
+        {"formula": f"{part.name}({', '.join(part.arguments)})", "true": str(truth)}
+        for part, truth in judgement.named()
+    ]
+
+
 def _lanelet_json(lanelet: Lanelet) -> dict[str, Any]:
     s = [None if bound is None else str(bound) for bound in lanelet.s]
     return {
@@ -171,7 +179,7 @@ def from_json(content: object, where: str) -> DriveFile:
         _lanes(data),
         values,
         options,
-        _road(data.content.get("road"), f"{where}, road"),
+        read_road(data.content.get("road"), f"{where}, road"),
         Drive({k: _motion(v, f"{where}, vehicle {k}") for k, v in data.mapping("vehicles").items()}),
         data.flag("overlaps_allowed") if "overlaps_allowed" in data.content else False,
     )
@@ -193,7 +201,7 @@ def _lanes(data: Fields) -> dict[str, str]:
     return lanes
 
 
-def _road(content: object, where: str) -> Road:
+def read_road(content: object, where: str) -> Road:
     data = Fields(content, where, ("name", "lanelets", "adjacent"))
     _few(data.items("lanelets"), "lanelets", where)
     _few(data.items("adjacent"), "adjacent", where)

@@ -1,9 +1,11 @@
 """The list of template properties, and claims that users bring."""
 
+import hashlib
 import re
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import resources
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from roadproof.errors import UsageError
 from roadproof.spec.library import read_specification, unknown
 from roadproof.verdict import Verdict
 
+OWN = "claim"  # the id of claims that users bring
 _RANGE = re.compile(r"\s*(\d+)\s*(?:\.\.\s*(\d+)\s*)?")
 _INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
 
@@ -29,7 +32,10 @@ class Task:
 
     @property
     def name(self) -> str:
-        """A name that no other task of the list has, fit for a file: ``P1-scenario-04-base``."""
+        """A name that no other claim has, fit for a file: ``P1-scenario-04-base``, ``claim-3f0a9c71-base``."""
+        if self.id == OWN:
+            digest = hashlib.sha256(" ".join(self.claim.split()).encode()).hexdigest()
+            return f"{OWN}-{digest[:8]}-{self.set_name}"
         middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
         return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}"
 
@@ -40,6 +46,18 @@ def template_properties() -> list[Task]:
     tasks = [task for entry in tomllib.loads(text)["property"] for task in _tasks(entry)]
     headings = list(dict.fromkeys((task.id, task.title, task.set_name) for task in tasks))
     return sorted(tasks, key=lambda x: (headings.index((x.id, x.title, x.set_name)), x.scenario or 0))
+
+
+def find_label(claim: str, set_name: str) -> tuple[str, str, int | None] | None:
+    """Property, part and scenario of a claim in a set, where it is a template property."""
+    return _labels().get((" ".join(claim.split()), set_name))
+
+
+@cache
+def _labels() -> dict[tuple[str, str], tuple[str, str, int | None]]:
+    return {
+        (" ".join(x.claim.split()), x.set_name): (x.id, x.part, x.scenario) for x in template_properties()
+    }
 
 
 def _tasks(entry: dict[str, str | list[str]]) -> list[Task]:

@@ -11,7 +11,7 @@ from roadproof.effort import Late
 from roadproof.encode.build import Manners
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import DriveFile, as_json, judge_file
+from roadproof.evidence.witness import DriveFile, as_json, judge_file, times_data
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.bind import default_values
@@ -223,10 +223,7 @@ def drive_data(
     ruling = judge_file(file, library)
     if not ruling.accepted or ruling.judgement is None:
         raise AssertionError(f"a judged drive was rejected when judged again: {ruling.reason}")
-    times = [
-        {"formula": f"{part.name}({', '.join(part.arguments)})", "true": str(truth)}
-        for part, truth in ruling.judgement.named()
-    ]
+    times = times_data(ruling.judgement)
     verdict = {"verdict": str(Verdict.WITNESSED), "view": "dense", "natural": found.manners.natural}
     return as_json(file, {**verdict, "times": times})
 

@@ -1,0 +1,150 @@
+"""The index and the journal of ``roadproof coverage``: classes of gaps, and claims that there are none."""
+
+from collections.abc import Iterator, Sequence
+
+from roadproof.errors import InputError
+from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of
+from roadproof.evidence.strict import Fields
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
+from roadproof.spec.compose import both, either, eventually, implication
+from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import (
+    Scenario,
+    applied,
+    danger,
+    in_lane,
+    in_some_zone,
+    numbers_of,
+    safe,
+    sector,
+    vehicles_of,
+)
+
+SCHEMA = "roadproof/coverage/1"
+SAID = ("set", "wider", "options", "parameters", "specs")
+FIELDS = ("schema", *SAID, "view", "verdict", "claims", "classes", "gaps", "needs", "traffic", "seconds")
+_CLASS = ("scenario", "component", "description", "condition", "verdict", "gaps", "claim", "certificate")
+_CLASS_MORE = ("reason", "none_for", "in_traffic")
+_GAP = ("number", "road", "formula", "first", "caught_by", "classes", "drive", "elsewhere")
+_NEED = ("definition", "extends", "verdict", "road", "formula", "drive")
+
+
+def read_classes(common: Common, records: Sequence[object]) -> Iterator[Entry]:
+    """The classes of an index, or of a line of a journal, which holds their gaps inside."""
+    for number, content in enumerate(records, 1):
+        line = Fields(content, f"{common.where}, class {number}", (*_CLASS, *_CLASS_MORE))
+        verdict, gaps = line.text("verdict"), line.items("gaps")
+        shows = shows_of(verdict, line.where, "proof", "drive")
+        words = [line.text(x) for x in ("component", "condition") if line.text(x)] or ["no single condition"]
+        # A class is witnessed by its gaps, which are entries of their own.
+        fault = f"{line.where}: {verdict} with {len(gaps)} gaps" if bool(gaps) != (shows == "drive") else ""
+        if shows != "drive" or fault:
+            yield Entry(
+                common,
+                line.where,
+                ("class", line.content.get("scenario"), *words),
+                verdict,
+                f"class {', '.join(words)}",
+                "nothing" if shows == "drive" else shows,
+                line.text("claim"),
+                evidence_name(line, "certificate"),
+                unchecked=("that the claim says that the class is empty",) if shows == "proof" else (),
+                fault=fault,
+            )
+        inside = [gap for gap in gaps if isinstance(gap, dict)]
+        yield from read_gaps(common, inside, line.where)
+
+
+def read_gaps(common: Common, records: Sequence[object], where: str) -> Iterator[Entry]:
+    """Gaps: drives that the set misses."""
+    unchecked = ("which wider set catches it", "to which classes it belongs")
+    for number, content in enumerate(records, 1):
+        line = Fields(content, f"{where}, gap {number}", _GAP)
+        placed = Fields(line.mapping("elsewhere"), f"{line.where}, elsewhere")
+        files: list[tuple[str | None, str | None, str]] = [
+            (line.text("formula"), evidence_name(line, "drive"), line.text("road"))
+        ]
+        files += [(None, evidence_name(placed, road), road) for road in placed.content]
+        for claim, file, road in files:
+            yield Entry(
+                common, line.where, ("gap", file), "WITNESSED", f"gap on {road}", "drive", claim, file,
+                unchecked=unchecked,
+            )  # fmt: skip
+
+
+def read_rest(data: Fields, common: Common) -> Iterator[Entry]:
+    """The claims that together say that there is no gap, and the definitions that are needed for it."""
+    claims = [
+        Fields(x, data.where, ("claim", "verdict", "certificate", "reason")) for x in data.items("claims")
+    ]
+    for number, line in enumerate(claims, 1):
+        verdict, claim = line.text("verdict"), line.text("claim")
+        where = f"{data.where}, claim {number}"
+        shows = shows_of(verdict, where)
+        file = evidence_name(line, "certificate")
+        yield Entry(common, where, ("claim", claim), verdict, common.set_name, shows, claim, file)
+    for number, content in enumerate(data.items("needs"), 1):
+        line = Fields(content, f"{data.where}, need {number}", _NEED)
+        verdict, name = line.text("verdict"), line.text("definition")
+        drive = verdict == "WITNESSED"
+        yield Entry(
+            common,
+            line.where,
+            ("need", name),
+            verdict,
+            f"{name} of {common.set_name}",
+            "drive" if drive else "nothing",
+            line.text("formula") if drive else name,
+            evidence_name(line, "drive"),
+            unchecked=("that the formula is the set without the definition",) if drive else (),
+        )
+    yield from _numbered(data)
+
+
+def _numbered(data: Fields) -> Iterator[Entry]:
+    """Nothing; raises ``InputError`` where classes name gaps that are not there."""
+    count = len(data.items("gaps"))
+    told = [n for content in data.items("classes") for n in Fields(content, data.where).items("gaps")]
+    if told != list(range(1, count + 1)):
+        raise InputError(f"{data.where}: its classes name the gaps {str(told)[:60]}, but it has 1 to {count}")
+    yield from ()
+
+
+def faults(data: Fields, common: Common) -> Iterator[str]:
+    """What the verdict on the set says beyond what its entries show."""
+    verdict = data.text("verdict")
+    lines = [Fields(x, data.where) for x in data.items("claims")]
+    proved = bool(lines) and all(x.text("verdict") in PROOFS for x in lines)
+    if verdict == "COVERED":
+        told = [common.formula(x.text("claim")) for x in lines]
+        if not proved or told != _claims(common.specification):
+            yield "COVERED, but its claims do not say that, or are not all proved"
+    elif verdict == "GAPS":
+        if not data.items("gaps"):
+            yield "GAPS, but it has none"
+    elif verdict not in ("UNKNOWN", "CROSSCHECK-FAILED"):
+        yield f"there is no verdict '{verdict[:40]}' on a set"
+
+
+def _claims(specification: Specification) -> list[Formula]:
+    """Where SV is in L, one of the scenarios of its sector holds; and vehicles in zones are in a sector."""
+    sectors: dict[Formula, list[int]] = {}
+    for number in numbers_of(specification):
+        if len(vehicles_of(specification, Scenario(number, specification.set_name))) == 2:
+            meaning = without_names(sector(specification, number, ("SV", "POV")).formula)
+            sectors.setdefault(meaning, []).append(number)
+    pair = ("SV", "POV")
+    claims: list[Formula] = []
+    for numbers in sectors.values():
+        starts = (safe(specification, *pair), eventually(danger(specification, *pair)))
+        premise = both(sector(specification, numbers[0], pair), in_lane(specification, "SV"), *starts)
+        some = [
+            applied(specification, Scenario(number, specification.set_name), roles)
+            for roles in (pair, pair[::-1])
+            for number in numbers
+        ]
+        claims.append(implication(premise, either(*some)).formula)
+    somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in pair))
+    some_sector = either(*(sector(specification, numbers[0], pair) for numbers in sectors.values()))
+    return [*claims, implication(somewhere, some_sector).formula]

@@ -1,0 +1,177 @@
+"""One line of an index or a journal: what it says, and of which evidence it says so.
+
+An index is a part of the evidence. Each entry is compared with the file that it names: claim, verdict, set,
+options, values of parameters. What an entry says beside its claim (numbers of scenarios, names of properties)
+is compared with the claim, on trees; ``fault`` says where that fails.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence import certificate, witness
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.strict import Fields, rational, read_json
+from roadproof.evidence.witness import DriveFile
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.spec.bind import values_with
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Library, Specification
+
+# What the evidence of an entry is to show of its claim: a proof of it, a proof that it never holds, a drive
+# on which it holds, a drive (or a trace) on which it does not; nothing, where the verdict promises nothing.
+Shows: TypeAlias = Literal["proof", "impossibility", "drive", "counterexample", "nothing"]
+
+PROOFS = ("PROVED", "VACUOUS")
+DOUBTS = ("UNKNOWN", "NONE-WITHIN", "PROVED-BOUNDED", "CROSSCHECK-FAILED")
+
+
+@dataclass(frozen=True)
+class Common:
+    """What an index says once for all its entries; ``values`` None where it does not say them."""
+
+    where: str
+    library: Library
+    set_name: str
+    options: Mapping[str, str]
+    values: Mapping[str, Fraction] | None
+
+    @cached_property
+    def specification(self) -> Specification:
+        return self.library.select(self.set_name, self.options)
+
+    def formula(self, claim: str) -> Formula:
+        """What a claim means here. Raises ``InputError``."""
+        return read_claim(self.specification, claim).formula
+
+
+@dataclass(frozen=True)
+class Entry:
+    """``key`` is what only one entry of an index may have; ``file`` is a name inside the index's folder.
+
+    ``claim`` None: what the file says, where ``fault_of`` finds no fault in it. ``trace`` is a counterexample
+    inside the index.
+    """
+
+    common: Common
+    where: str
+    key: tuple[object, ...]
+    verdict: str
+    label: str
+    shows: Shows
+    claim: str | None
+    file: str | None = None
+    trace: object = None
+    values: Mapping[str, Fraction] | None = None
+    unchecked: tuple[str, ...] = ()
+    fault: str = ""
+    fault_of: Callable[[str], str] | None = None
+
+
+def common_of(data: Fields, library: Library, set_name: str, where: str = "") -> Common:
+    """The common part of an index or of a journal's first line. Raises ``InputError``."""
+    options = data.named_texts("options") if "options" in data.content else {}
+    values = None
+    if "parameters" in data.content:
+        given = data.mapping("parameters")
+        place = f"{data.where}, parameters"
+        values = values_with(library, {n: rational(v, f"{place}.{n}") for n, v in given.items()})
+    options = dict(library.select(set_name, options).options)
+    return Common(where or data.where, library, set_name, options, values)
+
+
+def evidence_name(data: Fields, field: str) -> str | None:
+    """The file that a field names, inside the folder of the index. Raises ``InputError``."""
+    if not data.has(field):
+        return None
+    name = data.text(field)
+    parts = name.split("/")
+    if not name or "\\" in name or any(part in ("", ".", "..") for part in parts):
+        raise InputError(f"{data.where}: {field}='{name[:80]}' is no file in the folder of the index")
+    return name
+
+
+def read_evidence(path: Path) -> Certificate | DriveFile:
+    """A certificate or a drive file. Raises ``InputError``."""
+    content = read_json(path)
+    if Fields(content, str(path)).text("schema") == witness.SCHEMA:
+        return witness.from_json(content, str(path))
+    return certificate.from_json(content, str(path))
+
+
+def mismatch(entry: Entry, said: Certificate | DriveFile) -> str:
+    """Where an entry says otherwise than the file that it names, or nothing."""
+    proved = isinstance(said, Certificate)
+    if proved != (entry.shows in ("proof", "impossibility")):
+        return f"{entry.where} says {entry.verdict}, but its file is a {'certificate' if proved else 'drive'}"
+    common = entry.common
+    if said.set_name != common.set_name:
+        return f"{entry.where} is about set {common.set_name}, but its file about set {said.set_name}"
+    try:
+        options = common.library.select(said.set_name, said.options).options
+        if options != common.options:
+            name = next(n for n in options if options[n] != common.options[n])
+            return f"{entry.where} has {name}={common.options[name]}, but its file {name}={options[name]}"
+        if isinstance(said, DriveFile):
+            difference = _other_values(entry, said)
+            if difference:
+                return difference
+        return _other_claim(entry, said)
+    except RoadproofError as error:
+        return f"{entry.where}: {error}"
+
+
+def _other_values(entry: Entry, said: DriveFile) -> str:
+    """The first parameter that the drive was judged with at another value than the entry says."""
+    wanted = entry.values if entry.values is not None else entry.common.values
+    if wanted is None:
+        return ""
+    known = values_with(entry.common.library, said.values)
+    for name, value in values_with(entry.common.library, wanted).items():
+        if known[name] != value:
+            return f"{entry.where} has {name}={value}, but its file {name}={known[name]}"
+    return ""
+
+
+def _other_claim(entry: Entry, said: Certificate | DriveFile) -> str:
+    written = said.claim if isinstance(said, Certificate) else said.formula
+    if entry.claim is None:
+        return f"{entry.where}: {fault}" if entry.fault_of and (fault := entry.fault_of(written)) else ""
+    if written.strip() == entry.claim.strip() and entry.shows in ("proof", "drive"):
+        return ""
+    wanted = entry.common.formula(entry.claim)
+    if entry.shows in ("impossibility", "counterexample"):
+        wanted = f.negation(wanted)
+    if entry.common.formula(written) == wanted:
+        return ""
+    short = " ".join(written.split())[:120]
+    return f"{entry.where} says {entry.verdict}: {' '.join(entry.claim.split())[:120]}, but its file: {short}"
+
+
+def shows_of(verdict: str, where: str, proof: Shows = "proof", drive: Shows = "counterexample") -> Shows:
+    """What a verdict asks of its evidence. Raises ``InputError`` for a word that is no verdict."""
+    if verdict in PROOFS:
+        return "proof"
+    if verdict == "IMPOSSIBLE":
+        return proof
+    if verdict in ("REFUTED", "WITNESSED"):
+        return drive
+    if verdict in DOUBTS:
+        return "nothing"
+    raise InputError(f"{where}: there is no verdict '{verdict[:40]}'")
+
+
+def stray_evidence(entry: Entry) -> str:
+    """Why the entry's evidence is not of the kind that its verdict asks for, or nothing."""
+    if entry.shows == "nothing":
+        return f"{entry.where}: {entry.verdict} needs no evidence, but {entry.file} is named" * bool(
+            entry.file
+        )
+    if entry.file is None and entry.trace is None:
+        return f"{entry.where}: {entry.verdict} without evidence"
+    return ""

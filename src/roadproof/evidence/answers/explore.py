@@ -1,0 +1,71 @@
+"""The index of ``roadproof explore``: for which values a formula has a drive."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
+
+from roadproof.errors import InputError
+from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.proofs import unchecked_of
+from roadproof.evidence.strict import Fields, rational, text
+
+SCHEMA = "roadproof/explore/1"
+FIELDS = ("schema", "options", "parameters", "specs", "view", "seconds", "explored")
+_EXPLORED = ("scenario", "set", "formula", "vary", "values", "boundaries", "searches", "drives", "extremes")
+_EXPLORED_MORE = ("seconds", "stem")
+_FINDING = ("at", "verdict", "formula", "reason", "number", "drive", "certificate")
+_BOUNDARY = ("held", "missed", "surely")
+_EXTREME = ("sense", "measure", "when", "unit", "point", "best", "missed", "surely", "endless", "searches")
+
+
+def read(data: Fields, common_of_set: Callable[[str], Common]) -> Iterator[Entry]:
+    """The entries of an index. Raises ``InputError``."""
+    for number, content in enumerate(data.items("explored"), 1):
+        where = f"{data.where}, exploration {number}"
+        one = Fields(content, where, (*_EXPLORED, *_EXPLORED_MORE))
+        common = common_of_set(one.text("set"))
+        knobs = [Fields(x, f"{where}, vary").text("name") for x in one.items("vary")]
+        for k, finding in enumerate(one.items("values"), 1):
+            yield _entry(finding, f"{where}, value {k}", common, knobs, ())
+        for k, boundary in enumerate(one.items("boundaries"), 1):
+            sides = Fields(boundary, f"{where}, boundary {k}", _BOUNDARY)
+            for side in _BOUNDARY:
+                if sides.has(side):
+                    yield _entry(sides.get(side), f"{where}, boundary {k}, {side}", common, knobs, (side, k))
+        for k, extreme in enumerate(one.items("extremes"), 1):
+            sides = Fields(extreme, f"{where}, extreme {k}", _EXTREME)
+            for side in ("best", "missed", "surely"):
+                if sides.has(side):
+                    # The values of an extreme are those of a measure, which is a part of the formula.
+                    yield _entry(sides.get(side), f"{where}, extreme {k}, {side}", common, [], (side, k))
+
+
+def _entry(
+    content: object, where: str, common: Common, knobs: Sequence[str], side: tuple[object, ...]
+) -> Entry:
+    line = Fields(content, where, _FINDING)
+    verdict, at = line.text("verdict"), line.items("at")
+    shows = shows_of(verdict, where, "impossibility", "drive")
+    told = ", ".join(f"{name}={text(value, where)}" for name, value in zip(knobs, at, strict=False))
+    return Entry(
+        common,
+        where,
+        ("finding", where, *side),
+        verdict,
+        told,
+        shows,
+        line.text("formula"),
+        evidence_name(line, "drive" if shows == "drive" else "certificate"),
+        values=_values(common, dict(zip(knobs, at, strict=False)), where) if knobs else None,
+        unchecked=unchecked_of(verdict),
+        fault="" if not knobs or len(at) == len(knobs) else f"{where}: {len(at)} values of {len(knobs)}",
+    )
+
+
+def _values(common: Common, at: Mapping[str, object], where: str) -> dict[str, Fraction] | None:
+    """The values of the parameters that are varied; limits of vehicles are no parameters."""
+    chosen = {n: rational(x, f"{where}, {n}") for n, x in at.items() if n in common.library.parameters}
+    if common.values is None and not chosen:
+        return None
+    if any(not isinstance(value, str) for value in at.values()):
+        raise InputError(f"{where}: its values are no texts")
+    return {**(common.values or {}), **chosen}

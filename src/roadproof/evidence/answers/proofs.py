@@ -1,0 +1,66 @@
+"""The index that ``roadproof prove`` writes: claims with their verdicts."""
+
+from collections.abc import Callable, Iterator
+from typing import Any, TypeAlias
+
+from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.strict import Fields
+
+SCHEMA = "roadproof/index/1"
+FIELDS = ("schema", "options", "specs", "claims")
+_ENTRY = ("property", "part", "scenario", "set", "claim", "verdict", "evidence", "counterexample")
+OWN = "claim"  # what a claim is called that is no template property
+
+# Property, part and scenario of a claim in a set, where it is a template property.
+FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
+
+
+def read(data: Fields, common_of_set: Callable[[str], Common], find_label: FindLabel) -> Iterator[Entry]:
+    """The entries of an index. Raises ``InputError``."""
+    for number, content in enumerate(data.items("claims"), 1):
+        yield _entry(Fields(content, f"{data.where}, claim {number}", _ENTRY), common_of_set, find_label)
+
+
+def _entry(line: Fields, common_of_set: Callable[[str], Common], find_label: FindLabel) -> Entry:
+    claim, set_name, verdict = line.text("claim"), line.text("set"), line.text("verdict")
+    scenario = line.whole("scenario") if line.get("scenario") is not None else None
+    told = (line.text("property"), line.text("part"), scenario)
+    label = find_label(claim, set_name)
+    own = told[0] == OWN and scenario is None and (not told[1] or told[1].isdecimal())
+    return Entry(
+        common_of_set(set_name),
+        line.where,
+        (" ".join(claim.split()), set_name),
+        verdict,
+        shown(label, set_name),
+        shows_of(verdict, line.where),
+        claim,
+        evidence_name(line, "evidence"),
+        _trace(line),
+        unchecked=unchecked_of(verdict),
+        fault="" if told == label or own else misnamed(line.where, told, label),
+    )
+
+
+def unchecked_of(verdict: str) -> tuple[str, ...]:
+    """What a verdict says beyond what its evidence shows."""
+    if verdict == "VACUOUS":
+        return ("that its premise never holds",)
+    return ("there is no evidence for it",) if verdict in ("PROVED-BOUNDED", "NONE-WITHIN") else ()
+
+
+def shown(label: tuple[str, str, int | None] | None, set_name: str) -> str:
+    """A label as text: ``P1 scenario 1 base``."""
+    name, part, scenario = label or ("", "", None)
+    middle = f" scenario {scenario}" if scenario is not None else ""
+    return f"{name}{'-' + part if part else ''}{middle} {set_name}".strip()
+
+
+def misnamed(where: str, told: tuple[str, str, int | None], label: tuple[str, str, int | None] | None) -> str:
+    """Why a claim is not what it is called."""
+    right = "no template property" if label is None else f"that of {shown(label, '')}"
+    return f"{where} is called {shown(told, '')[:60]}, but its claim is {right}"
+
+
+def _trace(line: Fields) -> Any:
+    return line.content.get("counterexample")

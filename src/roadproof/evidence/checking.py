@@ -1,0 +1,146 @@
+"""One file of evidence, checked by what its schema says that it is, without what made it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from roadproof.effort import Late
+from roadproof.errors import InputError, MissingSolverError, RoadproofError
+from roadproof.evidence import certificate, witness
+from roadproof.evidence.answers.proofs import FindLabel, misnamed, shown
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.finding import Finding, Outcome
+from roadproof.evidence.strict import Fields, read_json
+from roadproof.evidence.witness import DriveFile, times_data
+from roadproof.judge.exact import Judgement
+from roadproof.judge.replay import first_overlap
+from roadproof.spec.bind import default_values, values_with
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Library
+from roadproof.spec.scenarios import Scenario, applied
+
+_TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit
+
+
+@dataclass(frozen=True)
+class Checker:
+    """``ask`` answers sat, unsat or unknown to a script; ``find_label`` knows the template properties."""
+
+    library: Library
+    ask: Callable[[str], str]
+    find_label: FindLabel
+
+    def check(self, path: Path) -> Finding:
+        """What a file shows. Never fails for what is in the file."""
+        try:
+            content = read_json(path)
+            schema = Fields(content, str(path)).text("schema")
+            if schema == certificate.SCHEMA:
+                return self._certificate(path, certificate.from_json(content, str(path)))
+            if schema == witness.SCHEMA:
+                return self._drive(path, content)
+            known = f"{certificate.SCHEMA} or {witness.SCHEMA}"
+            raise InputError(f"its schema is {schema[:60]!r}, but must be {known}")
+        except MissingSolverError:
+            raise
+        except Late as late:
+            return Finding(str(path), "", Outcome.UNDECIDED, str(late))
+        except RoadproofError as error:
+            return Finding(str(path), "", Outcome.UNREADABLE, without_place(str(error), path))
+        except Exception as error:
+            # One file must not take the others with it; the exit code says whose fault it is.
+            return Finding(str(path), "", Outcome.FAULT, f"{type(error).__name__}: {error}"[:300])
+
+    def _certificate(self, path: Path, file: Certificate) -> Finding:
+        outcome, reason = certificate.rule(file, self.library, self.ask)
+        label = self.find_label(file.claim, file.set_name)
+        told = label_of(file)
+        if outcome is Outcome.ACCEPTED and told is not None and told != label:
+            outcome, reason = Outcome.REJECTED, misnamed("it", told, label)
+        if outcome is Outcome.UNREADABLE:
+            reason = with_hint(reason, file.claim)
+        named = shown(label, file.set_name)
+        return Finding(str(path), "certificate", outcome, reason, "PROVED", named, file.claim)
+
+    def _drive(self, path: Path, content: object) -> Finding:
+        file = witness.from_json(content, str(path))
+        ruling = witness.judge_file(file, self.library)
+        reason = ruling.reason or self._untold(file, content, ruling.judgement)
+        outcome = Outcome.REJECTED if reason else Outcome.ACCEPTED
+        if not ruling.readable:
+            outcome, reason = Outcome.UNREADABLE, with_hint(reason, file.formula)
+        label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
+        checked, unchecked = ((), ()) if reason else said_of(file, self.library)
+        return Finding(
+            str(path), "drive", outcome, reason, "WITNESSED", label, file.formula, checked, unchecked
+        )
+
+    def _untold(self, file: DriveFile, content: object, judgement: Judgement | None) -> str:
+        """What a drive file says beside its formula, and is not so."""
+        if file.scenario is not None:
+            specification = self.library.select(file.set_name, file.options)
+            if f"scenario_{file.scenario}" not in specification.definitions:
+                return f"scenario={file.scenario}, but there is none of that number"
+            whole = applied(specification, Scenario(file.scenario, file.set_name))
+            if whole.formula != read_claim(specification, file.formula).formula:
+                return f"scenario={file.scenario}, but its formula is another: {file.formula[:120]}"
+        said = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
+        if said.has("verdict") and said.text("verdict") != "WITNESSED":
+            return f"its verdict is {said.text('verdict')[:40]}, but a drive that holds is WITNESSED"
+        if said.has("view") and said.text("view") != "dense":
+            return f"its view is {said.text('view')[:40]}, but a drive is judged in dense time"
+        if said.has("natural"):
+            said.flag("natural")
+        if said.has("times") and judgement is not None and said.get("times") != times_data(judgement):
+            return "the times at which it says that its parts are true are not those"
+        return ""
+
+
+_VERDICT = ("verdict", "view", "natural", "times")
+
+
+def label_of(file: Certificate) -> tuple[str, str, int | None] | None:
+    """The template property that a certificate says it is of; None where it has a name of another kind."""
+    name, _, part = file.property.partition("-")
+    if name[:1] in _TEMPLATE and name[1:].isascii() and name[1:].isdigit():
+        return name, part, file.scenario
+    return None if file.scenario is None else (file.property, "", file.scenario)
+
+
+def said_of(file: DriveFile, library: Library) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What was checked of a drive that is accepted, and what was not, in words."""
+    declared = default_values(library)
+    values = values_with(library, file.values)
+    other = [f"{name}={value}" for name, value in sorted(values.items()) if declared.get(name) != value]
+    checked = ["dense, unbounded time", f"with {', '.join(other)}" if other else "declared parameters"]
+    overlap = first_overlap(file.drive, None) if len(file.drive.vehicles) > 1 else None
+    unchecked = ["limits of vehicles"]
+    if overlap is None:
+        checked += ["boxes apart for ever"] * (len(file.drive.vehicles) > 1)
+    elif file.overlaps_allowed:
+        checked.append(f"collisions allowed: {overlap}")
+    else:
+        checked.append(f"boxes apart up to {_seconds(file.horizon)} s; after that {overlap}")
+    return tuple(checked), tuple(unchecked)
+
+
+def _seconds(value: Fraction) -> str:
+    return f"{float(value):g}"
+
+
+def with_hint(reason: str, claim: str) -> str:
+    """Why a claim cannot be read, with what to do where it is well written."""
+    from roadproof.logic.parse import parse_claim
+
+    try:
+        parse_claim(claim)
+    except RoadproofError:
+        return reason
+    first = reason.split("\n", 1)[0]
+    return f"{first}; if it was made with specification files, name them with --spec FILE"
+
+
+def without_place(message: str, path: Path) -> str:
+    """A message without the path in front, which a finding says anyway."""
+    return message.removeprefix(f"{path}: ").removeprefix(f"{path} ").removeprefix(f"{path}, ")

@@ -1,0 +1,223 @@
+"""A folder of evidence: files, and the indices and journals that say what the files show.
+
+An index is a part of the evidence (ADR 0020). So every entry must be that of its file, every file must be
+there, and no file may be without an entry. What is in a folder is read from the folder: links are refused.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers.entry import Entry, mismatch, read_evidence, stray_evidence
+from roadproof.evidence.answers.proofs import FindLabel
+from roadproof.evidence.answers.read import faults_of, index_fields, read_index, read_record, said_of
+from roadproof.evidence.checking import without_place
+from roadproof.evidence.finding import NO_EVIDENCE, Finding, Outcome
+from roadproof.evidence.journal import NAME as JOURNAL
+from roadproof.evidence.journal import Journal, read_journal
+from roadproof.evidence.specifications import read_beside
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.evidence.traces import judge_trace
+from roadproof.spec.library import Library
+
+INDEX = "index.json"
+
+
+@dataclass
+class Told:
+    """What the index and the journal of a folder say of the files in it and below it.
+
+    ``specs`` are the specification files beside them; ``problems`` are found before any file is checked.
+    """
+
+    folder: Path
+    specs: tuple[Path, ...] = ()
+    library: Library | None = None
+    index: Fields | None = None
+    entries: list[Entry] = field(default_factory=list)
+    named: set[str] = field(default_factory=set)
+    problems: list[Finding] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Survey:
+    """The files to be checked with the specification files of each, and what is said of them."""
+
+    files: Mapping[Path, tuple[Path, ...]]
+    told: tuple[Told, ...]
+    problems: tuple[Finding, ...]
+
+
+def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel) -> Survey:
+    """What is in files and folders. Raises ``InputError`` for a path that is not there or holds nothing."""
+    files: dict[Path, tuple[Path, ...]] = {}
+    told: list[Told] = []
+    problems: list[Finding] = []
+    for path in paths:
+        if not path.is_dir():
+            if not path.exists():
+                raise InputError(f"{path} does not exist")
+            files.setdefault(path, given)
+            continue
+        inside, links = _walk(path)
+        problems += [
+            Finding(str(x), "", Outcome.REJECTED, "a link is no evidence: copy the file") for x in links
+        ]
+        homes = sorted({x.parent for x in inside if x.name in (INDEX, JOURNAL)})
+        by_home = {home: _read_told(home, given, find_label) for home in homes}
+        told += by_home.values()
+        evidence = [x for x in inside if x.suffix == ".json" and x.name != INDEX]
+        if not evidence and not homes and not links:
+            raise InputError(f"{path} holds no .json file: name a folder with certificates or drive files")
+        for x in evidence:
+            home = next((folder for folder in x.parents if folder in by_home), None)
+            files[x] = given if home is None else (*given, *by_home[home].specs)
+            if home is not None:
+                by_home[home].named.add(x.relative_to(home).as_posix())
+    return Survey(files, tuple(told), tuple(problems))
+
+
+def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
+    """The files below a folder, in order, and the links."""
+    files: list[Path] = []
+    links: list[Path] = []
+    waiting = [folder]
+    while waiting:
+        for path in sorted(waiting.pop(0).iterdir()):
+            if path.is_symlink():
+                links.append(path)
+            elif path.is_dir():
+                waiting.append(path)
+            else:
+                files.append(path)
+    return files, links
+
+
+def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Told:
+    told = Told(home)
+    try:
+        journal = read_journal(home / JOURNAL) if (home / JOURNAL).exists() else None
+    except RoadproofError as error:
+        journal = None
+        told.problems.append(_unreadable(home / JOURNAL, error))
+    try:
+        if (home / INDEX).exists():
+            content = read_json(home / INDEX, LARGEST_INDEX)
+            told.index = index_fields(content, str(home / INDEX))
+        named = told.index if told.index is not None else said_of(journal.head) if journal else None
+        told.library, told.specs = read_beside(named, home, given)
+        if told.index is not None:
+            told.entries += _without_twins(told, read_index(told.index, told.library, find_label))
+    except RoadproofError as error:
+        told.problems.append(_unreadable(home / INDEX, error))
+        told.index = None
+    if journal is not None and told.library is not None:
+        _add_journal(told, journal, told.library)
+    return told
+
+
+def _unreadable(path: Path, error: RoadproofError) -> Finding:
+    return Finding(str(path), "index", Outcome.UNREADABLE, without_place(str(error), path))
+
+
+def _without_twins(told: Told, entries: Sequence[Entry]) -> Iterator[Entry]:
+    seen: dict[tuple[object, ...], Entry] = {}
+    for entry in entries:
+        first = seen.setdefault(entry.key, entry)
+        if first is not entry:
+            reason = f"it says again what {first.where} says"
+            told.problems.append(Finding(entry.where, "index", Outcome.REJECTED, reason))
+        yield entry
+
+
+def _add_journal(told: Told, journal: Journal, library: Library) -> None:
+    """The answers of a journal that the index does not hold in the same words; of each the last."""
+    kept: dict[tuple[object, ...], Entry] = {}
+    for line in journal.lines:
+        if line.fault:
+            outcome = Outcome.UNREADABLE if line.record is None else Outcome.REJECTED
+            told.problems.append(Finding(str(journal.path), "journal", outcome, line.fault))
+        if line.record is None:
+            continue
+        try:
+            kept |= {entry.key: entry for entry in read_record(journal.head, line.record, library)}
+        except RoadproofError as error:
+            told.problems.append(_unreadable(journal.path, error))
+    known = {(x.key, x.verdict, x.claim, x.file) for x in told.entries}
+    told.entries += [x for x in kept.values() if (x.key, x.verdict, x.claim, x.file) not in known]
+
+
+def conclude(surveyed: Survey, found: Mapping[Path, Finding]) -> Iterator[Finding]:
+    """A finding for each claim: of a file alone, or of an entry with its file; then what is wrong besides."""
+    of_entries: set[Path] = set()
+    for told in surveyed.told:
+        of_entries |= {told.folder / name for name in told.named}
+        yield from told.problems
+        for entry in told.entries:
+            yield _of_entry(entry, told, found)
+        yield from _strays(told, found)
+        yield from _of_whole(told, found)
+    yield from (finding for path, finding in found.items() if path not in of_entries)
+    yield from surveyed.problems
+
+
+def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
+    """The entry's own words, where its evidence shows them."""
+    verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
+    said = Finding(entry.where, "index", Outcome.ACCEPTED, "", verdict, entry.label, entry.claim or "")
+    rejected = replace(said, outcome=Outcome.REJECTED)
+    reason = entry.fault or stray_evidence(entry)
+    if reason:
+        return replace(rejected, reason=reason)
+    if entry.shows == "nothing":
+        return replace(said, kind=NO_EVIDENCE, unchecked=entry.unchecked)
+    if entry.file is None:
+        outcome, reason = judge_trace(entry.trace, entry.common.specification, entry.claim or "", entry.where)
+        return replace(
+            said, outcome=outcome, reason=reason, checked=() if reason else ("judged on its trace",)
+        )
+    path = told.folder / entry.file
+    if entry.file not in told.named or path not in found:
+        return replace(rejected, reason=f"{entry.file} is not there, or another index is about it")
+    finding = found[path]
+    said = replace(said, where=str(path), kind=finding.kind)
+    if finding.outcome is not Outcome.ACCEPTED:
+        return replace(said, outcome=finding.outcome, reason=finding.reason)
+    try:
+        reason = mismatch(entry, read_evidence(path))
+    except RoadproofError as error:
+        reason = str(error)
+    if reason:
+        return replace(said, outcome=Outcome.REJECTED, reason=reason)
+    unchecked = tuple(dict.fromkeys((*finding.unchecked, *entry.unchecked)))
+    return replace(said, claim=entry.claim or finding.claim, checked=finding.checked, unchecked=unchecked)
+
+
+def _strays(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:
+    """Files that no entry names. Where the index cannot be read, they stand for themselves."""
+    mentioned = {entry.file for entry in told.entries}
+    readable = told.entries or told.index is not None
+    for name in sorted(told.named - mentioned):
+        finding = found[told.folder / name]
+        if readable and finding.outcome is Outcome.ACCEPTED:
+            reason = "no entry of the index names it"
+            yield replace(finding, outcome=Outcome.REJECTED, reason=reason)
+        else:
+            yield finding
+
+
+def _of_whole(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:
+    if told.index is None or told.library is None:
+        return
+    formulas = {
+        name: found[told.folder / name].claim
+        for name in told.named
+        if found[told.folder / name].outcome is Outcome.ACCEPTED
+    }
+    where = str(told.folder / INDEX)
+    try:
+        for fault in faults_of(told.index, told.library, formulas):
+            yield Finding(where, "index", Outcome.REJECTED, fault)
+    except RoadproofError as error:
+        yield Finding(where, "index", Outcome.UNREADABLE, str(error))

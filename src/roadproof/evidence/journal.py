@@ -1,0 +1,125 @@
+"""Journals: answers that a run has kept as they came, each under a seal.
+
+A journal is ``answers.jsonl`` in a folder of evidence: a first line says what was asked, each further line is
+an answer with the names of its evidence files, and the seal: a digest of the line and of the bytes of those
+files. A seal tells damage and carelessness, not malice, since anybody can compute it. So an answer also has
+to say what its evidence says, and ``roadproof check`` checks that evidence again.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers.entry import Entry, evidence_name, mismatch, read_evidence, stray_evidence
+from roadproof.evidence.answers.read import read_record, record_fields
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json
+from roadproof.evidence.traces import judge_trace
+from roadproof.files import read_limited
+from roadproof.spec.library import Library
+
+NAME = "answers.jsonl"
+SCHEMA = "roadproof/journal/1"
+_HEAD = ("schema", "of", "question", "said")
+
+
+@dataclass(frozen=True)
+class Line:
+    """One answer of a journal; ``fault`` says why it does not count."""
+
+    number: int
+    record: Fields | None
+    fault: str = ""
+
+
+@dataclass(frozen=True)
+class Journal:
+    """``head`` says what was asked; ``torn``: the last line was cut short, as when a run is killed."""
+
+    path: Path
+    head: Fields
+    lines: tuple[Line, ...]
+    torn: bool
+
+
+def head_of(schema: str, question: str, said: Mapping[str, Any]) -> dict[str, Any]:
+    """The first line of a journal."""
+    return {"schema": SCHEMA, "of": schema, "question": question, "said": dict(said)}
+
+
+def seal_of(record: Mapping[str, Any], question: str, folder: Path) -> str:
+    """A digest of an answer, of what was asked, and of the bytes of its evidence. Raises ``InputError``."""
+    bare = {name: value for name, value in record.items() if name != "seal"}
+    digest = hashlib.sha256(json.dumps([question, bare], sort_keys=True).encode())
+    for name in record["evidence"]:
+        digest.update(
+            hashlib.sha256(read_limited(folder / name, LARGEST_INDEX, "it is no evidence")).digest()
+        )
+    return digest.hexdigest()
+
+
+def read_journal(path: Path) -> Journal:
+    """A journal, each line with its seal checked. Raises ``InputError`` where it is none."""
+    data = read_limited(path, LARGEST_INDEX, "journals of that size are not read")
+    try:
+        first, *lines = data.decode("utf-8").split("\n")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: byte {error.start} is not UTF-8 text") from None
+    head = Fields(parse_json(first, f"{path}, line 1"), str(path), _HEAD)
+    if head.text("schema") != SCHEMA:
+        raise InputError(f"{path}: schema={head.text('schema')!r}, but a journal has {SCHEMA!r}")
+    fields = ("evidence", "seal", *record_fields(head.text("of"), str(path)))
+    torn = bool(lines) and lines[-1] != ""
+    read = [
+        _line(number, text, path, fields, head.text("question"))
+        for number, text in enumerate(lines, 2)
+        if text
+    ]
+    if torn and read[-1].record is None:
+        read.pop()
+    return Journal(path, head, tuple(read), torn)
+
+
+def _line(number: int, text: str, path: Path, fields: Sequence[str], question: str) -> Line:
+    where = f"{path}, line {number}"
+    try:
+        record = Fields(parse_json(text, where), where, fields)
+    except InputError as error:
+        return Line(number, None, str(error))
+    try:
+        for k, name in enumerate(record.items("evidence")):
+            evidence_name(Fields({"evidence": name}, f"{where}, evidence {k + 1}"), "evidence")
+        if record.text("seal") != seal_of(record.content, question, path.parent):
+            return Line(number, record, f"{where}: answer and evidence are not what its seal was made for")
+    except InputError as error:
+        return Line(number, record, str(error))
+    return Line(number, record)
+
+
+def answers_of(journal: Journal, library: Library) -> Iterator[Line]:
+    """The lines with all that can be said without a solver: does each answer say what its evidence says?
+
+    Whether a drive holds and a certificate proves is for ``roadproof check``.
+    """
+    for line in journal.lines:
+        if line.record is None or line.fault:
+            yield line
+            continue
+        try:
+            entries = read_record(journal.head, line.record, library)
+            fault = next(filter(None, (_fault_of(entry, journal.path.parent) for entry in entries)), "")
+        except RoadproofError as error:
+            fault = str(error)
+        yield replace(line, fault=fault)
+
+
+def _fault_of(entry: Entry, folder: Path) -> str:
+    fault = entry.fault or stray_evidence(entry)
+    if fault or entry.shows == "nothing":
+        return fault
+    if entry.file is None:
+        return judge_trace(entry.trace, entry.common.specification, entry.claim or "", entry.where)[1]
+    return mismatch(entry, read_evidence(folder / entry.file))

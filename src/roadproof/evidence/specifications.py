@@ -1,0 +1,48 @@
+"""Specification files that lie beside evidence, because the claims were made with them.
+
+Evidence must not redefine what it is about: such a file may add definitions, sets and options to the library,
+but change nothing that is there. One that does change something has to be named by whoever checks.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from roadproof.errors import InputError
+from roadproof.evidence.strict import Fields
+from roadproof.spec.library import Library, load_library
+
+
+def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tuple[Library, tuple[Path, ...]]:
+    """The library with the files ``given``, and on top those that ``data`` names in its ``specs``.
+
+    Raises ``InputError`` where one is not in ``folder``, or changes what is below it.
+    """
+    below = load_library(given)
+    names = data.texts("specs") if data is not None and data.has("specs") else ()
+    for name in names:
+        if "/" in name or "\\" in name or name in ("", ".", ".."):
+            raise InputError(f"specs: '{name[:80]}' is no file in the folder of the index")
+        if (folder / name).is_symlink() or not (folder / name).is_file():
+            raise InputError(f"specs: there is no file {folder / name}")
+    paths = tuple(folder / name for name in names)
+    if not paths:
+        return below, ()
+    above = load_library((*given, *paths))
+    _check_adds_only(below, above, paths)
+    return above, paths
+
+
+def _check_adds_only(below: Library, above: Library, paths: Sequence[Path]) -> None:
+    changed: list[str] = []
+    for kind in ("parameters", "options", "definitions", "sets", "lanes"):
+        after: Mapping[object, object] = getattr(above, kind)
+        changed += [str(name) for name, meaning in getattr(below, kind).items() if after.get(name) != meaning]
+    # One more variant replaces definitions under a value that may be the default one.
+    for choice, definitions in above.variants.items():
+        if definitions != below.variants.get(choice):
+            changed += [definition.name for definition in definitions]
+    if changed:
+        raise InputError(
+            f"{', '.join(map(str, paths))}: changes '{changed[0]}' of the library, so what the evidence says "
+            "is not what it seems; name the file with --spec if that is meant"
+        )

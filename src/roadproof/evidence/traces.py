@@ -1,0 +1,59 @@
+"""Traces inside an index, read strictly and judged again: counterexamples where no drive was found."""
+
+from fractions import Fraction
+
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.finding import Outcome
+from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of
+from roadproof.evidence.strict import Fields, rational
+from roadproof.evidence.witness import read_road
+from roadproof.spec.bind import values_with
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+
+_BETWEEN: dict[str, Held] = {
+    "the state of the instant before": "before",
+    "the state of the instant after": "after",
+}
+MOST_INSTANTS = 1000
+
+
+def judge_trace(content: object, specification: Specification, claim: str, where: str) -> tuple[Outcome, str]:
+    """Whether a trace refutes a claim, judged; and why where it does not."""
+    try:
+        query = read_claim(specification, claim)
+        trace = read_trace(content, where)
+        values_with(specification.library, trace.parameters)
+        fault = fault_of(trace, query.formula, specification.library.bounds)
+    except RoadproofError as error:
+        return Outcome.UNREADABLE, str(error)
+    return (Outcome.REJECTED, f"its trace does not refute it: {fault}") if fault else (Outcome.ACCEPTED, "")
+
+
+def read_trace(content: object, where: str) -> Countermodel:
+    """The inverse of ``refutation.trace_data``. Raises ``InputError``."""
+    data = Fields(content, f"{where}, trace", ("kind", "between", "parameters", "road", "instants"))
+    if data.text("kind") != "trace":
+        raise InputError(f"{data.where}: kind={data.text('kind')[:40]!r}; a drive is a file beside the index")
+    if data.text("between") not in _BETWEEN:
+        raise InputError(
+            f"{data.where}: between='{data.text('between')[:60]}' must be {' or '.join(_BETWEEN)}"
+        )
+    if len(data.items("instants")) > MOST_INSTANTS:
+        raise InputError(f"{data.where}: more than {MOST_INSTANTS} instants")
+    return Countermodel(
+        tuple(_instant(x, f"{data.where}, instant {k}") for k, x in enumerate(data.items("instants"), 1)),
+        _numbers(data, "parameters"),
+        _BETWEEN[data.text("between")],
+        read_road(data.get("road"), f"{data.where}, road") if data.has("road") else None,
+    )
+
+
+def _instant(content: object, where: str) -> Instant:
+    data = Fields(content, where, ("time", "true", "values"))
+    return Instant(data.rational("time"), _numbers(data, "values"), dict.fromkeys(data.texts("true"), True))
+
+
+def _numbers(data: Fields, field: str) -> dict[str, Fraction]:
+    given = data.mapping(field)
+    return {name: rational(value, f"{data.where}, {field}.{name}") for name, value in given.items()}

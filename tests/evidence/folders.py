@@ -1,0 +1,129 @@
+"""Folders of evidence for tests, and what comes out where they are checked in this process."""
+
+import json
+import shutil
+from collections.abc import Iterator
+from copy import deepcopy
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from roadproof.effort import Effort
+from roadproof.evidence.checking import Checker
+from roadproof.evidence.finding import Finding, exit_code
+from roadproof.evidence.folder import conclude, survey
+from roadproof.prove.properties import find_label
+from roadproof.shipped import shipped
+from roadproof.solve import smt
+from roadproof.spec.library import load_library
+
+# A template property, one more that is like it, the guarantee, a control with a drive and one with a trace.
+CHOSEN = ("P1-scenario-04-base", "P2-base", "P9-base", "C4-scenario-04-base-drive", None)
+
+
+@cache
+def answer(script: str) -> str:
+    return smt.ask(script, meter=Effort(20).meter())
+
+
+@cache
+def _finding(path: Path, content: bytes, specs: tuple[Path, ...]) -> Finding:
+    return Checker(load_library(specs), answer, find_label).check(path)
+
+
+def check(*paths: Path, specs: tuple[Path, ...] = ()) -> list[Finding]:
+    """The findings, as ``roadproof check`` prints them; what did not change is not checked again."""
+    surveyed = survey(paths, specs, find_label)
+    found = {path: _finding(path, path.read_bytes(), those) for path, those in surveyed.files.items()}
+    return list(conclude(surveyed, found))
+
+
+def code(*paths: Path) -> int:
+    return exit_code(check(*paths))
+
+
+def some_proofs(folder: Path) -> Path:
+    """A folder with the evidence of ``CHOSEN`` and an index of it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    index = json.loads((shipped("proofs") / "index.json").read_text("utf-8"))
+    names = [None if name is None else f"{name}.json" for name in CHOSEN]
+    index["claims"] = [x for x in index["claims"] if x["evidence"] in names]
+    for name in names:
+        if name is not None:
+            shutil.copy(shipped("proofs") / name, folder)
+    write(folder / "index.json", index)
+    return folder
+
+
+def read(path: Path) -> Any:
+    return json.loads(path.read_text("utf-8"))
+
+
+def write(path: Path, data: object) -> None:
+    path.write_text(json.dumps(data), "utf-8")
+
+
+Place = tuple[str | int, ...]
+
+
+def places(data: Any, at: Place = ()) -> Iterator[Place]:
+    """Where something can be changed: every field, and of every list the first entry and the last."""
+    if at:
+        yield at
+    if isinstance(data, dict):
+        for key in data:
+            yield from places(data[key], (*at, key))
+    elif isinstance(data, list) and data:
+        for k in sorted({0, len(data) - 1}):
+            yield from places(data[k], (*at, k))
+
+
+def changes(data: Any, at: Place) -> Iterator[tuple[str, Any]]:
+    """``data`` with the value at a place changed in several ways, each with a word for it."""
+    *above, last = at
+    value = data
+    for key in at:
+        value = value[key]
+    others: dict[str, Any] = {
+        "null": None,
+        "a number": 7,
+        "a truth value": True,
+        "a list": [],
+        "an object": {},
+    }
+    match value:
+        case bool():
+            others |= {
+                "turned": not value,
+                "a text for it": str(value).lower(),
+                "a number for it": int(value),
+            }
+        case str():
+            others |= {"empty": "", "longer": f"{value}1", "another text": "x", "arabic": "\u0663"}
+            others |= {"NUL": f"{value}\x00", "half a character": "\ud800", "digits": "9" * 5000}
+        case int():
+            others |= {
+                "one more": value + 1,
+                "negative": -1,
+                "a text for it": str(value),
+                "broken": value + 0.5,
+            }
+        case list():
+            others |= {"one less": value[1:], "twice": [*value, *value[:1]], "turned around": value[::-1]}
+            others |= {"one strange more": [*value, {}]}
+        case dict():
+            others |= {"one more field": {**value, "more": "1"}, "one less": dict(list(value.items())[1:])}
+    for word, other in others.items():
+        if type(other) is not type(value) or other != value:
+            changed = deepcopy(data)
+            place = changed
+            for key in above:
+                place = place[key]
+            place[last] = other
+            yield word, changed
+    changed = deepcopy(data)
+    place = changed
+    for key in above:
+        place = place[key]
+    del place[last]
+    yield "removed", changed
