@@ -32,7 +32,7 @@ class Task:
 
     @property
     def name(self) -> str:
-        """A name that no other claim has, fit for a file: ``P1-scenario-04-base``, ``claim-3f0a9c71-base``."""
+        """A name that no other claim has, fit for a file: ``P1-scenario-04-base``, ``claim-3f0a9c71``."""
         if self.id == OWN:
             digest = hashlib.sha256(" ".join(self.claim.split()).encode()).hexdigest()
             return f"{OWN}-{digest[:8]}-{self.set_name}"
