@@ -292,7 +292,7 @@ def test_a_drive_found_later_is_judged_where_none_was_found_before() -> None:
         """The first search misses what is there."""
         if not first:
             first.extend(tasks)
-            return [Reply(Verdict.NONE_WITHIN, "not looked")]
+            return [Reply(Verdict.NONE_WITHIN, "not looked") for _ in tasks]
         return [look(task) for task in tasks]
 
     asked = Asked(request(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
