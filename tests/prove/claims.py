@@ -91,6 +91,36 @@ VALID = [
     " -> (every K in lanes: some N in adjacentLanes(K): atLane(SV,N))",
 ]
 
+# Valid because of what every road has: a lanelet has a lane and one zone, a lane has a lanelet.
+ALL_ZONES = " {join} ".join(f"({{word}} m in zone({zone}): {{body}})" for zone in ("main", "merge", "depart"))
+ALL_OF_THEM = ALL_ZONES.format(word="every", join="and", body="F occ(SV,m)")
+SOME_OF_THEM = ALL_ZONES.format(word="some", join="or", body="F occ(SV,m)")
+VALID_ON_ROADS = [
+    "(some l in zone(main): F occ(SV,l)) -> (some K in lanes: some l in lanelets(K): F occ(SV,l))",
+    "(every K in lanes: every l in lanelets(K): G occ(SV,l)) -> (every l in zone(merge): G occ(SV,l))",
+    "given l: lanelet: F occ(SV,l) -> (some K in lanes: some m in lanelets(K): F occ(SV,m))",
+    "given l: lanelet: (every K in lanes: every m in lanelets(K): F occ(SV,m)) -> F occ(SV,l)",
+    f"{ALL_OF_THEM} -> (every K in lanes: every l in lanelets(K): F occ(SV,l))",
+    f"{ALL_OF_THEM} -> (some l in lanelets(L): F occ(SV,l))",
+    f"given l: lanelet: {ALL_OF_THEM} -> F occ(SV,l)",
+    f"(some l in lanelets(L): F occ(SV,l)) -> {SOME_OF_THEM}",
+    f"given l: lanelet: F occ(SV,l) -> {SOME_OF_THEM}",
+    "some l in lanelets(L): true",
+    "some K in lanes: true",
+    "not (some K in adjacentLanes(L): every M in adjacentLanes(K): F p) or F p",
+    "(every K in adjacentLanes(L): every M in adjacentLanes(K): F atLane(SV,M))"
+    " -> (every K in adjacentLanes(L): F atLane(SV,L))",
+]
+
+# Valid because of how parameters compare, and proofs that need a name of one instance in another.
+VALID_MORE = [
+    "minSafe <= minDanger -> F[minSafe,minDanger] true",
+    "minSafe <= minDanger -> (G[0,minDanger] p -> G[0,minSafe] p)",
+    "minSafe > minDanger -> G[minSafe,minDanger] p",
+    "F[1.8 s, inf] (every K1 in lanes: instSafe(POV, SV))"
+    " -> F not not (every K1 in lanes: instSafe(POV, SV))",
+]
+
 # False on some trace, for some parameters.
 INVALID = [
     "F p -> p",
@@ -142,11 +172,19 @@ INVALID = [
     " -> (some N in lanes: atLane(SV,N) and atLane(POV,N))",
     "(every N in lanes: some M in lanes: atLane(SV,M) <-> atLane(POV,N))"
     " -> (some M in lanes: every N in lanes: atLane(SV,M) <-> atLane(POV,N))",
+    "some M in adjacentLanes(L): true",
+    "atLane(SV,L) -> onMainRoad(SV)",
+    "given l: lanelet: G occ(SV,l)",
+    "(some l in zone(main): F occ(SV,l)) -> (every K in lanes: some l in lanelets(K): F occ(SV,l))",
+    "minSafe <= minDanger -> F[minDanger,minSafe] true",
+    "F[1.6 s, 4.2 s] not F danger(POV, SV)",
+    "given x: m: s(SV) > x",
 ]
 
 # Not valid, but each trace that shows it switches for ever: nothing is claimed of these.
 NEEDS_INFINITELY_MANY_SWITCHES = ["G F p -> F G p", "G F p and G F q -> F (p and q)"]
 
+SAME_BOX = "s(SV) = s(POV) and d(SV) = d(POV) and length(SV) = length(POV) and width(SV) = width(POV)"
 # True on every road, but for reasons that the prover does not know. It must not call them false.
 BEYOND = [
     "(some l in lanelets(L): G occ(SV,l)) -> G atLane(SV,L)",
@@ -158,10 +196,18 @@ BEYOND = [
     "(every M in lanes: not atLane(SV,M)) -> not onMainRoad(SV)",
     "(some M in adjacentLanes(L): every N in adjacentLanes(M): atLane(SV,N)) -> atLane(SV,L)",
     "not (some M in adjacentLanes(L): every N in lanes: not atLane(SV,N) and atLane(SV,M))",
-    "minSafe <= minDanger -> (G[0,minDanger] p -> G[0,minSafe] p)",
     "G (s(SV) = 0 m and d(SV) = 0 m) -> G atLane(SV,L) or G not atLane(SV,L)",
     "s(SV) = s(POV) and d(SV) = d(POV) and length(SV) = length(POV) and width(SV) = width(POV)"
     " -> (atLane(SV,L) <-> atLane(POV,L))",
+    f"{SAME_BOX} and (some l in zone(main): occ(SV,l)) -> (some K in lanes: atLane(POV,K))",
+    f"{SAME_BOX} and atLane(SV,L) -> onMainRoad(POV) or inMergeZone(POV) or inDepartZone(POV)",
+    # a box covered by two others
+    "given A, B, C: vehicle: s(A) = s(B) and s(A) - length(B) = s(C) and length(A) = length(B) + length(C)"
+    " and d(A) = d(B) and d(A) = d(C) and width(A) = width(B) and width(A) = width(C)"
+    " and atLane(A,L) -> atLane(B,L) or atLane(C,L)",
+    # three boxes side by side: a lane is a chain along the road, and goes through the one between
+    "given A, B, C: vehicle: s(A) = s(B) and s(B) = s(C) and length(A) = length(B) and length(B) = length(C)"
+    " and d(A) - width(A) = d(B) and d(B) - width(B) = d(C) and atLane(A,L) and atLane(C,L) -> atLane(B,L)",
 ]
 
 

@@ -8,6 +8,8 @@ from prove.claims import (
     NEEDS_INFINITELY_MANY_SWITCHES,
     PROVED,
     VALID,
+    VALID_MORE,
+    VALID_ON_ROADS,
     is_false_on,
     negated,
     settle,
@@ -22,7 +24,7 @@ from roadproof.verdict import Verdict
 library = specification().library
 
 
-@pytest.mark.parametrize("claim", VALID)
+@pytest.mark.parametrize("claim", [*VALID, *VALID_ON_ROADS, *VALID_MORE])
 def test_proves_what_is_valid(claim):
     result = settle(claim)
     assert result.verdict in PROVED, result.reason

@@ -2,7 +2,16 @@
 
 import pytest
 
-from prove.claims import INVALID, PROVED, VALID, is_false_on, settle, speaks_of_all_lanes, specification
+from prove.claims import (
+    BEYOND,
+    INVALID,
+    PROVED,
+    VALID,
+    is_false_on,
+    settle,
+    speaks_of_all_lanes,
+    specification,
+)
 from prove.on_roads import is_road
 from roadproof.evidence import refutation
 from roadproof.evidence.certificate import refusal
@@ -265,18 +274,12 @@ REFUTING_FAULTS = [
     comparisons_turned,
     lanelets_anywhere,
 ]
-# A box covered by two others.
-COVERED = (
-    "given A, B, C: vehicle: s(A) = s(B) and s(A) - length(B) = s(C) and length(A) = length(B) + length(C)"
-    " and d(A) = d(B) and d(A) = d(C) and width(A) = width(B) and width(A) = width(C)"
-    " and atLane(A,L) -> atLane(B,L) or atLane(C,L)"
-)
 MORE = [
     "not (not p and G[1,1] p and not (not p U[0,1] p))",
     "p U q -> p or F (p and q)",
     "atLane(SV,L) -> onMainRoad(SV) or inMergeZone(SV) or inDepartZone(SV)",
     "(some l in lanelets(L): occ(SV,l) and occ(POV,l)) -> atLane(SV,L)",
-    COVERED,
+    BEYOND[-2],
     "F (v_lon(SV) > 20 m/s) -> G (v_lon(SV) > 20 m/s)",
     "F[0,minSafe] p -> p",
 ]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
 
-from roadproof.errors import RoadproofError
+from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.witness import road_data
 from roadproof.judge import TruthSet, judge
 from roadproof.judge.signals import AbstractSignals
@@ -96,11 +96,17 @@ def when_true(formula: Formula, trace: Countermodel) -> TruthSet:
 
 
 def without_empty_windows(formula: Formula) -> Formula:
-    """``formula`` with operators whose window ends before it begins replaced by what they then are."""
+    """``formula`` with operators whose window ends before it begins replaced by what they then are.
+
+    Raises ``InputError`` where a bound has no value.
+    """
 
     def visit(current: Formula) -> Formula:
         if isinstance(current, f.Until | f.Eventually | f.Always):
-            low, high = bounds_of(current.interval)
+            try:
+                low, high = bounds_of(current.interval)
+            except ValueError as error:
+                raise InputError(str(error)) from None
             if high is not None and high < low:
                 return f.Truth(isinstance(current, f.Always))
         return current
