@@ -15,6 +15,8 @@ from roadproof.evidence.strict import Fields, read_json
 from roadproof.evidence.witness import DriveFile, times_data
 from roadproof.judge.exact import Judgement
 from roadproof.judge.replay import first_overlap
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.bind import default_values, values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
@@ -72,18 +74,25 @@ class Checker:
             outcome, reason = Outcome.UNREADABLE, with_hint(reason, file.formula)
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
         checked, unchecked = ((), ()) if reason else said_of(file, self.library)
+        if not reason and "natural" in Fields(content, str(path)).mapping("verdict"):
+            unchecked = (*unchecked, "whether it is natural")
         return Finding(
             str(path), "drive", outcome, reason, "WITNESSED", label, file.formula, checked, unchecked
         )
 
     def _untold(self, file: DriveFile, content: object, judgement: Judgement | None) -> str:
-        """What a drive file says beside its formula, and is not so."""
+        """What a drive file says beside its formula, and is not so; or does not say, and should."""
+        specification = self.library.select(file.set_name, file.options)
+        query = read_claim(specification, file.formula)
+        unsaid = [x for x in specification.options if x not in file.options]
+        unsaid += [x for x in parameters_of(query.formula) if x not in file.values]
+        if unsaid:
+            return f"it does not say with which {unsaid[0]} it was judged"
         if file.scenario is not None:
-            specification = self.library.select(file.set_name, file.options)
             if f"scenario_{file.scenario}" not in specification.definitions:
                 return f"scenario={file.scenario}, but there is none of that number"
             whole = applied(specification, Scenario(file.scenario, file.set_name))
-            if whole.formula != read_claim(specification, file.formula).formula:
+            if whole.formula != query.formula:
                 return f"scenario={file.scenario}, but its formula is another: {file.formula[:120]}"
         said = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
         if said.has("verdict") and said.text("verdict") != "WITNESSED":
@@ -131,8 +140,6 @@ def _seconds(value: Fraction) -> str:
 
 def with_hint(reason: str, claim: str) -> str:
     """Why a claim cannot be read, with what to do where it is well written."""
-    from roadproof.logic.parse import parse_claim
-
     try:
         parse_claim(claim)
     except RoadproofError:

@@ -156,6 +156,8 @@ def read_moment(text: str) -> Moment:
     """The inverse of ``str``. Raises ``InputError``."""
     total, position = ZERO, 0
     stripped = text.strip()
+    if not stripped:
+        raise InputError("an empty text is no moment: write 0")
     while position < len(stripped):
         found = _PART.match(stripped, position)
         if found is None or found.end() == position or (not found[2] and not found[3]):
