@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from roadproof.cli import monitor
 from roadproof.cli.main import main
 from roadproof.export.drive_csv import csv_of
 from roadproof.traffic.evaluate import evaluate_recording
@@ -15,6 +16,7 @@ from roadproof.traffic.questions import ask, default_settings
 from roadproof.traffic.simulate import Traffic
 from roadproof.traffic.synthetic import simulate
 from roadproof.traffic.write_highd import write_highd
+from traffic.faults import plant_fault
 
 ROAD = {
     "name": "main-2",
@@ -240,3 +242,64 @@ def test_refusals(
     message = capsys.readouterr().err
     assert said in message
     assert "Traceback" not in message
+
+
+@pytest.mark.parametrize("view", ["dense", "recorded"])
+def test_the_command_line_overrules_the_file_and_says_so(
+    view: str, drive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The file says minDanger = 3/5; a formula that holds for values from 1 s on tells which is used."""
+    data = json.loads(drive.read_text())
+    data["parameters"] |= {"rho": "1/2", "minSafe": "2/5"}
+    drive.write_text(json.dumps(data))
+    command = ["rho >= 1 s and v_lon(SV) > 0 m/s", str(drive), "--view", view]
+    code, told = asked(command, capsys)
+    assert (code, told["verdict"]) == (10, "false")
+    assert not [key for key in told if key.startswith("parameter")]
+    code, told = asked([*command, "--param", "rho=1"], capsys)
+    assert (code, told["verdict"]) == (0, "true")
+    assert told["parameter rho"] == "1 (the file says 1/2)"
+    assert main(["monitor", *command, "--param", "rho=1"]) == 0
+    assert "parameter rho: 1 (the file says 1/2)" in capsys.readouterr().out
+    # What is not given stays as in the file, also where the library says otherwise (minSafe 0.6).
+    both = "minSafe <= 0.4 s and rho >= 1 s and v_lon(SV) > 0 m/s"
+    code, told = asked([both, *command[1:], "--param", "rho=1"], capsys)
+    assert (code, told["verdict"]) == (0, "true")
+
+
+def test_set_and_option_overrule_the_file_and_say_so(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, told = asked(["4", str(drive)], capsys)
+    assert not {"set of the file", "option lateral_sign"} & set(told)
+    _, told = asked(["4", str(drive), "--set", "ext"], capsys)
+    assert (told["set"], told["set of the file"]) == ("ext", "base")
+    data = json.loads(drive.read_text())
+    drive.write_text(json.dumps(data | {"parameters": {"minDanger": "3/5", "lateral_sign": "literal"}}))
+    _, told = asked(["4", str(drive), "--option", "lateral_sign=rss"], capsys)
+    assert told["option lateral_sign"] == "rss (the file says literal)"
+
+
+def test_a_file_that_overrules_the_command_line_is_caught(
+    drive: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Planted fault: the file's values come last."""
+    data = json.loads(drive.read_text())
+    data["parameters"] |= {"rho": "1/2"}
+    drive.write_text(json.dumps(data))
+    command = ["rho >= 1 s and v_lon(SV) > 0 m/s", str(drive), "--param", "rho=1"]
+    with monkeypatch.context() as patch:
+        honest = "for name, value in file.values.items() if name not in given}"
+        plant_fault(patch, monitor, honest, "for name, value in file.values.items()}")
+        assert asked(command, capsys)[0] == 10
+    assert asked(command, capsys)[0] == 0
+
+
+def test_notes_on_the_recording_are_told(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in folder.glob("01_*"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    lines = (tmp_path / "01_tracks.csv").read_text().splitlines()
+    lines[9] = lines[9].rpartition(",")[0] + ",1"
+    (tmp_path / "01_tracks.csv").write_text("\n".join(lines) + "\n")
+    main(["monitor", "v_lon(SV) > 0 m/s", f"{tmp_path}/01_tracks.csv:1"])
+    assert "note: 01_tracks.csv, row 10, column laneId=1: laneId is not" in capsys.readouterr().err

@@ -1,6 +1,7 @@
 """The highD experiment over many recordings: resumable, and in memory one recording a process."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -52,8 +53,10 @@ def run_experiment(experiment: Experiment, tell: Callable[[str], None] = lambda 
     """
     sources = find_sources(experiment.recordings)
     question = question_mark(experiment.settings)
-    digests = {source.name: source.digests() for source in sources}
-    marks = {name: fingerprint(question, found) for name, found in digests.items()}
+    with ThreadPoolExecutor(experiment.jobs) as threads:
+        found = threads.map(RecordingSource.digests, sources)
+        digests = {source.name: each for source, each in zip(sources, found, strict=True)}
+    marks = {name: fingerprint(question, each) for name, each in digests.items()}
     failed = _copies(sources, digests)
     waiting = [s for s in sources if s.name not in failed and not _is_kept(experiment, s, marks[s.name])]
     kept = len(sources) - len(failed) - len(waiting)
