@@ -42,13 +42,13 @@ def test_half_a_file_is_none(tmp_path: Path) -> None:
     path = tmp_path / "answer"
     path.write_bytes(b"old")
 
-    def interrupted() -> None:
+    def write_half() -> None:
         with whole_file(path) as file:
             file.write(b"half")
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        interrupted()
+        write_half()
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
 

@@ -104,7 +104,7 @@ def _as_json(comparison: "Comparison", sets: list[str]) -> dict[str, Any]:
 
 
 def _write(comparison: "Comparison", folder: Path) -> None:
-    from roadproof.cli.witness import make_folder
+    from roadproof.files import make_folder
 
     make_folder(folder)
     for name, direction in _directions(comparison):
