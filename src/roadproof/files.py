@@ -65,7 +65,7 @@ def cannot_write(path: Path, error: OSError) -> InputError:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder, and those above it, where there is none. Raises ``InputError``, also where it is read-only."""
+    """Make a folder, and those above it, where there is none. Raises ``InputError``, also if read-only."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
