@@ -53,6 +53,7 @@ def environment() -> dict[str, str]:
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
         "COLUMNS": "100",
         "PYTHONIOENCODING": "utf-8",
+        "ROADPROOF_QUIET": "1",  # what is said every half minute depends on the machine
         "LC_ALL": "C.UTF-8",
     }
 

@@ -1,5 +1,6 @@
 """Verdicts to exit codes, excerpts of mistakes, and files that come along."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -30,6 +31,14 @@ PROVED, REFUTED, UNKNOWN = Verdict.PROVED, Verdict.REFUTED, Verdict.UNKNOWN
 def test_the_gravest_outcome_gives_the_exit_code(outcomes: list[tuple[Verdict, Verdict]], code: int) -> None:
     assert exit_code(outcomes) is ExitCode(code)
     assert exit_code(reversed(outcomes)) is ExitCode(code)
+
+
+def test_every_verdict_and_exit_code_is_explained() -> None:
+    page = (Path(__file__).parents[1] / "docs/meaning.md").read_text("utf-8")
+    assert {str(verdict) for verdict in Verdict} <= set(re.findall(r"`([A-Z-]+)`", page))
+    listed = page.partition("Exit codes: ")[2].partition("\n")[0]
+    told = [int(entry.split()[0]) for entry in listed.split(" · ")]
+    assert sorted(told) == sorted(ExitCode)
 
 
 def test_a_long_line_is_cut_around_the_mistake() -> None:

@@ -1,7 +1,11 @@
 """Files appear whole or not at all; what is no file is written to and stays what it is."""
 
+import errno
 import os
 import stat
+import subprocess
+import sys
+import tempfile
 import threading
 from pathlib import Path
 
@@ -10,11 +14,6 @@ import pytest
 from roadproof.cli.main import main
 from roadproof.errors import InputError
 from roadproof.files import whole_file, write_whole
-
-
-def test_a_device_stays_a_device() -> None:
-    write_whole(Path(os.devnull), b"x")
-    assert stat.S_ISCHR(Path(os.devnull).stat().st_mode)
 
 
 def test_a_pipe_is_written_to(tmp_path: Path) -> None:
@@ -42,13 +41,13 @@ def test_half_a_file_is_none(tmp_path: Path) -> None:
     path = tmp_path / "answer"
     path.write_bytes(b"old")
 
-    def interrupted() -> None:
+    def write_half() -> None:
         with whole_file(path) as file:
             file.write(b"half")
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        interrupted()
+        write_half()
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
 
@@ -58,11 +57,35 @@ def test_a_folder_is_no_file(tmp_path: Path) -> None:
         write_whole(tmp_path, b"x")
 
 
-@pytest.mark.parametrize("target", ["/dev/full", "link"])
+def test_a_link_to_a_pipe_is_followed(tmp_path: Path) -> None:
+    pipe, link = tmp_path / "pipe", tmp_path / "link"
+    os.mkfifo(pipe)
+    link.symlink_to(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_whole(link, b"told")
+    assert os.read(reader, 100) == b"told"
+    os.close(reader)
+    assert link.is_symlink()
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+
+
 def test_a_full_disk_is_told(
-    target: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("link").symlink_to("/dev/full")
-    assert main(["list", "--json", target]) == 3
+    def fail(**_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(tempfile, "mkstemp", fail)
+    assert main(["list", "--json", str(tmp_path / "answer")]) == 3
     assert "no space left on device" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
+def test_stdout_on_a_full_disk_is_told() -> None:
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "roadproof.cli.main", "list"]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 3
+    assert done.stderr.startswith("roadproof: cannot write the answer: no space left on device")
+    assert len(done.stderr.splitlines()) == 1

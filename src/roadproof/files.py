@@ -65,11 +65,13 @@ def cannot_write(path: Path, error: OSError) -> InputError:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder, and those above it, where there is none. Raises ``InputError``."""
+    """Make a folder, and those above it, where there is none. Raises ``InputError``, also if read-only."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot write into {folder}: {error.strerror}; name another folder") from None
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"cannot write into {folder}: no permission; name another folder")
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
 from roadproof.cli.search_options import add_search_options, read_request
+from roadproof.cli.working import add_quiet_option
 from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode
 
@@ -29,6 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("first", metavar="F1", help="a scenario's number, or a formula")
     parser.add_argument("second", metavar="F2", help="another; in the second --set where two are given")
     add_search_options(parser)
+    add_quiet_option(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and drive files")
     add_json_option(parser)
 
@@ -104,7 +106,7 @@ def _as_json(comparison: "Comparison", sets: list[str]) -> dict[str, Any]:
 
 
 def _write(comparison: "Comparison", folder: Path) -> None:
-    from roadproof.cli.witness import make_folder
+    from roadproof.files import make_folder
 
     make_folder(folder)
     for name, direction in _directions(comparison):

@@ -61,6 +61,7 @@ def supervise(command: Callable[[], int]) -> int:
 
 def _interrupt(number: int, frame: object) -> None:
     signal.signal(number, signal.SIG_IGN)
+    sys.unraisablehook = lambda unraisable: None  # of objects that this leaves half made, as z3's are
     raise KeyboardInterrupt
 
 

@@ -1,7 +1,6 @@
 """``roadproof witness``: drives on which scenarios and formulas hold, each judged exactly."""
 
 import argparse
-import os
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -13,8 +12,8 @@ from roadproof.cli.options import add_json_option, json_text, load_library_of, w
 from roadproof.cli.progress import clear
 from roadproof.cli.search_options import add_search_options, read_request
 from roadproof.cli.working import add_working_options, count_workers, work_in_order
-from roadproof.errors import InputError, UsageError
-from roadproof.files import write_whole
+from roadproof.errors import UsageError
+from roadproof.files import make_folder, write_whole
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
@@ -141,16 +140,6 @@ def _line(outcome: "Outcome", verbose: bool) -> str:
         shown += f"\n  sizes {dict(outcome.sizes)}"
         shown += "\n  seconds " + ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
     return shown
-
-
-def make_folder(folder: Path) -> None:
-    """Make ``folder`` unless it is there. Raises ``InputError`` where that or writing into it fails."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot make the folder {folder}: {error.strerror}") from None
-    if not os.access(folder, os.W_OK):
-        raise InputError(f"cannot write into {folder}: choose another --out")
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,7 @@ def refuse_variables(formula: Formula) -> None:
         if isinstance(leaf, t.Variable):
             raise InputError(
                 f"'{leaf.name}' stands for every number, and has no value on a drive or in a recording: "
-                "write a number, or declare a parameter in a --spec file"
+                "write a number, or declare a parameter in a specification file"
             )
 
 
