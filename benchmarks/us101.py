@@ -1,4 +1,4 @@
-"""What docs/us101.md says beyond the results of `roadproof evaluate`: traces without a common lane, clipping.
+"""What docs/us101.md says beyond the results of `roadproof evaluate`.
 
     python benchmarks/us101.py ../shared/data/us101 out/us101
 
@@ -45,6 +45,10 @@ def main() -> int:
     print(
         f"{len(rows)} traces match no scenario of ext with minDanger 0, {apart} of them without a common lane"
     )
+    kinds = np.concatenate([recording.kind for recording in recordings.values()])
+    print(f"{np.sum(kinds == 'Truck')} of {len(kinds)} vehicles are longer than 7 m")
+    lengths = sorted((x.last_frame.max() - x.first_frame.min()) / x.rate for x in recordings.values())
+    print(f"windows of {lengths[0]:g} to {lengths[-1]:g} s")
     accelerations = np.abs(np.concatenate([recording.a_lon for recording in recordings.values()]))
     limit = float(accelerations.max())
     share = 100 * float(np.mean(accelerations > limit - 0.01))

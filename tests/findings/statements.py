@@ -150,6 +150,7 @@ CLASSIFIED = (
             Figures("`complete` has {}**", r.all_witnessed),
             Figures("**, {} of what happens between two vehicles", lambda x: r.happenings(x)[0]),
             Figures("in `ext`, {} in `complete`", "{} situations with a scenario, each in exactly one"),
+            Figures("{} choices do not occur: where 6", "do not occur: {} PROVED"),
             Figures("75 and {}. The same four commands", "traces, {} ("),
         ),
     ),
@@ -159,7 +160,11 @@ CLASSIFIED = (
         (Figures("4 and 6 hold together only with 8", "PROVED scenario_4"),),
         quick=True,
     ),
-    Statement(FINDINGS, ("roadproof classify --among 1-8 --out classes",)),
+    Statement(
+        FINDINGS,
+        ("roadproof classify --among 1-8 --out classes",),
+        (Figures("exclude each other, {} does not occur", "do not occur: {} PROVED"),),
+    ),
     Statement(
         FINDINGS,
         ("roadproof classify --set ext --among 1-8 --on ../shared/data/us101",),
@@ -447,9 +452,7 @@ LIMITS = (
 
 EVALUATE = "roadproof evaluate ../shared/data/us101 --out out/us101 --no-pictures"
 US101 = "docs/us101.md"
-ROWS = "\n".join(
-    f"| {danger} | {name} | {{}} |" for danger in ("0", "0.6") for name in ("base", "extA", "ext")
-)
+ROWS = "".join(f"| {x} | {name} | {{}} |\n" for x in ("0", "0.6") for name in ("base", "extA", "ext"))
 
 MEASURED = (
     Statement(
@@ -476,7 +479,6 @@ MEASURED = (
             Figures(
                 "{} of them would be a match under `--end clip`", "{} would be another match under the other"
             ),
-            Figures("trucks (9 of {})", "here: 8 recordings, {} vehicles"),
             Figures("One sample of {} has the centre", "vehicles (Car evaluated), {} samples"),
             Figures("{} sample of 14", r.samples_on_no_lane),
             Figures(
@@ -492,6 +494,8 @@ MEASURED = (
             Figures("Of the {} traces that match no scenario of ext", "{} traces match no scenario of ext"),
             Figures("scenario 2 included, {} are of vehicles", "minDanger 0, {} of them without"),
             Figures("These pairs and the other {} are listed", r.others_with_a_lane),
+            Figures("trucks ({} of {})", "{} of {} vehicles are longer"),
+            Figures("The windows are short ({} to {} s)", "windows of {} to {} s"),
             Figures("clipped at ±{} m/s² in the data, and {} % of all", "greatest is {} m/s², {} % of all"),
         ),
     ),
