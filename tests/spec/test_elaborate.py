@@ -232,7 +232,7 @@ def test_a_definition_is_elaborated_once(monkeypatch: pytest.MonkeyPatch) -> Non
         ("q_22(SV) > 0", DOUBLED_TERMS),
         ("q_39(SV) > 0", DOUBLED_TERMS),
         ("s(SV) > (((((((2^8)^8)^8)^8)^8)^8)^8)", ""),
-        ("F[0, (((((((2 s)^8)^8)^8)^8)^8)^8)] true", ""),
+        ("F[0, ((((((((2 s)^8)^8)^8)^8)^8)^8)^8)] true", ""),
     ],
 )
 def test_what_is_too_large_when_it_is_written_out_is_refused(claim: str, more: str) -> None:
