@@ -1,15 +1,18 @@
 """Names, sorts, arities, units and cycles."""
 
+from typing import Any
+
 import pytest
 
 from roadproof.errors import TextError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import FOREVER, Formula
-from roadproof.spec.elaborate import apply_definition, read_claim, signature
+from roadproof.spec.elaborate import _Elaborator, apply_definition, read_claim, signature
 from roadproof.spec.library import Source, Specification, build_library, bundled_library
 from roadproof.spec.quantity import unit_name
 from roadproof.spec.query import Query
+from roadproof.spec.size import LARGEST_FORMULA, MOST_READ, Sizes
 
 BASE = bundled_library().select()
 SECONDS = (0, 1)
@@ -198,10 +201,54 @@ def test_long_chains_are_refused_before_the_stack_ends() -> None:
         formula("p_900(SV)", chain)
 
 
-def test_a_definition_is_elaborated_once() -> None:
-    """Doubling at every level would take 2^40 steps."""
-    step = "def p_{i}(a: vehicle) := p_{i-1}(a) and F p_{i-1}(a)"
-    assert formula("p_40(SV)", f"def p_0(a: vehicle) := v_lon(a) > 0 each i in 1..60 {{ {step} }}")
+DOUBLING = (
+    "def p_0(a: vehicle) := v_lon(a) > 0 each i in 1..60 "
+    "{ def p_{i}(a: vehicle) := p_{i-1}(a) and F p_{i-1}(a) }"
+)
+DOUBLED_TERMS = (
+    "def q_0(a: vehicle) := s(a) each i in 1..60 { def q_{i}(a: vehicle) := q_{i-1}(a) + q_{i-1}(a) }"
+)
+
+
+def test_a_definition_is_elaborated_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Doubling at every level would take 2^14 steps."""
+    read: list[object] = []
+    whole = _Elaborator._expression
+
+    def count(self: _Elaborator, expression: Any, scope: Any) -> Any:
+        read.append(expression)
+        return whole(self, expression, scope)
+
+    monkeypatch.setattr(_Elaborator, "_expression", count)
+    assert formula("p_14(SV)", DOUBLING)
+    assert len(read) < 100
+
+
+@pytest.mark.parametrize(
+    ("claim", "more"),
+    [
+        ("p_22(SV)", DOUBLING),
+        ("p_39(SV)", DOUBLING),
+        ("q_22(SV) > 0", DOUBLED_TERMS),
+        ("q_39(SV) > 0", DOUBLED_TERMS),
+        ("s(SV) > (((((((2^8)^8)^8)^8)^8)^8)^8)", ""),
+        ("F[0, ((((((((2 s)^8)^8)^8)^8)^8)^8)^8)] true", ""),
+    ],
+)
+def test_what_is_too_large_when_it_is_written_out_is_refused(claim: str, more: str) -> None:
+    with pytest.raises(TextError, match=f"more than {LARGEST_FORMULA} parts once its definitions"):
+        formula(claim, more)
+
+
+def test_quantifiers_inside_each_other_are_refused_before_they_are_written_out() -> None:
+    many = "".join(f"every v{k} in {{SV, POV}}: " for k in range(40))
+    with pytest.raises(TextError, match=f"more than {MOST_READ} expressions"):
+        formula(f"{many} v_lon(SV) > 0")
+
+
+def test_a_power_counts_as_the_product_that_it_is() -> None:
+    term = t.Power(t.Sum((t.Signal("s", "SV"), t.Signal("s", "POV"))), 4)
+    assert Sizes().size(term) == 1 + 4 * 3
 
 
 def test_names_inside_definitions_must_be_their_own() -> None:

@@ -1,5 +1,6 @@
 """Files, sets, options and overrides."""
 
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ from roadproof.spec.library import (
     Source,
     build_library,
     bundled_library,
+    is_within,
     load_library,
     read_specification,
     unknown,
@@ -146,3 +148,27 @@ def test_unknown_names_the_nearest() -> None:
     assert unknown("set", "bas", ["base", "ext"]) == "there is no set 'bas'; did you mean 'base'?"
     assert unknown("set", "x", ["base", "ext"]) == "there is no set 'x'; there are base, ext"
     assert unknown("set", "x", []) == "there is no set 'x'"
+
+
+@pytest.mark.parametrize(
+    ("bound", "value", "kept"),
+    [
+        (">", "1", True),
+        (">", "0", False),
+        (">", "-1", False),
+        (">=", "0", True),
+        (">=", "-1", False),
+        ("", "-1", True),
+    ],
+)
+def test_a_declared_value_is_within_its_bound(bound: str, value: str, kept: bool) -> None:
+    assert is_within(bound, Fraction(value)) is kept
+    text = f'# mine\nparam rho = {value} s{f" where rho {bound} 0" if bound else ""} "mine"'
+    if kept:
+        assert library(text).parameters["rho"].value == Fraction(value)
+        return
+    with pytest.raises(TextError) as caught:
+        library(text)
+    assert f"mine.spec, line 2, column 1: rho={value} s: it is declared with rho {bound} 0" in str(
+        caught.value
+    )

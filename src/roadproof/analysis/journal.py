@@ -73,12 +73,9 @@ class Journal:
         try:
             journal = read_journal(self.path)
         except InputError as error:
-            raise UsageError(f"{error}: name another folder with --out, or remove {self.path}") from None
+            raise UsageError(self._foreign(f"it is no journal of this version ({error})")) from None
         if journal.head.content != self.head:
-            raise UsageError(
-                f"{self.folder} holds the answers to another question, or to this one under another library: "
-                f"name another folder with --out, or remove {self.path}"
-            )
+            raise UsageError(self._foreign("to this one under another library"))
         for line in answers_of(journal, self.library):
             if line.fault:
                 say(f"asked again, since a kept answer does not count: {line.fault}")
@@ -86,6 +83,12 @@ class Journal:
                 kept.append(line.record.content)
         self._write([self.head, *kept])
         return [self._with_paths(record, set(record["evidence"])) for record in kept]
+
+    def _foreign(self, otherwise: str) -> str:
+        return (
+            f"{self.folder} holds the answers to another question, or {otherwise}: name another folder with "
+            f"--out, or remove {self.path}"
+        )
 
     def add(self, answer: Mapping[str, Any]) -> None:
         """Append one answer under its seal; the files that ``evidence`` names have been written before."""
