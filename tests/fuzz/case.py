@@ -8,13 +8,14 @@ from typing import Any
 
 from roadproof.judge.truth import Cut, TruthSet
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.world.drive import Drive, Motion, Piece
 
 FOUND = Path(__file__).parent / "found"
 
 NAMES: Mapping[str, Any] = {
-    **{x.__name__: x for module in (f, t) for x in vars(module).values() if isinstance(x, type)},
+    **{x.__name__: x for module in (syntax, f, t) for x in vars(module).values() if isinstance(x, type)},
     **{x.__name__: x for x in (Cut, TruthSet, Drive, Motion, Piece, Fraction)},
 }
 """What the ``repr`` of a case is made of."""

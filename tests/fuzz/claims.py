@@ -7,17 +7,17 @@ stays UNKNOWN counts for nothing.
 from collections import Counter
 
 from hypothesis import strategies as st
-from prove.claims import PROVED, is_false_on, settle, specification
-from prove.test_random_claims import claims, is_true_on, traces
 
 from fuzz.case import Disagreement
+from prove.claims import PROVED, is_false_on, settle, specification
+from prove.test_random_claims import claims, is_true_on, traces
 from roadproof.evidence.certificate import refusal
 from roadproof.solve.smt import ask
 from roadproof.verdict import Verdict
 
 TRACES = 40  # for each claim
 CHUNK = 20
-EFFORT = 1.0
+UNITS = 1.0
 
 cases = st.tuples(claims(), st.lists(traces, min_size=TRACES, max_size=TRACES))
 notes: Counter[str] = Counter()
@@ -26,7 +26,7 @@ notes: Counter[str] = Counter()
 def check(case: tuple[str, list[dict]]) -> int:
     """How many traces spoke for the verdict."""
     claim, tried = case
-    result = settle(claim, timeout=EFFORT)
+    result = settle(claim, units=UNITS)
     notes[str(result.verdict)] += 1
     if result.verdict in PROVED:
         if refusal(result.certificate, specification().library, ask) is not None:

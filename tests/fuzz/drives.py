@@ -8,10 +8,10 @@ from fractions import Fraction
 
 import numpy as np
 from hypothesis import strategies as st
-from judge.cases import comparisons, drives, formulas
-from judge.pinning import disagreement_on_drive
 
 from fuzz.case import Disagreement
+from judge.cases import comparisons, drives, formulas
+from judge.pinning import disagreement_on_drive
 from roadproof.judge import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

@@ -146,7 +146,14 @@ def random_trace(seed: int) -> Held:
             values.append(values[-1] if rng.random() < 0.6 else Fraction(rng.randint(low, high), 2))
         return tuple(values)
 
-    ranges = {"s": (-8, 20), "d": (1, 15), "v_lon": (0, 8), "v_lat": (-2, 2), "a_lon": (-4, 4), "a_lat": (-2, 2)}
+    ranges = {
+        "s": (-8, 20),
+        "d": (1, 15),
+        "v_lon": (0, 8),
+        "v_lat": (-2, 2),
+        "a_lon": (-4, 4),
+        "a_lat": (-2, 2),
+    }
     signals = {f"{name}({x})": course(*ends) for x in ("SV", "POV") for name, ends in ranges.items()}
     sizes = {f"length({x})": Fraction(rng.randint(2, 9), 2) for x in ("SV", "POV")}
     return Held(signals, sizes | {f"width({x})": Fraction(rng.randint(2, 4), 2) for x in ("SV", "POV")})
@@ -198,7 +205,10 @@ def unrolled(formula: Formula, traces: list[Held], answers: list[bool]):
     for i, trace in enumerate(traces):
         definition = Definition(trace)
         circuit = unroll(formula, Grid(DT, definition.last))
-        if evaluate(circuit, lambda at, definition=definition: definition.holds(at.atom, at.step)) != answers[i]:
+        if (
+            evaluate(circuit, lambda at, definition=definition: definition.holds(at.atom, at.step))
+            != answers[i]
+        ):
             yield i, "the circuit says otherwise"
 
 
@@ -261,7 +271,8 @@ def _batch(traces: list[Held]) -> Batch:
         return [float(v) for v in values] + [float("nan")] * (longest - len(values))
 
     signals = {
-        _split(name): np.array([column(trace.signals[name]) for trace in traces]).T for name in traces[0].signals
+        _split(name): np.array([column(trace.signals[name]) for trace in traces]).T
+        for name in traces[0].signals
     }
     sizes = {_split(name): np.array([float(x.sizes[name]) for x in traces]) for name in traces[0].sizes}
     return Batch(DT, lengths, signals, sizes)

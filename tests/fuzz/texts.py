@@ -1,10 +1,10 @@
 """Trees and formulas to text and back: what is printed must be read as what it was."""
 
 from hypothesis import strategies as st
-from logic import strategies
-from logic.test_show import canonical
 
 from fuzz.case import Disagreement
+from logic import strategies
+from logic.test_show import canonical
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim

@@ -1,9 +1,8 @@
-"""The judge's operators on sets of instants, open and closed ends, against the definition by regions. Exact."""
-
-from judge.cases import opaque_cases
-from judge.pinning import disagreement_on_sets
+"""The judge's operators on sets of instants, open and closed ends, against the definition. Exact."""
 
 from fuzz.case import Disagreement
+from judge.cases import opaque_cases
+from judge.pinning import disagreement_on_sets
 from roadproof.judge.truth import TruthSet
 from roadproof.logic.formula import Formula
 
