@@ -11,7 +11,7 @@ from mutants.edits import Edit
 from mutants.places import places_of
 
 SLOWEST = 30.0
-"""Seconds (with recording) above which a test is too slow to be run on every fault it could see."""
+"""Seconds of processor time (with recording) above which a test is too slow to be run on every fault."""
 
 BUDGET = 240.0
 """Seconds of tests, as recorded, that one fault is given: the fastest of those that run its line."""
