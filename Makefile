@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test demo findings lint unit format clean
+.PHONY: test demo findings mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -29,6 +29,19 @@ demo: $(READY)
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m findings $(ARGS)
+
+# Small faults in the source, each tried against the tests that run its line (docs/tests.md); hours, taken
+# up again where it stopped. ARGS='--only judge/ --most 20' asks for less.
+mutants: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m mutants record --jobs $(JOBS)
+	PYTHONPATH=tests nice $(BIN)/python -m mutants run --jobs $(JOBS) $(ARGS)
+	PYTHONPATH=tests $(BIN)/python -m mutants report
+	PYTHONPATH=tests $(BIN)/python -m tally
+
+# Random formulas and traces through every reader; ARGS='--reader held --pairs 20000 --seed 7'.
+fuzz: $(READY)
+	PYTHONPATH=tests nice $(BIN)/python -m fuzz --keep $(ARGS)
+	PYTHONPATH=tests $(BIN)/python -m tally
 
 format: $(READY)
 	$(BIN)/ruff check --fix-only .

@@ -5,10 +5,13 @@ from pathlib import Path
 
 import pytest
 
+from planting import plant
+from roadproof.analysis import overlap
 from roadproof.analysis.meeting import Meeting, Node, conjunctions, read_numbers
 from roadproof.analysis.overlap import Asked, Entry, decide_group, groups_of, pairs_of, without_sectors
 from roadproof.analysis.placing import Shown, show_elsewhere
 from roadproof.cli.main import main
+from roadproof.effort import Effort
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import read_certificate, refusal
 from roadproof.evidence.witness import from_json, judge_file
@@ -65,11 +68,61 @@ def test_every_certificate_proves_its_own_pair(entries: dict[tuple[int, int], En
             assert refusal(certificate, bundled_library(), ask) is None
 
 
+BOTH_ROLES = Asked(meeting=Meeting(roles="any"))
+
+
+def decided(a: int, b: int) -> Entry:
+    """The answer for a pair in either role, which is two readings of how they meet."""
+    ((seed, group),) = groups_of(BOTH_ROLES, [(node(a), node(b))])
+    return decide_group(BOTH_ROLES, seed, group)[0]
+
+
+def is_proved_of_every_reading(entry: Entry) -> bool:
+    """Whether the certificate is about every way in which the pair might meet, and so are the cores."""
+    assert entry.certificate is not None
+    readings = conjunctions(BASE, entry.a, entry.b, BOTH_ROLES.meeting)
+    claim = json.loads(entry.certificate)["claim"]
+    cores = [core.formula for core in entry.cores]
+    return claim == " and ".join(f"not ({x})" for x in readings) and cores == list(readings)
+
+
+def test_impossible_is_proved_of_every_reading() -> None:
+    entry = decided(5, 6)
+    assert entry.verdict is Verdict.IMPOSSIBLE
+    assert len(conjunctions(BASE, node(5), node(6), BOTH_ROLES.meeting)) == 2
+    assert is_proved_of_every_reading(entry)
+
+
+def test_one_reading_that_is_impossible_does_not_make_the_pair_so() -> None:
+    first, second = conjunctions(BASE, node(3), node(8), BOTH_ROLES.meeting)
+    assert prove(BASE, f"not ({first})", Effort(5.0)).verdict is Verdict.PROVED
+    entry = decided(3, 8)
+    assert (entry.verdict, entry.formula) == (Verdict.WITNESSED, second)
+
+
+@pytest.mark.parametrize("kept", ["texts[:1]", "texts[1:]"])
+def test_a_proof_of_one_reading_only_is_noticed(kept: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    right = 'f"not ({x})" for x in texts'
+    plant(monkeypatch, overlap._Deciding, "_impossible", right, right.replace("texts", kept))
+    assert not is_proved_of_every_reading(decided(5, 6))
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [("x for x in texts if", "x for x in texts[:1] if"), ("if not left:", "if len(left) < len(texts):")],
+)
+def test_a_reading_that_is_forgotten_is_noticed(
+    right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch, overlap._Deciding, "decide", right, wrong)
+    assert decided(3, 8).verdict is not Verdict.WITNESSED
+
+
 def test_a_core_clashes_by_itself(entries: dict[tuple[int, int], Entry]) -> None:
     for entry in entries.values():
         for core in entry.cores:
             claim = f"not ({' and '.join(f'({part})' for part in core.parts)})"
-            assert prove(BASE, claim, 5.0).verdict is Verdict.PROVED
+            assert prove(BASE, claim, Effort(5.0)).verdict is Verdict.PROVED
             assert len(core.parts) < 8
 
 

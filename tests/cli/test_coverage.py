@@ -5,9 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from planting import plant
 from roadproof.analysis.coverage import claims, classes, settling
 from roadproof.analysis.coverage.classes import Found, Group, Survey, groups_of
 from roadproof.analysis.overlap import Asked
+from roadproof.cli import coverage
 from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.main import main
 from roadproof.errors import UsageError
@@ -65,6 +67,46 @@ def test_evidence_in_files_and_going_on(
     assert [x["certificate"] for x in again["classes"]] == [x["certificate"] for x in data["classes"]]
     assert len((out / "answers.jsonl").read_text().splitlines()) == 1 + len(WANTED)
     assert few == []
+
+
+def neither_gap_nor_proof(monkeypatch: pytest.MonkeyPatch, out: Path) -> tuple[int, str]:
+    """Exit code and verdict where one of two claims is not proved and the one class asked for is empty."""
+    some = ("danger(SV,POV) -> danger(POV,SV)", "F danger(SV,POV) -> scenario_1(SV,POV,L)")
+    monkeypatch.setattr(claims, "claims_of", lambda _: some)
+    every = groups_of
+
+    def one_group(survey: Survey) -> list[Group]:
+        return [Group(x.component) for x in every(survey) if x.name == "behaviourSV_8"]
+
+    monkeypatch.setattr(classes, "groups_of", one_group)
+    monkeypatch.setattr(settling, "find_in_catalogue", lambda *_: [])
+    code = run(out, "--no-pictures")
+    data = json.loads((out / "index.json").read_text())
+    assert data["gaps"] == []
+    return code, data["verdict"]
+
+
+def test_neither_gap_nor_proof_is_unknown(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    assert neither_gap_nor_proof(monkeypatch, tmp_path / "out") == (ExitCode.UNKNOWN, "UNKNOWN")
+
+
+FAULTS = [
+    (
+        "ExitCode.UNEXPECTED if gaps else ExitCode.UNKNOWN",
+        "ExitCode.UNEXPECTED if gaps else ExitCode.AS_EXPECTED",
+    ),
+    ("ExitCode.AS_EXPECTED if proved else", "ExitCode.AS_EXPECTED if not gaps else"),
+    ('"COVERED"\n        if proved', '"COVERED"\n        if not gaps'),
+    ("proved = all(", "proved = any("),
+]
+
+
+@pytest.mark.parametrize(("right", "wrong"), FAULTS)
+def test_a_doubt_that_passes_for_an_answer_is_noticed(
+    right: str, wrong: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    plant(monkeypatch, coverage, "run", right, wrong)
+    assert neither_gap_nor_proof(monkeypatch, tmp_path / "out") != (ExitCode.UNKNOWN, "UNKNOWN")
 
 
 def test_answers_that_compare_with_other_sets_are_not_taken_over(tmp_path: Path) -> None:

@@ -284,3 +284,9 @@ def test_formulas_that_are_not_bound_are_refused(formula, message):
 def test_a_missing_vehicle_is_named():
     with pytest.raises(UsageError, match="vehicle=B, but the drive has A"):
         judge(bound("given A, B: vehicle: s(B) > 0 m"), alone())
+
+
+def test_holds_is_the_truth_at_the_start():
+    early, late = bound("given A: vehicle: v_lon(A) < 1 m/s"), bound("given A: vehicle: v_lon(A) >= 1 m/s")
+    faster = alone(v_lon=0, last=(1, 0))
+    assert (judge(early, faster).holds, judge(late, faster).holds) == (True, False)

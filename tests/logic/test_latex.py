@@ -2,11 +2,14 @@
 
 import pytest
 
+from planting import plant
+from roadproof.logic import latex as latex_module
 from roadproof.logic.latex import align, latex, symbol
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.tree import tree
 from roadproof.spec.library import bundled_library
 
+U = r"\mathbin{\mathcal{U}}"
 DEFINITIONS = bundled_library().select("ext").definitions
 
 
@@ -80,6 +83,16 @@ def test_definitions_read_like_the_paper(name: str, shown: str) -> None:
         ),
         ("every x in {SV, POV2}: a", r"\bigwedge_{x\in\{\mathit{SV},\mathit{POV}_{2}\}} a"),
         ("(a / b)^2 >= 2 * 3", r"\left(\frac{a}{b}\right)^{2} \ge 2 \cdot 3"),
+        ("F (a U b)", rf"\mathcal{{F}} \left(a {U} b\right)"),
+        ("G[0, 1 s] (a U b)", rf"\mathcal{{G}}_{{[0,1\,\mathrm{{s}}]}} \left(a {U} b\right)"),
+        ("not (a U b)", rf"\neg \left(a {U} b\right)"),
+        ("F a U b", rf"\mathcal{{F}} a {U} b"),
+        ("(a U b) U c", rf"\left(a {U} b\right) {U} c"),
+        ("a U (b and c)", rf"a {U} \left(b \wedge c\right)"),
+        ("(a and b) U c", rf"\left(a \wedge b\right) {U} c"),
+        ("F (a -> b)", r"\mathcal{F} \left(a \Rightarrow b\right)"),
+        ("F (a < b)", r"\mathcal{F} a < b"),
+        ("every x in {SV}: (a U b)", rf"\bigwedge_{{x\in\{{\mathit{{SV}}\}}}} \left(a {U} b\right)"),
         ("a * (b + c) != a / (b + c)", r"a \left(b + c\right) \neq \frac{a}{b + c}"),
         ("inverse(a - b) <= abs(c)", r"\frac{1}{a - b} \le \left|c\right|"),
         ("a < 25 km/h", r"a < 25\,\mathrm{km}/\mathrm{h}"),
@@ -87,6 +100,28 @@ def test_definitions_read_like_the_paper(name: str, shown: str) -> None:
 )
 def test_formulas(text: str, shown: str) -> None:
     assert latex(parse_claim(text)) == shown
+
+
+PARENTHESES = [
+    (r"{_bounds(bounds)} {_show(right, UNARY)}", r"{_bounds(bounds)} {_show(right, UNTIL)}"),
+    (r"\neg {_show(body, UNARY)}", r"\neg {_show(body, UNTIL)}"),
+    ("{_show(left, UNARY)} {until}", "{_show(left, UNTIL)} {until}"),
+    ("{_show(right, UNTIL)}", "{_show(right, AND)}"),
+    (
+        "{_range(symbol(variable), domain)}}} {_show(body, UNARY)}",
+        "{_range(symbol(variable), domain)}}} {_show(body, OR)}",
+    ),
+]
+
+
+@pytest.mark.parametrize(("right", "wrong"), PARENTHESES)
+def test_parentheses_that_are_lost_are_noticed(
+    right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    texts = ["F (a U b)", "not (a U b)", "(a U b) U c", "a U (b and c)", "every x in {SV}: (a U b)"]
+    shown = [latex(parse_claim(text)) for text in texts]
+    plant(monkeypatch, latex_module, "_operator", right, wrong)
+    assert [latex(parse_claim(text)) for text in texts] != shown
 
 
 def test_align_puts_definitions_below_each_other() -> None:

@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from mutants import journal
-from mutants.choose import choose
+from mutants.choose import choose, faults_of, targets
 from mutants.edits import Edit
 from mutants.journal import Line
 from mutants.selection import Records, load_records, record_name
@@ -62,7 +62,7 @@ def record(records: Records, jobs: int) -> None:
         options = ["-p", "mutants.recording", "-p", "no:xdist", "-q"]
         command = [sys.executable, "-m", "pytest", str(path), *options]
         done = subprocess.run(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE)
-        print(path.relative_to(ROOT), done.stdout.decode().splitlines()[-1], flush=True)
+        print(path.relative_to(ROOT), done.stdout.decode().strip().rpartition("\n")[2], flush=True)
 
     with ThreadPoolExecutor(jobs) as pool:
         list(pool.map(one, records.missing))
@@ -96,7 +96,8 @@ def run(chosen: list[Edit], records: Records, jobs: int, most: int | None) -> No
 
     with ThreadPoolExecutor(jobs) as pool:
         list(pool.map(one, left))
-    journal.write(journal.read().values())
+    there = {edit.key for file in targets(PACKAGE) for edit in faults_of(PACKAGE, file)}
+    journal.write(line for line in journal.read().values() if line.key in there)
 
 
 def report(chosen: list[Edit]) -> None:
@@ -105,7 +106,7 @@ def report(chosen: list[Edit]) -> None:
     verdicts: dict[str, Counter[str]] = {}
     for edit in chosen:
         verdict = known[edit.key].verdict if edit.key in known else "not tried"
-        if edit.key in equivalent and verdict in ("survived", "unreached"):
+        if edit.key in equivalent:
             verdict = "equivalent"
         verdicts.setdefault(edit.file.split("/")[0], Counter())[verdict] += 1
         if verdict in ("survived", "unreached", "broken"):

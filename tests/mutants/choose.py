@@ -52,10 +52,9 @@ def _best(faults: list[Edit], number: int, seed: int, text: str) -> list[Edit]:
     found: list[Edit] = []
     for turn in zip_longest(*by_operator.values()):
         for fault in turn:
-            usable = fault is not None and (fault.file.endswith(".spec") or is_fault(text, fault.apply(text)))
-            if usable and len(found) < number:
+            if fault is not None and len(found) < number and is_fault(fault, text):
                 found.append(fault)
-        if len(found) >= number:
+        if len(found) == number:
             break
     return found
 

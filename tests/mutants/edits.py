@@ -6,6 +6,7 @@ An edit keeps the rest of the text as it is, so a report can show the line befor
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from hashlib import sha256
 
 from mutants.places import functions_of
@@ -112,12 +113,19 @@ def edits_of(file: str, text: str) -> list[Edit]:
     return made
 
 
-def is_fault(text: str, changed: str) -> bool:
-    """Whether a changed Python text still is a program, and another one."""
+def is_fault(edit: Edit, text: str) -> bool:
+    """Whether the changed text still is a program, and another one."""
+    if not edit.file.endswith(".py"):
+        return True
     try:
-        return ast.dump(ast.parse(changed)) != ast.dump(ast.parse(text))
+        return ast.dump(ast.parse(edit.apply(text))) != _dumped(text)
     except SyntaxError:
         return False
+
+
+@lru_cache(maxsize=1)
+def _dumped(text: str) -> str:
+    return ast.dump(ast.parse(text))
 
 
 def _faults(

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
+from mutants.choose import FOLDERS
 from mutants.edits import Edit
 from mutants.places import places_of
 
 SLOWEST = 30.0
-"""Seconds (with recording) above which a test is too slow to be run on every fault it could see."""
+"""Seconds of processor time (with recording) above which a test is too slow to be run on every fault."""
 
 BUDGET = 240.0
 """Seconds of tests, as recorded, that one fault is given: the fastest of those that run its line."""
@@ -29,11 +30,13 @@ def record_name(test_file: Path, root: Path) -> str:
 
 
 def test_files(root: Path) -> list[Path]:
-    """Every test file whose tests may be run on faults."""
+    """Every test file whose tests may be run on faults, those of the faulty folders first."""
     found = sorted(root.glob("tests/**/test_*.py"))
     own = ("tests/mutants/", "tests/fuzz/")
     named = [(path, str(path.relative_to(root))) for path in found]
-    return [path for path, name in named if name not in LEFT_OUT and not name.startswith(own)]
+    kept = [path for path, name in named if name not in LEFT_OUT and not name.startswith(own)]
+    order = [*FOLDERS, "spec"]
+    return sorted(kept, key=lambda path: order.index(path.parent.name) if path.parent.name in order else 99)
 
 
 @dataclass

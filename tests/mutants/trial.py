@@ -18,9 +18,11 @@ from mutants.edits import Edit
 COPIED = ("src", "tests", "models", "proofs", "examples", "docs", "README.md", "pyproject.toml")
 MEMORY = 12 << 30  # bytes of address space; a fault may ask for more without end
 FIRST = 15.0  # seconds of tests that are run before the others: most faults need no more
-PATIENCE = 6.0
-LEAST_PATIENCE = 60.0
-"""Seconds that the tests may take for each recorded second, and in all: beyond that the fault hangs."""
+PATIENCE = 4.0
+LEAST_PATIENCE = 40.0
+"""Seconds of processor time for each recorded second, and in all: beyond that the fault hangs."""
+
+WAITING = 20.0  # of wall clock for each of them, for what hangs and does nothing
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,11 @@ def copy_project(root: Path, folder: Path) -> None:
             shutil.copy2(source, folder / name)
 
 
+def _limit(seconds: int) -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+
+
 def run_tests(folder: Path, tests: list[str], seconds: float) -> tuple[int | None, str]:
     """pytest's exit code, None where it did not end in time, and the first test that failed."""
     listed = folder / f"tests-{threading.get_ident()}.txt"
@@ -126,16 +133,18 @@ def run_tests(folder: Path, tests: list[str], seconds: float) -> tuple[int | Non
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         start_new_session=True,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY)),
+        preexec_fn=lambda: _limit(int(seconds)),
     )
     try:
-        printed = process.communicate(timeout=seconds)[0].decode("utf-8", "replace")
+        printed = process.communicate(timeout=WAITING * seconds)[0].decode("utf-8", "replace")
     except subprocess.TimeoutExpired:
         return None, ""
     finally:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
+    if process.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return None, ""
     for line in printed.splitlines():
         word, _, rest = line.partition(" ")
         if word in ("FAILED", "ERROR") and "::" in rest:

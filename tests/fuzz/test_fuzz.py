@@ -1,0 +1,77 @@
+"""What the fuzz once found stays found; a few cases of each reader; and faults that it notices."""
+
+import importlib
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import Phase, find, settings
+
+from fuzz import case, claims, drives, held, search, texts, truths
+from fuzz.run import READERS, run
+from roadproof.encode import unroll
+from roadproof.judge import exact, signals, truth
+from roadproof.logic import show
+from roadproof.monitor import semantics
+from roadproof.witness import question
+
+FOUND = sorted(case.FOUND.glob("*.txt"))
+FEW = {"held": 160, "truths": 25, "drives": 25, "claims": 80, "search": 2, "texts": 25}
+
+
+@pytest.mark.parametrize("path", FOUND, ids=lambda path: path.stem)
+def test_what_was_found_is_mended(path: Path) -> None:
+    reader, kept = case.load(path)
+    importlib.import_module(f"fuzz.{reader}").check(kept)
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_readers_agree_on_a_few(reader: str, tmp_path: Path) -> None:
+    counted = run(importlib.import_module(f"fuzz.{reader}"), FEW[reader], 1, tmp_path)
+    assert counted.pairs >= FEW[reader]
+    assert counted.found == ()
+
+
+def test_a_case_is_read_back_from_its_file(tmp_path: Path) -> None:
+    for reader in (held, truths, drives, texts):
+        kept = find(reader.cases, lambda _: True, settings=settings(database=None, phases=[Phase.generate]))
+        path = case.save("name", case.Disagreement("two say\ndifferent things", kept), tmp_path)
+        assert case.load(path) == ("name", kept)
+        assert path.read_text().startswith("# two say different things\n")
+
+
+def classic_until(left, low, high, right):
+    """Asks for its left side from 0 on."""
+    start = truth.always(Fraction(0), low, left) if low > 0 else truth.ALWAYS
+    return truth.intersection([start, truth.until(left, low, high, right)])
+
+
+def full_square(position, speed, acceleration, begin):
+    """a·t² for a/2·t²."""
+    return TRUE_QUADRATIC(position, speed, 2 * acceleration, begin)
+
+
+TRUE_QUADRATIC = signals._quadratic
+STRICT = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+FAULTS = {
+    "held: until asks for its left side too early": (held, exact, "until", classic_until),
+    "held: not keeps the view": (held, semantics, "OPPOSITE", {view: view for view in semantics.View}),
+    "held: strictness is lost": (held, unroll, "_OPPOSITE", STRICT),
+    "truths: until asks for its left side too early": (truths, exact, "until", classic_until),
+    "drives: a square too large": (drives, signals, "_quadratic", full_square),
+    "claims: always is sometimes": (claims, exact, "always", truth.eventually),
+    "texts: a difference binds like a product": (texts, show, "_LEVEL", {**show._LEVEL, "-": show.PRODUCT}),
+    "search: all starts are at 0": (search, question, "starting_range", lambda *_: None),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_found_and_kept(fault: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    reader, owner, name, wrong = FAULTS[fault]
+    monkeypatch.setattr(owner, name, wrong)
+    path = run(reader, 4000, 1, tmp_path, 1).found[0]
+    kept = case.load(path)[1]
+    with pytest.raises(case.Disagreement):
+        reader.check(kept)
+    monkeypatch.undo()
+    assert reader.check(kept) >= 0

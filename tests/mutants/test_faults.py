@@ -1,0 +1,121 @@
+"""The tool that makes small faults: what it makes, that a fault keeps its name, which tests it would run."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from mutants.choose import choose, faults_of, targets
+from mutants.edits import edits_of, is_fault
+from mutants.places import places_of
+from mutants.selection import Records
+from mutants.spec_edits import spec_edits_of
+
+PACKAGE = Path(__file__).parents[2] / "src/roadproof"
+SMALL = '''
+"""Not this: 1 < 2."""
+
+def least(a: int, b: int, seen: list[int]) -> bool:
+    """Nor this."""
+    if a < b and not seen:
+        return min(a, b) == seen[1:][0] - 1
+    for x in seen:
+        if x:
+            continue
+    raise ValueError(f"{a + 1}")
+'''
+
+
+def made(text: str = SMALL) -> set[tuple[str, str, str]]:
+    return {(x.operator, x.before, x.after) for x in edits_of("small.py", text) if is_fault(x, text)}
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        ("strictness", "a < b", "(a <= b)"),
+        ("direction", "a < b", "(a > b)"),
+        ("and, or", "a < b and not seen", "(a < b or not seen)"),
+        ("operand left out", "a < b and not seen", "(a < b)"),
+        ("not dropped", "not seen", "(seen)"),
+        ("condition constant", "a < b and not seen", "(True)"),
+        ("return constant", "min(a, b) == seen[1:][0] - 1", "(False)"),
+        ("opposite", "min(a, b) == seen[1:][0] - 1", "(min(a, b) != seen[1:][0] - 1)"),
+        ("min, max, any, all", "min", "max"),
+        ("slice end", "seen[1:]", "(seen[:])"),
+        ("slice end", "seen[1:]", "(seen[1 + 1:])"),
+        ("arithmetic", "seen[1:][0] - 1", "(seen[1:][0] + 1)"),
+        ("constant", "0", "1"),
+        ("constant", "1", "2"),
+        ("continue to break", "continue", "break"),
+    ],
+)
+def test_faults_of_python(fault: tuple[str, str, str]) -> None:
+    assert fault in made()
+
+
+def test_words_are_left_alone() -> None:
+    assert not any("a + 1" in before or "1 < 2" in before for _, before, _ in made())
+
+
+def test_a_verdict_becomes_another() -> None:
+    assert ("verdict", "Verdict.PROVED", "Verdict.UNKNOWN") in made("x = Verdict.PROVED\n")
+    assert ("constant", "'unsat'", "'unknown'") in made("x = 'unsat'\n")
+
+
+def test_faults_of_definitions() -> None:
+    text = 'def near(a, b: vehicle) "a < b" := s(a) <= s(b) and not F[0, minSafe] ahead(a, b) # a < b\n'
+    faults = {(x.operator, x.before, x.after) for x in spec_edits_of("small.spec", text)}
+    assert faults >= {
+        ("sign", "<=", "<"),
+        ("sign", "<=", ">="),
+        ("word", "and", "or"),
+        ("word", "not", ""),
+        ("word", "F", "G"),
+        ("word", "minSafe", "minDanger"),
+        ("number", "0", "1"),
+        ("window left out", "F[0, minSafe]", "F"),
+        ("arguments swapped", "ahead(a, b)", "ahead(b, a)"),
+    }
+    assert not any(before == "<" for _, before, _ in faults)
+
+
+def test_a_fault_keeps_its_name_when_the_file_grows() -> None:
+    before = {x.key for x in edits_of("small.py", SMALL)}
+    grown = "import this\n\ndef other():\n    return 7\n" + SMALL
+    after = {x.key for x in edits_of("small.py", grown)}
+    assert len(before) == len(edits_of("small.py", SMALL))
+    assert before < after
+
+
+def test_every_fault_of_a_file_has_a_name_of_its_own() -> None:
+    for file in ("judge/truth.py", "solve/bounds.py", "spec/library/iso34502.spec"):
+        faults = faults_of(PACKAGE, Path(file))
+        assert len({x.key for x in faults}) == len(faults) > 50
+
+
+def test_the_choice_follows_from_the_seed() -> None:
+    few = [x.key for x in choose(PACKAGE, 60, 1, "judge/")]
+    assert (
+        few
+        == [x.key for x in choose(PACKAGE, 60, 1, "judge/")]
+        != [x.key for x in choose(PACKAGE, 60, 2, "judge/")]
+    )
+    folders = {str(file).split("/")[0] for file in targets(PACKAGE)}
+    assert folders == {
+        *("judge", "monitor", "encode", "solve"),
+        *("evidence", "prove", "witness", "traffic", "spec"),
+    }
+
+
+def test_tests_of_a_line_are_the_near_ones_and_then_the_fastest() -> None:
+    text = (PACKAGE / "judge/truth.py").read_text("utf-8")
+    fault = next(x for x in edits_of("judge/truth.py", text) if x.context.startswith("complement|"))
+    place = ("judge/truth.py", places_of(ast.parse(text), text)[fault.lines[0]])
+    near, far, slow, other = (f"tests/{x}.py::t" for x in ("judge/a", "prove/b", "judge/slow", "judge/other"))
+    records = Records({near: 9.0, far: 0.1, slow: 99.0, other: 0.1})
+    records.by_place[place] = {near, far, slow}
+    records.by_function[place[0], "complement"] = {near, far, slow, other}
+    assert records.tests_for(fault, PACKAGE) == [near, far]
+    del records.by_place[place]
+    assert records.tests_for(fault, PACKAGE) == [other, near, far]

@@ -1,0 +1,117 @@
+"""The figures of docs/tests.md, counted from what lies in the repository: ``python -m tally`` writes them.
+
+Each stands between ``<!-- tally: NAME -->`` and ``<!-- end -->``. Nothing is run for them but pytest's
+collection, and that only to count planted faults.
+"""
+
+import ast
+import json
+import re
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+
+from console import sessions_of
+from mutants import journal
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs/tests.md"
+PLANTED = ("fault", "planted", "mutant", "noticed")
+"""A test case with one of these words in its name plants a fault in the program and asks to be told of it."""
+
+
+def main() -> int:
+    text = PAGE.read_text("utf-8")
+    for name, table in {**TABLES, "planted": planted}.items():
+        text = put(text, name, table())
+    PAGE.write_text(text, "utf-8")
+    return 0
+
+
+def put(page: str, name: str, table: str) -> str:
+    """``page`` with what stands at a mark replaced."""
+    begin, end = re.escape(f"<!-- tally: {name} -->"), re.escape("<!-- end -->")
+    found, times = re.subn(f"({begin}\n).*?({end})", lambda m: f"{m[1]}{table}{m[2]}", page, flags=re.S)
+    assert times == 1, f"{PAGE.name} has the mark '{name}' {times} times"
+    return found
+
+
+def told(page: str, name: str) -> str:
+    """What stands at a mark of ``page``."""
+    found = re.search(f"<!-- tally: {name} -->\n(.*?)<!-- end -->", page, re.S)
+    assert found, name
+    return found[1]
+
+
+def rows(head: Iterable[object], body: Iterable[Iterable[object]]) -> str:
+    lines = [head, ["---"] * len(list(head)), *body]
+    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+
+
+def attacks() -> str:
+    """A row for each page of attacks: questions, and commands that are run."""
+    found = []
+    for path in sorted((ROOT / "tests/attacks").glob("*.md")):
+        page = path.read_text("utf-8")
+        if path.name != "README.md":
+            title = page.partition("\n")[0].removeprefix("# ")
+            asked = len(re.findall(r"^## ", page, re.M))
+            found.append((f"[{title}](../tests/attacks/{path.name})", asked, len(sessions_of(page))))
+    total = ("all", sum(row[1] for row in found), sum(row[2] for row in found))
+    return rows(("page", "questions", "commands run by the tests"), [*found, total])
+
+
+def fuzz() -> str:
+    """A row for each reader: pairs, seeds, disagreements."""
+    kept = json.loads((ROOT / "tests/fuzz/results.json").read_text("utf-8"))
+    by_reader: dict[str, list[dict[str, int]]] = {}
+    for entry in kept:
+        by_reader.setdefault(entry["reader"], []).append(entry)
+    found = []
+    for reader, entries in by_reader.items():
+        module = ast.parse((ROOT / f"tests/fuzz/{reader}.py").read_text("utf-8"))
+        what = (ast.get_docstring(module) or "").partition("\n")[0].rstrip(".")
+        seeds = ", ".join(str(entry["seed"]) for entry in entries)
+        counts = (sum(entry[key] for entry in entries) for key in ("pairs", "disagreements"))
+        found.append((f"`{reader}`: {what[0].lower()}{what[1:]}", *counts, seeds))
+    total = ("all", sum(row[1] for row in found), sum(row[2] for row in found), "")
+    body = [(row[0], f"{row[1]:,}", row[2], row[3]) for row in [*found, total]]
+    return rows(("reader", "pairs", "disagreements", "seeds"), body)
+
+
+def mutants() -> str:
+    """A row for each folder: faults tried and what became of them."""
+    counted: dict[str, Counter[str]] = {}
+    equivalent = journal.equivalents()
+    for line in journal.read().values():
+        verdict = "equivalent" if line.key in equivalent else line.verdict
+        counted.setdefault(line.file.split("/")[0], Counter())[verdict] += 1
+    counted["all"] = sum(counted.values(), Counter())
+    columns = ("caught", "hung", "equivalent", "survived", "unreached")
+    body = [(name, found.total(), *(found[c] for c in columns)) for name, found in counted.items()]
+    return rows(("folder", "tried", "caught", "by hanging", "equivalent", "survived", "run by no test"), body)
+
+
+def planted() -> str:
+    """A row for each folder: test cases that plant a fault."""
+    command = [sys.executable, "-m", "pytest", "tests", "--collect-only", "-q", "-p", "no:xdist"]
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)
+    cases = [line for line in done.stdout.decode().splitlines() if line.startswith("tests/")]
+    counted = Counter(case.split("/")[1] for case in cases if is_planted(case))
+    body = [*sorted(counted.items()), ("all", counted.total())]
+    return rows(("folder", "planted faults"), body)
+
+
+def is_planted(case: str) -> bool:
+    """By the name of the test, its parameters and its file, not of its folder."""
+    file, _, name = case.partition("::")
+    return any(word in f"{Path(file).name} {name}".lower() for word in PLANTED)
+
+
+TABLES = {"attacks": attacks, "fuzz": fuzz, "mutants": mutants}
+"""Those that are counted from files alone, so that a test can compare them."""
+
+if __name__ == "__main__":
+    raise SystemExit(main())
