@@ -44,7 +44,9 @@ def test_what_the_clock_cuts_off_is_in_doubt_and_says_so(line, capfd):
     assert CLOCK in printed.out + printed.err
 
 
-@pytest.mark.parametrize("line", [("witness", "4"), ("prove", "P1", "--set", "base", "--jobs", "1")])
+@pytest.mark.parametrize(
+    "line", [("witness", "4", "--engine", "smt"), ("prove", "P3", "--set", "base", "--no-drive")]
+)
 def test_what_work_cuts_off_does_not_speak_of_the_clock(line, capfd):
     assert main([*line, "--effort", "0.0001", "--json", "-"]) == 20
     verdicts = json.loads(capfd.readouterr().out)["verdicts"]

@@ -141,6 +141,12 @@ def _refuting_drive(job: Job) -> Mapping[str, Any] | None:
     except ImportError:
         return None
     try:
-        return refuting_drive(job.task.claim, job.task.set_name, job.options, job.specs, job.effort.of(DRIVE))
+        return refuting_drive(
+            job.task.claim,
+            job.task.set_name,
+            job.options,
+            job.specs,
+            job.effort.of(min(DRIVE, job.effort.units)),
+        )
     except (InputError, UsageError):
         return None
