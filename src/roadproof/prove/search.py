@@ -165,20 +165,24 @@ class Search:
         read = grounding.session.values([constant(name) for name in names])
         return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
 
-    def _pool(self, values: Mapping[str, Fraction]) -> list[Moment]:
-        """Known moments, simplest first; shifted by interval bounds once the search has widened."""
-        pool = dict(self.grounding.moments)
-        frontier = list(pool)
+    def _pool(self, values: Mapping[str, Fraction]) -> dict[Fraction, Moment]:
+        """A known moment for each value, the simplest; shifted by interval bounds once the search has widened."""
+        pool: dict[Fraction, Moment] = {}
+        for moment in self.grounding.moments:
+            pool.setdefault(moment.value(values), moment)
+        frontier = dict(pool)
+        bounds = [(bound, bound.value(values)) for bound in self.bound_moments]
         for _ in range(self.spread):
-            frontier = [
-                shifted
-                for moment in frontier
-                for bound in self.bound_moments
-                for shifted in (moment + bound, moment - bound)
-                if shifted not in pool and shifted.value(values) >= 0
-            ]
-            pool |= dict.fromkeys(frontier)
-        return list(pool)
+            shifted: dict[Fraction, Moment] = {}
+            for value, moment in frontier.items():
+                for bound, by in bounds:
+                    if value + by not in pool:
+                        shifted.setdefault(value + by, moment + bound)
+                    if value - by not in pool and value >= by:
+                        shifted.setdefault(value - by, moment - bound)
+            pool |= shifted
+            frontier = shifted
+        return pool
 
     def _instantiate(self, values: dict[str, Fraction]) -> bool:
         """Instantiate what the model violates; whether there was anything."""
@@ -186,9 +190,10 @@ class Search:
         switches = [u.switch for u in grounding.universals] + [u.switch for u in grounding.road_universals]
         active = {s for s, on in zip(switches, grounding.session.values(switches), strict=True) if on}
         wanted: list[tuple[Universal, Moment]] = []
+        pool = self._pool(values)
         for universal in grounding.universals:
             if universal.switch in active:
-                wanted += [(universal, moment) for moment in self._missing(universal, values)]
+                wanted += [(universal, moment) for moment in _missing(universal, pool, values)]
         flat = [(u, m, u.body(m)) for u, m in wanted if u.is_flat]
         truths = grounding.session.values([body for _, _, body in flat])
         chosen = [(u, m) for u, m in wanted if not u.is_flat]
@@ -202,17 +207,6 @@ class Search:
                     grounding.instantiate_road(road, element)
                     found = True
         return found
-
-    def _missing(self, universal: Universal, values: dict[str, Fraction]) -> list[Moment]:
-        """One moment for each value inside the window at which there is no instance yet."""
-        seen = {moment.value(values) for moment in universal.done}
-        missing: list[Moment] = []
-        for moment in self._pool(values):
-            value = moment.value(values)
-            if value not in seen and universal.window.holds(value, values):
-                seen.add(value)
-                missing.append(moment)
-        return missing
 
     def _states(self, values: dict[str, Fraction]) -> dict[Fraction, dict[str, bool]]:
         """Which atoms the model makes true, by instant; atoms that it leaves open are not listed."""
@@ -291,6 +285,14 @@ class Search:
                     known[origin] = None
                     waiting.append(origin)
         return list(known)
+
+
+def _missing(
+    universal: Universal, pool: Mapping[Fraction, Moment], values: dict[str, Fraction]
+) -> list[Moment]:
+    """The moments of ``pool`` inside the window at whose value there is no instance yet."""
+    seen = {moment.value(values) for moment in universal.done}
+    return [m for value, m in pool.items() if value not in seen and universal.window.holds(value, values)]
 
 
 def _bounds_of(formula: Formula) -> list[Moment]:
