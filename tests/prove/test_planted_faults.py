@@ -25,7 +25,7 @@ from roadproof.verdict import Verdict
 from roadproof.world.road import Lanelet, Road
 
 UNITS = 0.4
-true_smt, true_holds, true_shrink = Window.smt, Window.holds, Search._shrink
+true_smt, true_inside, true_shrink = Window.smt, Window.inside, Search._shrink
 true_unfold, true_atom, true_name = Grounding._unfold, Grounding.atom, Grounding._name_time
 true_spread, true_holds_part = refutation._spread, refutation._holds
 
@@ -36,16 +36,18 @@ def phi_at_the_end(monkeypatch):
     def smt(self, when):
         return true_smt(Window(self.low, self.high), when)
 
-    def holds(self, value, values):
-        return true_holds(Window(self.low, self.high), value, values)
+    def inside(self, instants, values):
+        return true_inside(Window(self.low, self.high), instants, values)
 
     monkeypatch.setattr(Window, "smt", smt)
-    monkeypatch.setattr(Window, "holds", holds)
+    monkeypatch.setattr(Window, "inside", inside)
 
 
 def open_windows(monkeypatch):
     monkeypatch.setattr(Window, "smt", lambda self, when: [f"(<= {self.low.smt()} {when.smt()})"])
-    monkeypatch.setattr(Window, "holds", lambda self, value, values: value >= self.low.value(values))
+    monkeypatch.setattr(
+        Window, "inside", lambda self, instants, values: true_inside(Window(self.low, None), instants, values)
+    )
 
 
 def swapped_operators(monkeypatch):
@@ -74,7 +76,7 @@ def shared_names(monkeypatch):
 
 def no_guard(monkeypatch):
     """A universal holds outside its window, too."""
-    monkeypatch.setattr(Window, "holds", lambda self, value, values: True)
+    monkeypatch.setattr(Window, "inside", lambda self, instants, values: list(instants))
 
     def instantiate(self, universal, when):
         universal.done.append(when)

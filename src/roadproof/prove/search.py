@@ -25,6 +25,9 @@ from roadproof.solve.smt import Answer
 
 MOST_ROUNDS = 400
 MOST_ELEMENTS = 24
+# Units of work for a look at one moment of one universal, and for an instance.
+LOOK = 2e-6
+INSTANCE = 2e-4
 WISH = 0.25  # units of work for a check with wishes, or for one of a shorter proof
 
 
@@ -116,7 +119,7 @@ class Search:
                 out = meter.is_out()
                 return GaveUp(meter.reason() if out else "z3 gave no answer to the ground query")
             values = self._values()
-            if self._instantiate(values):
+            if self._instantiate(values, meter):
                 if len(self.grounding.elements) > MOST_ELEMENTS:
                     return GaveUp(f"no end after {MOST_ELEMENTS} lanes and lanelets that must exist")
                 continue
@@ -166,7 +169,7 @@ class Search:
         return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
 
     def _pool(self, values: Mapping[str, Fraction]) -> dict[Fraction, Moment]:
-        """A known moment for each value, the simplest; shifted by interval bounds once the search has widened."""
+        """A known moment for each value, the simplest; also shifted by interval bounds after ``widen``."""
         pool: dict[Fraction, Moment] = {}
         for moment in self.grounding.moments:
             pool.setdefault(moment.value(values), moment)
@@ -184,13 +187,14 @@ class Search:
             frontier = shifted
         return pool
 
-    def _instantiate(self, values: dict[str, Fraction]) -> bool:
+    def _instantiate(self, values: dict[str, Fraction], meter: Meter) -> bool:
         """Instantiate what the model violates; whether there was anything."""
         grounding = self.grounding
         switches = [u.switch for u in grounding.universals] + [u.switch for u in grounding.road_universals]
         active = {s for s, on in zip(switches, grounding.session.values(switches), strict=True) if on}
         wanted: list[tuple[Universal, Moment]] = []
         pool = self._pool(values)
+        meter.spend(LOOK * len(pool) * len(active))
         for universal in grounding.universals:
             if universal.switch in active:
                 wanted += [(universal, moment) for moment in _missing(universal, pool, values)]
@@ -198,6 +202,7 @@ class Search:
         truths = grounding.session.values([body for _, _, body in flat])
         chosen = [(u, m) for u, m in wanted if not u.is_flat]
         chosen += [(u, m) for (u, m, _), true in zip(flat, truths, strict=True) if not true]
+        meter.spend(INSTANCE * len(chosen))
         for universal, moment in chosen:
             grounding.instantiate(universal, moment)
         found = bool(chosen)
@@ -292,7 +297,7 @@ def _missing(
 ) -> list[Moment]:
     """The moments of ``pool`` inside the window at whose value there is no instance yet."""
     seen = {moment.value(values) for moment in universal.done}
-    return [m for value, m in pool.items() if value not in seen and universal.window.holds(value, values)]
+    return [pool[instant] for instant in universal.window.inside(pool, values) if instant not in seen]
 
 
 def _bounds_of(formula: Formula) -> list[Moment]:
