@@ -57,7 +57,7 @@ def test_a_countermodel():
     [
         (replace(FOUND, parameters={"minSafe": number(-1)}), "declared minSafe >= 0"),
         (replace(FOUND, parameters={"minSafe": number(1)}), "true on it"),
-        (replace(FOUND, parameters={}), "minSafe"),
+        (replace(FOUND, parameters={}), "still holds a parameter"),
         (replace(FOUND, held="after"), "true on it"),
         (replace(FOUND, instants=FOUND.instants[1:]), "ascend from 0"),
         (replace(FOUND, instants=FOUND.instants[::-1]), "ascend from 0"),

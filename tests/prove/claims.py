@@ -173,6 +173,7 @@ INVALID = [
     "(every N in lanes: some M in lanes: atLane(SV,M) <-> atLane(POV,N))"
     " -> (some M in lanes: every N in lanes: atLane(SV,M) <-> atLane(POV,N))",
     "some M in adjacentLanes(L): true",
+    "every M in adjacentLanes(L): not atLane(SV,M)",
     "atLane(SV,L) -> onMainRoad(SV)",
     "given l: lanelet: G occ(SV,l)",
     "(some l in zone(main): F occ(SV,l)) -> (every K in lanes: some l in lanelets(K): F occ(SV,l))",

@@ -6,7 +6,7 @@ This is the finder: what it finds is derived again by ``evidence.derivation``, w
 grounding code with it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -28,14 +28,13 @@ class Window:
     high: Moment | None
     strict: bool = False
 
-    def holds(self, value: Fraction, values: dict[str, Fraction]) -> bool:
-        """Whether a moment with ``value`` lies inside, in the model ``values``."""
-        if value < self.low.value(values):
-            return False
+    def inside(self, instants: Iterable[Fraction], values: dict[str, Fraction]) -> list[Fraction]:
+        """Those of ``instants`` that lie inside, in the model ``values``."""
+        low = self.low.value(values)
         if self.high is None:
-            return True
-        end = self.high.value(values)
-        return value < end if self.strict else value <= end
+            return [instant for instant in instants if low <= instant]
+        high = self.high.value(values)
+        return [x for x in instants if low <= x and (x < high if self.strict else x <= high)]
 
     def smt(self, when: Moment) -> list[str]:
         guards = [f"(<= {self.low.smt()} {when.smt()})"]

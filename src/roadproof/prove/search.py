@@ -24,10 +24,10 @@ from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import Answer
 
 MOST_ROUNDS = 400
-# What this file does in about a second beside what z3 does: moments looked at, instances made.
-MOMENTS_A_UNIT = 50_000
-INSTANCES_A_UNIT = 2_000
 MOST_ELEMENTS = 24
+# Units of work for a look at one moment of one universal, and for an instance.
+LOOK = 2e-6
+INSTANCE = 2e-4
 WISH = 0.25  # units of work for a check with wishes, or for one of a shorter proof
 
 
@@ -168,6 +168,7 @@ class Search:
         read = grounding.session.values([constant(name) for name in names])
         return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
 
+<<<<<<< HEAD
     def _pool(self, values: Mapping[str, Fraction]) -> list[tuple[Moment, Fraction]]:
         """Known moments and when they are, simplest first; shifted by interval bounds once widened."""
         pool = dict(self.grounding.moments)
@@ -182,6 +183,26 @@ class Search:
             ]
             pool |= dict.fromkeys(frontier)
         return [(moment, moment.value(values)) for moment in pool]
+=======
+    def _pool(self, values: Mapping[str, Fraction]) -> dict[Fraction, Moment]:
+        """A known moment for each value, the simplest; also shifted by interval bounds after ``widen``."""
+        pool: dict[Fraction, Moment] = {}
+        for moment in self.grounding.moments:
+            pool.setdefault(moment.value(values), moment)
+        frontier = dict(pool)
+        bounds = [(bound, bound.value(values)) for bound in self.bound_moments]
+        for _ in range(self.spread):
+            shifted: dict[Fraction, Moment] = {}
+            for value, moment in frontier.items():
+                for bound, by in bounds:
+                    if value + by not in pool:
+                        shifted.setdefault(value + by, moment + bound)
+                    if value - by not in pool and value >= by:
+                        shifted.setdefault(value - by, moment - bound)
+            pool |= shifted
+            frontier = shifted
+        return pool
+>>>>>>> prove
 
     def _instantiate(self, values: dict[str, Fraction], meter: Meter) -> bool:
         """Instantiate what the model violates; whether there was anything."""
@@ -190,17 +211,24 @@ class Search:
         active = {s for s, on in zip(switches, grounding.session.values(switches), strict=True) if on}
         wanted: list[tuple[Universal, Moment]] = []
         pool = self._pool(values)
+<<<<<<< HEAD
         for universal in grounding.universals:
             if universal.switch in active:
                 wanted += [(universal, moment) for moment in self._missing(universal, pool, values)]
                 meter.spend((len(pool) + len(universal.done)) / MOMENTS_A_UNIT)
+=======
+        meter.spend(LOOK * len(pool) * len(active))
+        for universal in grounding.universals:
+            if universal.switch in active:
+                wanted += [(universal, moment) for moment in _missing(universal, pool, values)]
+>>>>>>> prove
         flat = [(u, m, u.body(m)) for u, m in wanted if u.is_flat]
         truths = grounding.session.values([body for _, _, body in flat])
         chosen = [(u, m) for u, m in wanted if not u.is_flat]
         chosen += [(u, m) for (u, m, _), true in zip(flat, truths, strict=True) if not true]
+        meter.spend(INSTANCE * len(chosen))
         for universal, moment in chosen:
             grounding.instantiate(universal, moment)
-        meter.spend(len(chosen) / INSTANCES_A_UNIT)
         found = bool(chosen)
         for road in list(grounding.road_universals):
             if road.switch in active:
@@ -209,6 +237,7 @@ class Search:
                     found = True
         return found
 
+<<<<<<< HEAD
     def _missing(
         self, universal: Universal, pool: list[tuple[Moment, Fraction]], values: dict[str, Fraction]
     ) -> list[Moment]:
@@ -221,6 +250,8 @@ class Search:
                 missing.append(moment)
         return missing
 
+=======
+>>>>>>> prove
     def _states(self, values: dict[str, Fraction]) -> dict[Fraction, dict[str, bool]]:
         """Which atoms the model makes true, by instant; atoms that it leaves open are not listed."""
         applied = list(self.grounding.applied.items())
@@ -298,6 +329,14 @@ class Search:
                     known[origin] = None
                     waiting.append(origin)
         return list(known)
+
+
+def _missing(
+    universal: Universal, pool: Mapping[Fraction, Moment], values: dict[str, Fraction]
+) -> list[Moment]:
+    """The moments of ``pool`` inside the window at whose value there is no instance yet."""
+    seen = {moment.value(values) for moment in universal.done}
+    return [pool[instant] for instant in universal.window.inside(pool, values) if instant not in seen]
 
 
 def _bounds_of(formula: Formula) -> list[Moment]:
