@@ -12,14 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.traffic.plausible import (
-    LARGEST_ACCELERATION,
-    LARGEST_SIZE,
-    LARGEST_SPEED,
-    OFF_CENTRE,
-    SHARE,
-    find_doubts,
-)
+from roadproof.traffic.highd_checks import check_limits, check_plausible, check_sight
+from roadproof.traffic.plausible import SHARE
 from roadproof.traffic.recording import (
     Floats,
     Integers,
@@ -30,7 +24,7 @@ from roadproof.traffic.recording import (
     occupy_bands,
     with_notes,
 )
-from roadproof.traffic.table import Kind, Table, read_table, sample_rows
+from roadproof.traffic.table import Kind, Table, read_table
 
 
 def _names(*lines: str) -> tuple[str, ...]:
@@ -52,8 +46,6 @@ SAMPLE_COLUMNS = _names(
 )
 UPPER, LOWER = 1, 2
 """Driving directions: on the upper lanes towards -x, on the lower ones towards +x."""
-LARGEST_PLACE = 10_000.0
-"""x and y (m) of a section that one camera sees."""
 
 _RECORDING_KINDS: Mapping[str, Kind] = {
     "id": "integer",
@@ -117,7 +109,7 @@ def read_highd(folder: Path, name: str) -> Recording:
     start = _match_vehicles(meta, tracks)
     sizes = np.diff(start)
     _check_boxes(meta, tracks, start)
-    _check_limits(tracks)
+    check_limits(tracks)
 
     direction = np.repeat(meta["drivingDirection"], sizes)
     up = direction == UPPER
@@ -151,9 +143,9 @@ def read_highd(folder: Path, name: str) -> Recording:
         zones=(occupancy != 0).astype(np.uint32),
         notes=notes,
     )
-    more = _check_plausible(recording, tracks)
+    more = check_plausible(recording, tracks)
     more += _check_lanes(tracks, lanes, lane, occupancy, start)
-    return with_notes(recording, (*more, *_check_sight(meta, tracks)))
+    return with_notes(recording, (*more, *check_sight(meta, tracks, SAMPLE_COLUMNS, UPPER)))
 
 
 def lanes_of_markings(upper: tuple[float, ...], lower: tuple[float, ...]) -> tuple[Lane, ...]:
@@ -311,69 +303,3 @@ def _check_lanes(
             raise InputError(f"{tracks.path}, {cell}: {rule}; do markings and positions fit?")
         notes += (f"{tracks.path.name}, {cell}: {rule}",)
     return notes
-
-
-def _check_limits(tracks: Table) -> None:
-    """No cell may say what no vehicle does; one of them would decide the pairs that are looked at."""
-    limits = {
-        "x": LARGEST_PLACE,
-        "y": LARGEST_PLACE,
-        "xVelocity": LARGEST_SPEED,
-        "yVelocity": LARGEST_SPEED,
-        "xAcceleration": LARGEST_ACCELERATION,
-        "yAcceleration": LARGEST_ACCELERATION,
-        "width": LARGEST_SIZE,
-        "height": LARGEST_SIZE,
-    }
-    for column, most in limits.items():
-        values = tracks[column]
-        if max(-values.min(), values.max()) > most:
-            tracks.require(np.abs(values) <= most, column, f"must lie between {-most:g} and {most:g}")
-
-
-def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
-    """x against the distance to the end of the section, which the format counts from the box's centre.
-
-    x + width/2 less that distance is one number for short and long vehicles, unless x is not the left edge.
-    """
-    names = ("id", "x", "width", "frontSightDistance", "backSightDistance")
-    rows = np.array(sample_rows(tracks.path, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
-    rows = rows[(rows[:, 3] > 0) & (rows[:, 4] > 0)]
-    rows = rows[np.argsort(rows[:, 2], kind="stable")]
-    third = len(rows) // 3
-    spread = float(np.median(rows[-third:, 2]) - np.median(rows[:third, 2])) / 2 if third else 0.0
-    if third < 15 or spread < 0.2:
-        return ()
-    up = meta["drivingDirection"][np.searchsorted(meta["id"], rows[:, 0])] == UPPER
-    west = rows[:, 1] + rows[:, 2] / 2 - np.where(up, rows[:, 3], rows[:, 4])
-    slope = float(np.median(west[-third:]) - np.median(west[:third])) / spread
-    if abs(slope) <= OFF_CENTRE[0]:
-        return ()
-    told = (
-        f"column x: x + width/2 and the distances to the ends of the section differ by {slope:.2f} half "
-        "lengths: is x the left edge of the box?"
-    )
-    if abs(slope) > OFF_CENTRE[1]:
-        raise InputError(f"{tracks.path}, {told}")
-    return (f"{tracks.path.name}, {told}",)
-
-
-_COLUMNS = {
-    "s": "x",
-    "d": "y",
-    "v_lon": "xVelocity",
-    "v_lat": "yVelocity",
-    "a_lon": "xAcceleration",
-    "length": "width",
-    "width": "height",
-}
-
-
-def _check_plausible(recording: Recording, tracks: Table) -> tuple[str, ...]:
-    notes = []
-    for doubt in find_doubts(recording):
-        cell = f"{tracks.cell(doubt.row, _COLUMNS[doubt.signal])} of vehicle {tracks['id'][doubt.row]}"
-        if doubt.refused:
-            raise InputError(f"{tracks.path}, {cell}: {doubt.told}")
-        notes.append(f"{tracks.path.name}, {cell}: {doubt.told}")
-    return tuple(notes)
