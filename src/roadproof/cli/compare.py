@@ -5,9 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import add_json_option, load_library_of, write_json, write_text
+from roadproof.cli.options import add_json_option, add_quiet_option, load_library_of, write_json, write_text
 from roadproof.cli.search_options import add_search_options, read_request
-from roadproof.cli.working import add_quiet_option
 from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode
 

@@ -69,6 +69,11 @@ def add_parameter_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_quiet_option(parser: argparse.ArgumentParser) -> None:
+    """``--quiet``, which the command line sees to for all sub-commands."""
+    parser.add_argument("--quiet", action="store_true", help="no word about how far it is")
+
+
 def add_json_option(parser: argparse.ArgumentParser) -> None:
     """``--json FILE``, where - is stdout; see ``write_json``."""
     parser.add_argument("--json", metavar="FILE", help="write the answer as JSON to FILE, or - for stdout")

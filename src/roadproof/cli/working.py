@@ -7,6 +7,7 @@ from collections.abc import Callable, Generator, Sequence
 from typing import TypeVar
 
 from roadproof.cli.numbers import add_jobs_option
+from roadproof.cli.options import add_quiet_option
 from roadproof.cli.progress import tell, time_left
 from roadproof.errors import LostError, UsageError
 
@@ -18,11 +19,6 @@ def add_working_options(parser: argparse.ArgumentParser) -> None:
     """``--jobs`` and ``--quiet``."""
     add_jobs_option(parser)
     add_quiet_option(parser)
-
-
-def add_quiet_option(parser: argparse.ArgumentParser) -> None:
-    """``--quiet``, which the command line sees to for all sub-commands."""
-    parser.add_argument("--quiet", action="store_true", help="no word about how far it is")
 
 
 def work(
