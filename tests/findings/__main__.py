@@ -43,7 +43,7 @@ def main() -> int:
         print(f"    {len(found)} differ, {time.monotonic() - begun:.0f} s", file=sys.stderr, flush=True)
         wrong += len(found)
     done = ", put right where a figure was found" if args.update and wrong else ""
-    print(f"{len(items)} compared, {wrong} differences{done}, {missing} not compared")
+    print(f"{len(items) - missing} compared, {wrong} differences{done}, {missing} not compared")
     return 1 if wrong or missing else 0
 
 
