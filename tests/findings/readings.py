@@ -190,6 +190,15 @@ def samples_on_no_lane(outcome: Outcome) -> int:
     return sum(int(m[1]) for note in notes if (m := re.match(r"(\d+) of \d+ samples have the centre", note)))
 
 
+def overlap_of_two_vehicles(outcome: Outcome) -> tuple[str, str]:
+    """In how many frames vehicles 504 and 513 overlap, and by how many metres."""
+    notes = [note for those in us101_counts(outcome)["notes"].values() for note in those]
+    [found] = [
+        m for x in notes if (m := re.match(r"vehicles 504 and 513 overlap in (\d+) frames, .* (\S+) m$", x))
+    ]
+    return found[1], found[2]
+
+
 def others_with_a_lane(outcome: Outcome) -> int:
     """Traces that match nothing although there is a common lane."""
     found = re.search(r"(\d+) traces match .* (\d+) of them without", outcome.printed)

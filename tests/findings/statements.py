@@ -481,10 +481,7 @@ MEASURED = (
             ),
             Figures("One sample of {} has the centre", "vehicles (Car evaluated), {} samples"),
             Figures("{} sample of 14", r.samples_on_no_lane),
-            Figures(
-                "**overlap** in {} frames, by up to {} m",
-                "vehicles 504 and 513 overlap in {} frames, by up to {} m",
-            ),
+            Figures("**overlap** in {} frames, by up to {} m", r.overlap_of_two_vehicles),
         ),
     ),
     Statement(
