@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 WORDS = (
-    "no",
+    "none",
     "one",
     "two",
     "three",
