@@ -18,6 +18,8 @@ from pathlib import Path
 GAP = "…"
 HANGS = 1800.0  # seconds after which a command is said to hang; no page depends on how fast it is
 
+PROGRESS = re.compile(r"roadproof: .* \(after \d+ (s|min|h)\)")  # said every 30 s, so by the clock
+
 
 @dataclass(frozen=True)
 class Session:
@@ -67,7 +69,7 @@ def run(command: str, folder: Path) -> list[str]:
         stderr=subprocess.STDOUT,
         timeout=HANGS,
     )
-    printed = done.stdout.decode("utf-8").splitlines()
+    printed = [x for x in done.stdout.decode("utf-8").splitlines() if not PROGRESS.fullmatch(x)]
     return [*printed, f"[exit {done.returncode}]"] if done.returncode else printed
 
 

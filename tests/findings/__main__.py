@@ -6,6 +6,7 @@ where it was. Exit code 0 where text and output agree, 1 where they differ or co
 
 import argparse
 import re
+import signal
 import sys
 import time
 from pathlib import Path
@@ -24,6 +25,7 @@ def main() -> int:
     parser.add_argument("--update", action="store_true", help="write what came out into pages and pictures")
     parser.add_argument("--out", type=Path, default=ROOT / "out/findings", help="where results are kept")
     args = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # what runs is ended with this
     results = Results(args.out)
     items: list[Item] = [
         item
@@ -33,7 +35,7 @@ def main() -> int:
     wrong, missing = 0, 0
     for number, item in enumerate(items, start=1):
         print(f"[{number}/{len(items)}] {name_of(item)}", file=sys.stderr, flush=True)
-        if results.lacks_data(item.commands) or (args.kept and not results.has(item.commands)):
+        if results.lacks_data(item.commands) or (args.kept and not is_kept(item, results)):
             print(f"not compared: {name_of(item)}")
             missing += 1
             continue
@@ -43,7 +45,7 @@ def main() -> int:
         print(f"    {len(found)} differ, {time.monotonic() - begun:.0f} s", file=sys.stderr, flush=True)
         wrong += len(found)
     done = ", put right where a figure was found" if args.update and wrong else ""
-    print(f"{len(items)} compared, {wrong} differences{done}, {missing} not compared")
+    print(f"{len(items) - missing} compared, {wrong} differences{done}, {missing} not compared")
     return 1 if wrong or missing else 0
 
 
@@ -65,6 +67,10 @@ def name_of(item: Item) -> str:
             return f"{item.page}: {'; '.join(item.commands)}"
         case Picture():
             return f"{item.file}: {'; '.join(item.commands)}"
+
+
+def is_kept(item: Item, results: Results) -> bool:
+    return results.has_session(item.commands) if isinstance(item, Sessions) else results.has(item.commands)
 
 
 def is_quick(item: Item) -> bool:

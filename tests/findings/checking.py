@@ -86,16 +86,15 @@ def _exits(page: str, command: str, code: int) -> Iterable[Difference]:
         yield Difference(f"`{command}`", "the page does not name this command")
     for stated, place in said:
         if stated != code:
-            yield Difference(f" (exit {stated})", f" (exit {code})" if code else "", place)
+            yield Difference(f" (exit {stated})", f" (exit {code})" if code else "", place, True)
 
 
 def _put_right(page: str, differences: Sequence[Difference]) -> str:
-    placed = [(d.place.begin, d.place.end, d.found) for d in differences if d.place is not None]
+    placed = [(d.place.begin, d.place.end, d.found) for d in differences if d.mendable]
     for begin, end, found in sorted(placed, reverse=True):
         page = page[:begin] + found + page[end:]
     return page
 
 
 def _line_of(page: str, difference: Difference) -> int:
-    place = difference.place
-    return 0 if place is None else page.count("\n", 0, place.begin) + 1
+    return page.count("\n", 0, difference.place.begin) + 1

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 WORDS = (
-    "no",
+    "none",
     "one",
     "two",
     "three",
@@ -77,11 +77,12 @@ class Place:
 
 @dataclass(frozen=True)
 class Difference:
-    """``said`` on a page, ``found`` in the output; ``place`` is None where nothing can be put right."""
+    """``said`` at a place of a page, ``found`` in the output: what belongs there if it is ``mendable``."""
 
     said: str
     found: str
-    place: Place | None = None
+    place: Place = Place(0, 0)
+    mendable: bool = False
 
 
 def compare(figures: Figures, page: str, outcome: Outcome) -> Iterator[Difference]:
@@ -93,11 +94,11 @@ def compare(figures: Figures, page: str, outcome: Outcome) -> Iterator[Differenc
     values = _values(figures, outcome)
     groups = matches[0].groups()
     if values is None or len(values) != len(groups):
-        yield Difference(matches[0][0], f"not in the output: {figures.source}")
+        yield Difference(matches[0][0], f"not in the output: {figures.source}", Place(*matches[0].span()))
         return
     for number, (said, value) in enumerate(zip(groups, values, strict=True), start=1):
         if normal(said) != normal(value):
-            yield Difference(said, written_like(said, value), Place(*matches[0].span(number)))
+            yield Difference(said, written_like(said, value), Place(*matches[0].span(number)), True)
 
 
 def covered(figures: Figures, page: str) -> list[Place]:
@@ -116,9 +117,18 @@ def _values(figures: Figures, outcome: Outcome) -> Sequence[str] | None:
 
 
 def _regex(pattern: str) -> str:
-    """``{}`` is the least text in one line that lets the rest fit; a last one goes to the end of its word."""
+    """``{}`` is the least text in one line that lets the rest fit; at an end it is one word."""
     parts = [r"\s+".join(map(re.escape, re.split(r" +", part))) for part in pattern.split("{}")]
-    return "(.+?)".join(parts) if parts[-1] else "(.+?)".join(parts[:-1]) + r"(\S+?)(?=[\s.,;:)]*(?:\s|$))"
+    result = parts[0]
+    for number, part in enumerate(parts[1:], start=1):
+        if number == 1 and not parts[0]:
+            result += r"(?<!\S)(\S+)"
+        elif number == len(parts) - 1 and not part:
+            result += r"(\S+?)(?=[.,;:)]*(?:\s|$))"
+        else:
+            result += "(.+?)"
+        result += part
+    return result
 
 
 def normal(figure: str) -> str:

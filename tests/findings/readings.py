@@ -17,9 +17,16 @@ def read(outcome: Outcome, name: str) -> Any:
 
 
 def pairs_with(outcome: Outcome, verdict: str) -> set[tuple[int, int]]:
-    """The pairs of scenarios in a line of ``roadproof overlap`` such as ``8 WITNESSED: 1-5, 2-4``."""
-    found = re.search(rf"^ *\d+ {verdict}: (.*)$", outcome.printed, re.M)
-    return {(int(a), int(b)) for a, b in re.findall(r"(\d+)-(\d+)", found[1])} if found else set()
+    """The pairs of scenarios of which the matrix of ``roadproof overlap`` says WITNESSED or IMPOSSIBLE."""
+    sign = {"WITNESSED": "#", "IMPOSSIBLE": "."}[verdict]
+    header, *rows = (line for line in outcome.printed.splitlines() if re.match(r"[ \d]{4} ", line))
+    columns = [int(header[at : at + 3]) for at in range(4, len(header), 3)]
+    found: set[tuple[int, int]] = set()
+    for row in rows:
+        if re.fullmatch(r" *\d+( {2}[#.]| {3})+", row):
+            signs = (row[at : at + 3].strip() for at in range(4, len(row), 3))
+            found |= {(int(row[:4]), b) for b, x in zip(columns, signs, strict=False) if x == sign}
+    return {(a, b) for a, b in found if a < b}
 
 
 def pairs_of_a_sector(outcome: Outcome) -> tuple[str, int]:
@@ -181,6 +188,15 @@ def samples_on_no_lane(outcome: Outcome) -> int:
     """Samples whose centre is on no lane, in all recordings."""
     notes = [note for those in us101_counts(outcome)["notes"].values() for note in those]
     return sum(int(m[1]) for note in notes if (m := re.match(r"(\d+) of \d+ samples have the centre", note)))
+
+
+def overlap_of_two_vehicles(outcome: Outcome) -> tuple[str, str]:
+    """In how many frames vehicles 504 and 513 overlap, and by how many metres."""
+    notes = [note for those in us101_counts(outcome)["notes"].values() for note in those]
+    [found] = [
+        m for x in notes if (m := re.match(r"vehicles 504 and 513 overlap in (\d+) frames, .* (\S+) m$", x))
+    ]
+    return found[1], found[2]
 
 
 def others_with_a_lane(outcome: Outcome) -> int:

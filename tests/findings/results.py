@@ -42,23 +42,32 @@ class Results:
 
     def has(self, commands: Sequence[str]) -> bool:
         """Whether all of the commands have been run."""
-        return (self.folder_of(commands) / f"{len(commands)}.json").is_file()
+        return self.file_of(commands).is_file()
 
     def folder_of(self, commands: Sequence[str]) -> Path:
-        words = re.sub(r"[^\w]+", "-", commands[-1])[:60].strip("-")
-        return self.folder / f"{words}-{hashlib.sha256(chr(10).join(commands).encode()).hexdigest()[:8]}"
+        """Where commands are run: those that begin with the same command share a folder."""
+        return self._named(commands[0], commands[0])
+
+    def file_of(self, commands: Sequence[str]) -> Path:
+        """What the last of the commands did."""
+        more = "" if len(commands) == 1 else f"-{_digest(chr(10).join(commands))}"
+        return self.folder_of(commands) / f"{len(commands)}{more}.json"
 
     def ask(self, commands: Sequence[str]) -> Outcome:
         """What the last command does; one that was broken off goes on in its folder."""
-        folder = self.folder_of(commands)
-        work = folder / "work"
+        work = self.folder_of(commands) / "work"
         work.mkdir(parents=True, exist_ok=True)
         for number, command in enumerate(commands, start=1):
-            if not (folder / f"{number}.json").is_file():
-                with (folder / f"{number}.complaints").open("wb") as complaints:
-                    self._run(command, work, folder / f"{number}.json", complaints)
-        data = json.loads((folder / f"{len(commands)}.json").read_text("utf-8"))
+            target = self.file_of(commands[:number])
+            if not target.is_file():
+                with target.with_suffix(".complaints").open("wb") as complaints:
+                    self._run(command, work, target, complaints)
+        data = json.loads(self.file_of(commands).read_text("utf-8"))
         return Outcome(data["printed"], data["exit"], work)
+
+    def _named(self, name: str, text: str) -> Path:
+        words = re.sub(r"[^\w]+", "-", name)[:60].strip("-")
+        return self.folder / f"{words}-{_digest(text)}"
 
     def _run(self, command: str, work: Path, target: Path, complaints: IO[bytes]) -> None:
         begun = time.monotonic()
@@ -81,11 +90,18 @@ class Results:
         """A command of a page, which is run elsewhere than in the checkout."""
         return command.replace(US101, str(self.us101)).replace("benchmarks/", f"{ROOT}/benchmarks/")
 
+    def has_session(self, commands: Sequence[str]) -> bool:
+        """Whether the page has been run."""
+        return (self._session(commands) / f"{len(commands)}.json").is_file()
+
+    def _session(self, commands: Sequence[str]) -> Path:
+        return self._named(commands[-1], "\n".join(commands))
+
     def session(
         self, commands: Sequence[str], files: Mapping[str, str], beside: Sequence[Path]
     ) -> list[list[str]]:
         """What each command of a page prints, all in one folder with the page's files and those beside it."""
-        folder = self.folder_of(commands)
+        folder = self._session(commands)
         target = folder / f"{len(commands)}.json"
         if not target.is_file():
             shutil.rmtree(folder, ignore_errors=True)
@@ -99,3 +115,7 @@ class Results:
             target.write_text(json.dumps(printed, indent=1, ensure_ascii=False), "utf-8")
         lines: list[list[str]] = json.loads(target.read_text("utf-8"))
         return lines
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:8]

@@ -60,7 +60,7 @@ HOLD_TOGETHER = (
     Statement(
         FINDINGS,
         ("roadproof overlap --among 4,12,20",),
-        (Figures("hold together: {} are drives", "WITNESSED: {}\n"),),
+        (Figures("hold together: {} are drives", "3 WITNESSED: {}\n"),),
         quick=True,
     ),
     Statement(
@@ -78,7 +78,7 @@ HOLD_TOGETHER = (
         FINDINGS,
         ("roadproof overlap --lanes any --roles any",),
         (
-            Figures("excludes anything**: all {} pairs are drives", "{} WITNESSED:"),
+            Figures("excludes anything**: all {} pairs are drives", "{} WITNESSED\n"),
             Figures("all {} pairs are drives", "{} pairs in "),
         ),
     ),
@@ -481,10 +481,7 @@ MEASURED = (
             ),
             Figures("One sample of {} has the centre", "vehicles (Car evaluated), {} samples"),
             Figures("{} sample of 14", r.samples_on_no_lane),
-            Figures(
-                "**overlap** in {} frames, by up to {} m",
-                "vehicles 504 and 513 overlap in {} frames, by up to {} m",
-            ),
+            Figures("**overlap** in {} frames, by up to {} m", r.overlap_of_two_vehicles),
         ),
     ),
     Statement(

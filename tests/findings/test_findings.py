@@ -32,12 +32,12 @@ def test_every_figure_is_on_its_page_once(statement: Statement) -> None:
     assert f"`{statement.named or statement.commands[-1]}`" in page
     for figures in statement.figures:
         assert len(covered(figures, page)) == figures.said.count("{}"), figures.said
-        assert len(compare_without_output(figures, page)) <= 1, figures.said
+        assert compare_without_output(figures, page) == [], figures.said
 
 
 def compare_without_output(figures: Figures, page: str) -> list[Difference]:
     quoted = Figures(figures.said, lambda _: ("?",) * figures.said.count("{}"))
-    return [d for d in compare(quoted, page, Outcome("", 0, Path())) if d.place is None]
+    return [d for d in compare(quoted, page, Outcome("", 0, Path())) if not d.mendable]
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -64,6 +64,7 @@ def differences(said: str, source: str, printed: str) -> list[tuple[str, str]]:
 
 def test_a_figure_that_is_the_same_in_another_hand_agrees() -> None:
     assert differences("the {} changes {} are odd", "{} changes, {} odd", "1236 changes, 2 odd") == []
+    assert differences("{} changes two", "{} changes", "- 1236 changes") == []
     assert differences("are not: {}. `echo", "left: {}\n", "left: 1-5, 3-6, 4-8\n") == []
 
 

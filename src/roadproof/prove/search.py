@@ -168,22 +168,6 @@ class Search:
         read = grounding.session.values([constant(name) for name in names])
         return {n: v for n, v in zip(names, read, strict=True) if isinstance(v, Fraction)}
 
-<<<<<<< HEAD
-    def _pool(self, values: Mapping[str, Fraction]) -> list[tuple[Moment, Fraction]]:
-        """Known moments and when they are, simplest first; shifted by interval bounds once widened."""
-        pool = dict(self.grounding.moments)
-        frontier = list(pool)
-        for _ in range(self.spread):
-            frontier = [
-                shifted
-                for moment in frontier
-                for bound in self.bound_moments
-                for shifted in (moment + bound, moment - bound)
-                if shifted not in pool and shifted.value(values) >= 0
-            ]
-            pool |= dict.fromkeys(frontier)
-        return [(moment, moment.value(values)) for moment in pool]
-=======
     def _pool(self, values: Mapping[str, Fraction]) -> dict[Fraction, Moment]:
         """A known moment for each value, the simplest; also shifted by interval bounds after ``widen``."""
         pool: dict[Fraction, Moment] = {}
@@ -202,7 +186,6 @@ class Search:
             pool |= shifted
             frontier = shifted
         return pool
->>>>>>> prove
 
     def _instantiate(self, values: dict[str, Fraction], meter: Meter) -> bool:
         """Instantiate what the model violates; whether there was anything."""
@@ -211,17 +194,10 @@ class Search:
         active = {s for s, on in zip(switches, grounding.session.values(switches), strict=True) if on}
         wanted: list[tuple[Universal, Moment]] = []
         pool = self._pool(values)
-<<<<<<< HEAD
-        for universal in grounding.universals:
-            if universal.switch in active:
-                wanted += [(universal, moment) for moment in self._missing(universal, pool, values)]
-                meter.spend((len(pool) + len(universal.done)) / MOMENTS_A_UNIT)
-=======
         meter.spend(LOOK * len(pool) * len(active))
         for universal in grounding.universals:
             if universal.switch in active:
                 wanted += [(universal, moment) for moment in _missing(universal, pool, values)]
->>>>>>> prove
         flat = [(u, m, u.body(m)) for u, m in wanted if u.is_flat]
         truths = grounding.session.values([body for _, _, body in flat])
         chosen = [(u, m) for u, m in wanted if not u.is_flat]
@@ -237,21 +213,6 @@ class Search:
                     found = True
         return found
 
-<<<<<<< HEAD
-    def _missing(
-        self, universal: Universal, pool: list[tuple[Moment, Fraction]], values: dict[str, Fraction]
-    ) -> list[Moment]:
-        """One moment for each value inside the window at which there is no instance yet."""
-        seen = {moment.value(values) for moment in universal.done}
-        missing: list[Moment] = []
-        for moment, value in pool:
-            if value not in seen and universal.window.holds(value, values):
-                seen.add(value)
-                missing.append(moment)
-        return missing
-
-=======
->>>>>>> prove
     def _states(self, values: dict[str, Fraction]) -> dict[Fraction, dict[str, bool]]:
         """Which atoms the model makes true, by instant; atoms that it leaves open are not listed."""
         applied = list(self.grounding.applied.items())
