@@ -71,8 +71,8 @@ def test_work_alone_never_makes_an_answer_late(clock):
 
 
 def test_the_backstop_follows_from_the_work_unless_it_is_given(clock):
-    assert Effort(60).meter().seconds_left() == backstop(60) == 1200
-    assert Effort(0.1).meter().seconds_left() == backstop(0.1) == 120
+    assert Effort(60).meter().seconds_left() == backstop(60) == 3600
+    assert Effort(0.1).meter().seconds_left() == backstop(0.1) == 600
     assert Effort(60, 7.0).of(1).meter().seconds_left() == 7
 
 

@@ -11,9 +11,10 @@ from dataclasses import dataclass, field, replace
 
 from roadproof.errors import RoadproofError
 
-# Wall-clock seconds that a unit of work may take before the backstop ends it, and the least backstop.
-SECONDS_A_UNIT = 20.0
-LEAST_BACKSTOP = 120.0
+# Wall-clock seconds that a unit of work may take before the backstop ends it, and the least backstop: enough
+# for a unit that takes several seconds on a machine with ten times as much to do as it has cores.
+SECONDS_A_UNIT = 60.0
+LEAST_BACKSTOP = 600.0
 
 
 class Late(RoadproofError):

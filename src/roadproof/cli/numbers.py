@@ -32,7 +32,7 @@ def add_effort_options(
         type=decimal("--timeout"),
         metavar="S",
         help="seconds after which the clock cuts one search off, whatever work is left; the answer then says "
-        "so (default: 20 a unit of work, at least 120)",
+        "so (default: 60 a unit of work, at least 600)",
     )
 
 
