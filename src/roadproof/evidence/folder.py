@@ -137,7 +137,9 @@ def _add_journal(told: Told, journal: Journal, library: Library) -> None:
     for line in journal.lines:
         if line.fault:
             outcome = Outcome.UNREADABLE if line.record is None else Outcome.REJECTED
-            told.problems.append(Finding(str(journal.path), "journal", outcome, line.fault))
+            told.problems.append(
+                Finding(str(journal.path), "journal", outcome, without_place(line.fault, journal.path))
+            )
         if line.record is None:
             continue
         try:
