@@ -137,7 +137,9 @@ def _add_journal(told: Told, journal: Journal, library: Library) -> None:
     for line in journal.lines:
         if line.fault:
             outcome = Outcome.UNREADABLE if line.record is None else Outcome.REJECTED
-            told.problems.append(Finding(str(journal.path), "journal", outcome, line.fault))
+            told.problems.append(
+                Finding(str(journal.path), "journal", outcome, without_place(line.fault, journal.path))
+            )
         if line.record is None:
             continue
         try:
@@ -164,6 +166,12 @@ def conclude(surveyed: Survey, found: Mapping[Path, Finding]) -> Iterator[Findin
 
 def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     """The entry's own words, where its evidence shows them."""
+    finding = _bound(entry, told, found)
+    reason = finding.reason.removeprefix(f"{entry.where}: ").removeprefix(f"{entry.where} ")
+    return replace(finding, reason=reason)
+
+
+def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
     said = Finding(entry.where, "index", Outcome.ACCEPTED, "", verdict, entry.label, entry.claim or "")
     rejected = replace(said, outcome=Outcome.REJECTED)
@@ -171,7 +179,8 @@ def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Findin
     if reason:
         return replace(rejected, reason=reason)
     if entry.shows == "nothing":
-        return replace(said, kind=NO_EVIDENCE, unchecked=entry.unchecked)
+        without = () if entry.verdict == "UNKNOWN" else ("there is no evidence for it",)
+        return replace(said, kind=NO_EVIDENCE, unchecked=without)
     if entry.file is None:
         outcome, reason = judge_trace(entry.trace, entry.common.specification, entry.claim or "", entry.where)
         return replace(

@@ -90,7 +90,7 @@ def _line(number: int, text: str, path: Path, fields: Sequence[str], question: s
     except InputError as error:
         return Line(number, None, str(error))
     try:
-        for k, name in enumerate(record.items("evidence")):
+        for k, name in enumerate(record.texts("evidence")):
             evidence_name(Fields({"evidence": name}, f"{where}, evidence {k + 1}"), "evidence")
         if record.text("seal") != seal_of(record.content, question, path.parent):
             return Line(number, record, f"{where}: answer and evidence are not what its seal was made for")

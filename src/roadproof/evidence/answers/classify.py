@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.strict import Fields
 
@@ -36,7 +36,7 @@ def read(data: Fields, common: Common) -> Iterator[Entry]:
     for number, content in enumerate(data.items("claims"), 1):
         line = Fields(content, f"{data.where}, claim {number}", _CLAIM)
         verdict, name, claim = line.text("verdict"), line.text("name"), line.text("claim")
-        shows = shows_of(verdict, line.where)
+        shows = shows_of_claim(verdict, line.where)
         yield Entry(
             common,
             line.where,

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
+from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
@@ -81,9 +82,21 @@ def read_rest(data: Fields, common: Common) -> Iterator[Entry]:
     for number, line in enumerate(claims, 1):
         verdict, claim = line.text("verdict"), line.text("claim")
         where = f"{data.where}, claim {number}"
-        shows = shows_of(verdict, where)
+        shows = shows_of_claim(verdict, where)
         file = evidence_name(line, "certificate")
-        yield Entry(common, where, ("claim", claim), verdict, common.set_name, shows, claim, file)
+        yield Entry(
+            common,
+            where,
+            ("claim", claim),
+            verdict,
+            common.set_name,
+            shows,
+            claim,
+            file,
+            None,
+            None,
+            unchecked_of(verdict),
+        )
     for number, content in enumerate(data.items("needs"), 1):
         line = Fields(content, f"{data.where}, need {number}", _NEED)
         verdict, name = line.text("verdict"), line.text("definition")

@@ -96,6 +96,14 @@ def evidence_name(data: Fields, field: str) -> str | None:
     return name
 
 
+def one_of(data: Fields, shows: Shows, proof: str = "certificate", drive: str = "drive") -> str | None:
+    """The file of an answer that has fields for either kind of evidence. Raises ``InputError`` for both."""
+    field, other = (drive, proof) if shows in ("drive", "counterexample") else (proof, drive)
+    if data.has(other):
+        raise InputError(f"{data.where}: a {other} is named, where there may be a {field} only")
+    return evidence_name(data, field)
+
+
 def read_evidence(path: Path) -> Certificate | DriveFile:
     """A certificate or a drive file. Raises ``InputError``."""
     content = read_json(path)
@@ -164,6 +172,11 @@ def shows_of(verdict: str, where: str, proof: Shows = "proof", drive: Shows = "c
     if verdict in DOUBTS:
         return "nothing"
     raise InputError(f"{where}: there is no verdict '{verdict[:40]}'")
+
+
+def shows_of_claim(verdict: str, where: str) -> Shows:
+    """As ``shows_of``, for claims of which only proofs are kept: that one is refuted is without evidence."""
+    return "nothing" if verdict == "REFUTED" else shows_of(verdict, where)
 
 
 def stray_evidence(entry: Entry) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.strict import Fields, rational, text
 
@@ -54,7 +54,7 @@ def _entry(
         told,
         shows,
         line.text("formula"),
-        evidence_name(line, "drive" if shows == "drive" else "certificate"),
+        one_of(line, shows),
         values=_values(common, dict(zip(knobs, at, strict=False)), where) if knobs else None,
         unchecked=unchecked_of(verdict),
         fault="" if not knobs or len(at) == len(knobs) else f"{where}: {len(at)} values of {len(knobs)}",

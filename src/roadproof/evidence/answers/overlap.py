@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 
-from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.strict import Fields
 from roadproof.logic import formula as f
@@ -46,7 +46,7 @@ def _entry(line: Fields, common: Common, choices: dict[str, str]) -> Entry:
         f"scenarios {one} and {other}",
         shows,
         claim,
-        evidence_name(line, "drive" if shows == "drive" else "certificate"),
+        one_of(line, shows),
         unchecked=(*unchecked_of(verdict), *unchecked),
         fault=fault,
     )

@@ -44,9 +44,7 @@ def _entry(line: Fields, common_of_set: Callable[[str], Common], find_label: Fin
 
 def unchecked_of(verdict: str) -> tuple[str, ...]:
     """What a verdict says beyond what its evidence shows."""
-    if verdict == "VACUOUS":
-        return ("that its premise never holds",)
-    return ("there is no evidence for it",) if verdict in ("PROVED-BOUNDED", "NONE-WITHIN") else ()
+    return ("that its premise never holds",) if verdict == "VACUOUS" else ()
 
 
 def shown(label: tuple[str, str, int | None] | None, set_name: str) -> str:

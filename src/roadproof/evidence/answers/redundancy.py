@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
 from roadproof.spec.compose import both, equivalence, implication, negation
@@ -14,7 +14,7 @@ SCHEMA = "roadproof/redundancy/1"
 SAID = ("set", "options", "parameters", "specs")
 FIELDS = ("schema", *SAID, "view", "seconds", "verdicts")
 _ENTRY = ("scenario", "part", "where", "as", "changed", "redundant", "verdict", "assuming", "claim")
-_ENTRY_MORE = ("certificate", "drive", "trace", "reason")
+_ENTRY_MORE = ("certificate", "drive", "trace", "reason", "late")
 
 
 def read(head: Fields, common: Common, records: Sequence[object]) -> Iterator[Entry]:
@@ -49,7 +49,7 @@ def _entry(line: Fields, common: Common) -> Entry:
         f"scenario {scenario}: {part} in {places[-1]} as {value}",
         shows,
         claim,
-        evidence_name(line, "certificate" if shows == "proof" else "drive"),
+        one_of(line, shows),
         line.content.get("trace"),
         unchecked=("that this part was changed, and no other",) if shows != "nothing" else (),
         fault=fault,
