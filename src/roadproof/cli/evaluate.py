@@ -130,9 +130,9 @@ def _tell_notes(out: Path, totals: "Totals") -> None:
     """What is odd in the recordings, on the screen; all of it is in the results."""
     remarks = [(name, remark) for name, each in totals.notes.items() for remark in each]
     for name, remark in remarks[:MOST_FACTS]:
-        note(f"note: recording {name}: {remark}")
+        print(f"note: recording {name}: {remark}", file=sys.stderr)
     if len(remarks) > MOST_FACTS:
-        note(f"… {len(remarks) - MOST_FACTS} more notes in {out / 'results.json'}")
+        print(f"… {len(remarks) - MOST_FACTS} more notes in {out / 'results.json'}", file=sys.stderr)
 
 
 def _sweep(out: Path) -> None:

@@ -2,6 +2,7 @@
 
 import argparse
 import re
+import sys
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -16,7 +17,6 @@ from roadproof.cli.options import (
     select_specification,
     write_json,
 )
-from roadproof.cli.progress import tell
 from roadproof.errors import InputError, UsageError
 from roadproof.verdict import ExitCode
 
@@ -115,7 +115,7 @@ def _observe(args: argparse.Namespace, library: "Library") -> "tuple[Observed, d
     if is_pair(args.trace):
         trace = read_pair(args.trace, _frames(args.frames))
         for note in trace.notes:
-            tell(f"note: {note}")
+            print(f"note: {note}", file=sys.stderr)
     elif args.trace.endswith(".csv"):
         trace = read_samples(Path(args.trace), load_road(args.road))
     else:
