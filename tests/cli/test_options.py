@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from roadproof.cli import options
+from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError
 from roadproof.spec.library import bundled_library
 
