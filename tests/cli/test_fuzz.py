@@ -216,7 +216,7 @@ def try_one(line: list[str]) -> str:
     said = complaints.buffer.getvalue().decode("utf-8")  # type: ignore[attr-defined]
     if code not in (0, 2, 3, 4, 10, 20):
         return f"exit code {code}: {said}"
-    if code in (2, 3, 4) and not said.startswith("roadproof: "):
+    if code in (2, 4) and not said.startswith("roadproof: "):
         return f"exit code {code} without a word: {said}"
     known = {text for option in options_of(line[0])._actions for text in option.option_strings}
     hints = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", said)) if code in (2, 3, 4) else set()

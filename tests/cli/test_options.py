@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from roadproof.cli import options
+from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError
 from roadproof.spec.library import bundled_library
 
@@ -105,3 +106,12 @@ def test_json_is_readable_text(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert capsys.readouterr().out == expected
     with pytest.raises(InputError, match="cannot write"):
         options.write_json({}, str(tmp_path / "missing" / "a.json"))
+
+
+@pytest.mark.parametrize("target", ["", ".", "/"])
+@pytest.mark.parametrize("command", [["list"], ["overlap", "--among", "1-2"]])
+def test_json_to_what_names_no_file(
+    command: list[str], target: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*command, "--json", target]) == 2
+    assert f"argument --json: '{target}' names no file" in capsys.readouterr().err

@@ -76,7 +76,15 @@ def add_quiet_option(parser: argparse.ArgumentParser) -> None:
 
 def add_json_option(parser: argparse.ArgumentParser) -> None:
     """``--json FILE``, where - is stdout; see ``write_json``."""
-    parser.add_argument("--json", metavar="FILE", help="write the answer as JSON to FILE, or - for stdout")
+    parser.add_argument(
+        "--json", metavar="FILE", type=_file_name, help="write the answer as JSON to FILE, or - for stdout"
+    )
+
+
+def _file_name(text: str) -> str:
+    if not Path(text).name:
+        raise argparse.ArgumentTypeError(f"'{text}' names no file")
+    return text
 
 
 def load_library_of(args: argparse.Namespace) -> "Library":
