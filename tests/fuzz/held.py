@@ -139,11 +139,12 @@ def random_trace(seed: int) -> Held:
     """Both vehicles near each other, each signal mostly as it was, lanes and distances often on the edge."""
     rng = random.Random(seed)
     samples = rng.randint(1, 9)
+    halves = {n: Fraction(n, 2) for n in range(-8, 21)}
 
     def course(low: int, high: int) -> tuple[Fraction, ...]:
-        values = [Fraction(rng.randint(low, high), 2)]
+        values = [halves[rng.randint(low, high)]]
         while len(values) < samples:
-            values.append(values[-1] if rng.random() < 0.6 else Fraction(rng.randint(low, high), 2))
+            values.append(values[-1] if rng.random() < 0.6 else halves[rng.randint(low, high)])
         return tuple(values)
 
     ranges = {
@@ -241,9 +242,9 @@ def monitored(formula: Formula, traces: list[Held], answers: list[bool]):
 
 
 def _abstract(trace: Held) -> AbstractSignals:
+    times = [k * DT for k in range(trace.samples)]
     signals = {
-        _signal(name): tuple((k * DT, value) for k, value in enumerate(values))
-        for name, values in trace.signals.items()
+        _signal(name): tuple(zip(times, values, strict=True)) for name, values in trace.signals.items()
     }
     sizes = {t.Size(*_split(name)): value for name, value in trace.sizes.items()}
     return AbstractSignals(signals, sizes)
