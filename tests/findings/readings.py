@@ -186,17 +186,32 @@ def vanishing(outcome: Outcome) -> tuple[int, int]:
 
 def samples_on_no_lane(outcome: Outcome) -> int:
     """Samples whose centre is on no lane, in all recordings."""
-    notes = [note for those in us101_counts(outcome)["notes"].values() for note in those]
-    return sum(int(m[1]) for note in notes if (m := re.match(r"(\d+) of \d+ samples have the centre", note)))
+    return sum(int(x[0]) for x in notes_of(outcome, r"(\d+) of \d+ samples have the centre"))
+
+
+def contradictions(outcome: Outcome) -> int:
+    """Moving seconds in which accelerations contradict velocities."""
+    found = notes_of(outcome, r"accelerations along the road and velocities contradict .*\((\d+) of")
+    return sum(int(x[0]) for x in found)
 
 
 def overlap_of_two_vehicles(outcome: Outcome) -> tuple[str, str]:
     """In how many frames vehicles 504 and 513 overlap, and by how many metres."""
+    [(frames, metres)] = notes_of(outcome, r"vehicles 504 and 513 overlap in (\d+) frames, .* (\S+) m$")
+    return frames, metres
+
+
+def notes_of(outcome: Outcome, pattern: str) -> list[tuple[str, ...]]:
+    """What a pattern finds in the notes on all recordings, one tuple a note."""
     notes = [note for those in us101_counts(outcome)["notes"].values() for note in those]
-    [found] = [
-        m for x in notes if (m := re.match(r"vehicles 504 and 513 overlap in (\d+) frames, .* (\S+) m$", x))
-    ]
-    return found[1], found[2]
+    return [m.groups() for note in notes if (m := re.search(pattern, note)) is not None]
+
+
+def errors_of_lengths(outcome: Outcome) -> tuple[str, ...]:
+    """Errors of s in per cent: least and greatest on average; greatest on a vehicle's way, in a bend."""
+    pattern = r"off by (\S+) % on average, by (\S+) % on the way of .*, by up to (\S+) % in a bend"
+    columns = list(zip(*notes_of(outcome, pattern), strict=True))
+    return min(columns[0], key=float), *(max(column, key=float) for column in columns)
 
 
 def others_with_a_lane(outcome: Outcome) -> int:

@@ -481,6 +481,16 @@ MEASURED = (
             ),
             Figures("One sample of {} has the centre", "vehicles (Car evaluated), {} samples"),
             Figures("{} sample of 14", r.samples_on_no_lane),
+            Figures(
+                "they are off by {} to {} % on average, by up to {} % on a vehicle's whole way (obstacle 610 of "
+                "USA_US101-10_4_T-1) and {} % at one place",
+                r.errors_of_lengths,
+            ),
+            Figures("Accelerations contradict velocities in {} of some", r.contradictions),
+            Figures(
+                "No two of these eight windows show the same moment",
+                lambda x: () if not r.us101_counts(x)["repeats"] else ("repeats",),
+            ),
             Figures("**overlap** in {} frames, by up to {} m", r.overlap_of_two_vehicles),
         ),
     ),
