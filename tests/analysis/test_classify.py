@@ -43,7 +43,7 @@ OVERLAPPING = {(1, 5), (3, 6), (4, 8), (4, 6, 8), (6, 8)}
 def outlines(numbers: tuple[int, ...]) -> list[Outline]:
     """The outline of each group of scenarios of base; they are of one road sector."""
     plan = plan_of(BASE, numbers)
-    return [outline(what_axis(plan, group, BASE), BASE, 1.0) for group in plan.groups]
+    return [outline(what_axis(plan, group, BASE), BASE, Effort(1.0)) for group in plan.groups]
 
 
 @cache
@@ -99,10 +99,10 @@ def truth(text: str, values: tuple[bool, ...]) -> bool:
 @given(st.lists(FORMULAS, min_size=1, max_size=4))
 def test_cells_are_those_of_the_truth_table(rows: list[str]) -> None:
     axis = Axis((), dict(enumerate(rows, 1)), {})
-    found = outline(axis, BASE, 5.0)
+    found = outline(axis, BASE, Effort(5.0))
     table = {values: rows_that_hold(axis, values) for values in product((True, False), repeat=len(ATOMS))}
     assert {holds for holds, _ in found.cells} == set(table.values()) - {()}
-    cells = [refine(axis, BASE, holds, others) for holds, others in found.cells]
+    cells = [refine(axis, BASE, holds, others, Effort()) for holds, others in found.cells]
     for values, holds in table.items():
         assert [cell.holds for cell in cells if truth(text_of(axis, cell), values)] == (
             [holds] if holds else []
@@ -123,12 +123,12 @@ def test_the_cells_of_base(main_road: Classes) -> None:
 def test_rows_that_follow_are_not_said_and_not_denied() -> None:
     rows = {1: "G v_lon(SV) > 0", 2: "v_lon(SV) > 0", 3: "(v_lon(SV) > 0 and a_lon(SV) > 0)"}
     axis = Axis((), rows, {3: ("a_lon(SV) > 0",)})
-    found = outline(axis, BASE, 5.0)
+    found = outline(axis, BASE, Effort(5.0))
     assert [holds for holds, _ in found.cells] == [(1, 2), (1, 2, 3), (2,), (2, 3)]
     assert (
         "not (G v_lon(SV) > 0 and not v_lon(SV) > 0 and not (v_lon(SV) > 0 and a_lon(SV) > 0))" in found.empty
     )
-    cells = {holds: refine(axis, BASE, holds, others) for holds, others in found.cells}
+    cells = {holds: refine(axis, BASE, holds, others, Effort()) for holds, others in found.cells}
     assert cells[1, 2] == Cell((1, 2), (1,), ("a_lon(SV) > 0",))
     assert cells[1, 2, 3] == Cell((1, 2, 3), (1, 3), ())
     assert cells[2,].said == (2,)
@@ -198,7 +198,7 @@ def test_a_doubt_is_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
     data = json.loads(capsys.readouterr().out)
     ((one,), (claim,)) = data["classes"], data["claims"]
     assert (one["name"], one["verdict"], one["drive"]) == ("class_5", "UNKNOWN", None)
-    assert "0.05 s of search" in one["reason"]
+    assert "0.05 units of work" in one["reason"]
     assert (claim["verdict"] == "PROVED") == (claim["certificate"] is not None)
 
 
@@ -284,9 +284,9 @@ def test_classes_of_all_scenarios_are_products(main_road: Classes) -> None:
 def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
     plan = plan_of(BASE, (4, 12, 20))
     (group,) = plan.groups
-    happens = outline(what_axis(plan, group, BASE), BASE, 1.0)
+    happens = outline(what_axis(plan, group, BASE), BASE, Effort(1.0))
     axis = where_axis(plan, group.vehicles)
-    places = tuple(refine(axis, BASE, *cell) for cell in outline(axis, BASE, 1.0).cells)
+    places = tuple(refine(axis, BASE, *cell) for cell in outline(axis, BASE, Effort(1.0)).cells)
     classes = Classes(plan, ((Cell((4,), (4,), ()),),), places)
     assert [holds for holds, _ in happens.cells] == [(4,)]
     assert len(classes.all()) == len(places) == 7
@@ -450,7 +450,7 @@ def test_a_scenario_of_ones_own_is_divided_too() -> None:
     )
     specification = build_library([Source("mine", mine)], bundled_library()).select("base")
     plan = plan_of(specification, (4, 25))
-    found = outline(what_axis(plan, plan.groups[0], specification), specification, 1.0)
+    found = outline(what_axis(plan, plan.groups[0], specification), specification, Effort(1.0))
     assert found.cells == (((4, 25), ()), ((25,), (4,)))
 
 

@@ -4,6 +4,7 @@ import pytest
 
 from roadproof.analysis.coverage.claims import two_vehicle_numbers
 from roadproof.analysis.coverage.parts import Part, parts_of
+from roadproof.effort import Effort
 from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
@@ -59,7 +60,7 @@ def test_no_two_parts_have_one_key(set_name: str) -> None:
 
 def weakens(set_name: str, part: Part) -> bool:
     claim = f"scenario_{part.scenario}(SV,POV,L) -> ({part.without})"
-    return prove(LIBRARY.select(set_name), claim, 5.0).verdict is Verdict.PROVED
+    return prove(LIBRARY.select(set_name), claim, Effort(5.0)).verdict is Verdict.PROVED
 
 
 @pytest.mark.parametrize("number", [1, 4, 6])

@@ -68,7 +68,7 @@ def test_a_class_with_drives_has_no_proof(known: list[Found]) -> None:
     scenarios = some_scenario(sectors_of(LIBRARY.select("ext"))[0])
     for part in parts[:: len(parts) // 4]:
         claim = f"{part.without} and F danger(SV,POV) -> {scenarios}"
-        assert prove(LIBRARY.select("ext"), claim, 1.0).certificate is None
+        assert prove(LIBRARY.select("ext"), claim, Effort(1.0)).certificate is None
 
 
 def test_known_drives_are_evidence_for_a_component_and_its_conditions(known: list[Found]) -> None:

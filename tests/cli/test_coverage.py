@@ -96,7 +96,7 @@ FAULTS = [
         "ExitCode.UNEXPECTED if gaps else ExitCode.AS_EXPECTED",
     ),
     ("ExitCode.AS_EXPECTED if proved else", "ExitCode.AS_EXPECTED if not gaps else"),
-    ('"COVERED"\n        if proved', '"COVERED"\n        if not gaps'),
+    ("str(Verdict.COVERED)\n        if proved", "str(Verdict.COVERED)\n        if not gaps"),
     ("proved = all(", "proved = any("),
 ]
 
@@ -132,7 +132,7 @@ def test_a_folder_with_other_answers_is_left_alone(
     [
         (["--wider", "base"], ExitCode.USAGE, "--wider base does not extend --set ext"),
         (["--wider", "none"], ExitCode.BAD_INPUT, "there is no spec set 'none'"),
-        (["--timeout", "0"], ExitCode.USAGE, "--timeout 0.0 must be greater than 0"),
+        (["--timeout", "0"], ExitCode.USAGE, "--timeout 0: write a decimal number greater than 0"),
         (["--road", "moon"], ExitCode.BAD_INPUT, "there is no road 'moon'"),
         (["--on", "nowhere"], ExitCode.BAD_INPUT, "nowhere"),
     ],

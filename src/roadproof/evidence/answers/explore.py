@@ -1,6 +1,7 @@
 """The index of ``roadproof explore``: for which values a formula has a drive."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
@@ -32,11 +33,14 @@ def read(data: Fields, common_of_set: Callable[[str], Common]) -> Iterator[Entry
                 if sides.has(side):
                     yield _entry(sides.get(side), f"{where}, boundary {k}, {side}", common, knobs, (side, k))
         for k, extreme in enumerate(one.items("extremes"), 1):
-            sides = Fields(extreme, f"{where}, extreme {k}", _EXTREME)
+            place = f"{where}, extreme {k}"
+            sides = Fields(extreme, place, _EXTREME)
+            # Where it is sought is a point of the knobs; its own values are of a measure, in the formula.
+            point = dict(zip(knobs, sides.items("point"), strict=False))
+            there = replace(common, values=_values(common, point, place))
             for side in ("best", "missed", "surely"):
                 if sides.has(side):
-                    # The values of an extreme are those of a measure, which is a part of the formula.
-                    yield _entry(sides.get(side), f"{where}, extreme {k}, {side}", common, [], (side, k))
+                    yield _entry(sides.get(side), f"{place}, {side}", there, [], (side, k))
 
 
 def _entry(
