@@ -447,10 +447,7 @@ LIMITS = (
         ("roadproof witness 'scenario_1(SV,POV,L) and F scenario_3(SV,POV,L)' --horizon 9 --effort 400",),
         (Figures("1 and then 3 is a drive of {} s", "horizon {} s"),),
     ),
-    *(
-        Statement(FINDINGS, (f"roadproof overlap --among {pair} --start any",))
-        for pair in ("3,4", "2,3")
-    ),
+    *(Statement(FINDINGS, (f"roadproof overlap --among {pair} --start any",)) for pair in ("3,4", "2,3")),
 )
 
 EVALUATE = "roadproof evaluate ../shared/data/us101 --out out/us101 --no-pictures"
