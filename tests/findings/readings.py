@@ -104,13 +104,17 @@ def shares_of_base(outcome: Outcome) -> tuple[object, ...]:
     threes = (
         f"{first[0]:.0f}" if f"{first[0]:.0f}" == f"{first[1]:.0f}" else f"{first[0]:.0f} and {first[1]:.0f}"
     )
-    none = [name.replace("_", " with ") for name, share in part.items() if share == 0]
+    none = [
+        name.replace("_", " with ") if "_" in name else f"{name} alone"
+        for name, share in sorted(part.items(), key=lambda x: len(x[0]))
+        if share == 0
+    ]
     return (
         threes,
         *(f"{x:.0f}" for x in first[2:]),
         len(part),
         max(part.values()),
-        ", ".join(sorted(none, key=len, reverse=True)),
+        ", ".join(none),
     )
 
 
@@ -261,9 +265,22 @@ def picture_of_a_gap_beside_the_lane(outcome: Outcome) -> str:
 
 def edges_of_a_sector(outcome: Outcome) -> str:
     """How many implications are proved between scenarios of each road sector, if that is the same for all."""
-    edges = re.findall(r"^\S+?-(\d+) -> \S+?-(\d+)$", outcome.printed, re.M)
+    edges = re.findall(r"^(\d+)@\S+ -> (\d+)@\S+$", outcome.printed, re.M)
     counts = Counter((int(a) - 1) // 8 for a, _ in edges)
     return ", ".join(map(str, sorted(set(counts.values()))))
+
+
+def one_formula(outcome: Outcome) -> tuple[str, str]:
+    """Scenarios 1 to 8 that say the same in base and extA only, and those that do in ext as well."""
+    kinds = [
+        dict.fromkeys(int(number) for number in re.findall(r"(\d+)@", line))
+        for line in re.findall(r"^one formula: (.*)$", outcome.printed, re.M)
+        if "base" in line and "extA" in line
+    ]
+    in_all = re.findall(r"^one formula: (?=.*@ext(?:,|$)).*?(\d+)@", outcome.printed, re.M)
+    three = sorted(int(number) for number in in_all if int(number) <= 8)
+    two = sorted(n for kind in kinds for n in kind if n <= 8 and n not in three)
+    return ", ".join(map(str, two)), ", ".join(map(str, three))
 
 
 def range_of_both(outcome: Outcome) -> tuple[str, str]:
