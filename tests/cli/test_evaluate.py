@@ -162,7 +162,7 @@ def test_a_bad_recording(folder: Path, tmp_path: Path, capsys: pytest.CaptureFix
         (["--param", "minDanger=1"], 2, "use --min-danger"),
         (["--param", "rho=fast"], 3, "this is no value"),
         (["--option", "lateral_sign=left"], 3, "must be rss or literal"),
-        (["--jobs", "0"], 2, "at least one process"),
+        (["--jobs", "0"], 2, "--jobs 0: write a whole number greater than 0"),
         (["--end", "middle"], 2, "invalid choice"),
     ],
 )
@@ -214,9 +214,9 @@ def test_simulate_is_what_its_seed_says(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "code", "said"),
     [
-        (["--seconds", "0"], 2, "seconds=0.0 must lie between"),
+        (["--seconds", "0"], 2, "--seconds 0: write a decimal number greater than 0"),
         (["--lanes", "7"], 2, "lanes=7"),
-        (["--recordings", "0"], 2, "between 1 and 999"),
+        (["--recordings", "0"], 2, "--recordings 0: write a whole number greater than 0"),
         (["--seed", "-3"], 2, "--seed -3"),
         (["--plant", "9"], 2, "scenarios 1 to 8"),
         (["--plant", "nowhere.json"], 3, "cannot read nowhere.json"),

@@ -206,7 +206,7 @@ def test_sizes_may_differ_by_rounding(tmp_path: Path) -> None:
 
 def test_without_polars(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "polars", None)
-    with pytest.raises(MissingSolverError, match=r"roadproof\[traffic\]"):
+    with pytest.raises(MissingSolverError, match="tables of traffic need polars: install polars"):
         read(tiny_files(), tmp_path)
 
 
