@@ -18,8 +18,8 @@ from mutants.edits import Edit
 COPIED = ("src", "tests", "models", "proofs", "examples", "docs", "README.md", "pyproject.toml")
 MEMORY = 12 << 30  # bytes of address space; a fault may ask for more without end
 FIRST = 15.0  # seconds of tests that are run before the others: most faults need no more
-PATIENCE = 4.0
-LEAST_PATIENCE = 40.0
+PATIENCE = 3.0
+LEAST_PATIENCE = 25.0
 """Seconds of processor time for each recorded second, and in all: beyond that the fault hangs."""
 
 WAITING = 20.0  # of wall clock for each of them, for what hangs and does nothing
