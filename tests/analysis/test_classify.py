@@ -286,7 +286,7 @@ def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
     (group,) = plan.groups
     happens = outline(what_axis(plan, group, BASE), BASE, Effort(1.0))
     axis = where_axis(plan, group.vehicles)
-    places = tuple(refine(axis, BASE, *cell) for cell in outline(axis, BASE, Effort(1.0)).cells)
+    places = tuple(refine(axis, BASE, *cell, Effort()) for cell in outline(axis, BASE, Effort(1.0)).cells)
     classes = Classes(plan, ((Cell((4,), (4,), ()),),), places)
     assert [holds for holds, _ in happens.cells] == [(4,)]
     assert len(classes.all()) == len(places) == 7
@@ -329,8 +329,8 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
     assert found == set(product((True, False), repeat=3)) - {(False, False, False)}
 
 
-def test_a_road_of_one_zone_where_the_usual_one_is_too_long() -> None:
-    """On the road merge vehicles cannot settle outside of the zone before the horizon."""
+def test_a_road_of_one_zone_where_the_usual_one_does_not_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("roadproof.analysis.classify.drives.usual_road", lambda formula: "main-2")
     cell = Cell((12,), (12,), ("behaviourSV_16(SV, POV, L)",))
     classes = Classes(plan_of(BASE, (12, 16)), ((cell,),), ())
     text = write_classes(classes, BASE)
