@@ -111,6 +111,20 @@ def test_the_sign_of_a_comparison_is_its_truth(comparison, drive):
             assert truth.at(k * HALF) == (comparison.op in (">=", "<="))
 
 
+@pytest.mark.parametrize("ends", [(0, 0), (0, 1), (0, 2), (1, 1), (1, 3), (2, 3), (0, None), (2, None)])
+def test_until_looks_at_every_sample_of_its_window(ends):
+    """The right side is true at one sample only, the left one before it, or at some of it."""
+    low, high = (None if end is None else t.number(end) for end in ends)
+    place = t.Signal("s", "A")
+    at = [f.And((f.Compare(place, ">=", t.number(n)), f.Compare(place, "<=", t.number(n)))) for n in range(5)]
+    for side in (*at, f.Or(tuple(at[:2])), f.Not(at[1]), f.Compare(place, "<=", t.number(2))):
+        for other in at:
+            formula = f.Until(side, f.Interval(low, high), other)
+            found = robustness(formula, alone(v_lon=1), SECOND, 4 * SECOND)
+            naive = Naive(alone(v_lon=1), SECOND, int(found.sampled_until))
+            assert list(found.margins[formula]) == [naive.margin(formula, k) for k in range(5)]
+
+
 def test_bounded_windows_are_covered_past_the_horizon():
     drive = alone(v_lon=1)  # s = t
     formula = f.Eventually(

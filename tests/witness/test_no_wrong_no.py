@@ -25,7 +25,7 @@ def ask_for(what, engine="milp", **changes):
 
 @pytest.mark.parametrize("engine", ["milp", "smt"])
 def test_random_drives_are_not_denied(engine):
-    """A longer run of the same, seeds 0 to 1999 with both engines, found none either."""
+    """A longer run of the same, seeds 0 to 1999 with smt, denied none either."""
     verdicts = set()
     for seed in range(20):
         case = known(seed)
