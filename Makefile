@@ -18,7 +18,7 @@ lint: $(READY)
 	$(BIN)/lint-imports
 
 unit: $(READY)
-	$(BIN)/python -m pytest -n $(JOBS) -q -rs
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -q -rs
 
 demo: $(READY)
 	$(BIN)/roadproof show 4

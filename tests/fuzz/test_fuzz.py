@@ -59,7 +59,7 @@ FAULTS = {
     "held: strictness is lost": (held, unroll, "_OPPOSITE", STRICT),
     "truths: until asks for its left side too early": (truths, exact, "until", classic_until),
     "drives: a square too large": (drives, signals, "_quadratic", full_square),
-    "claims: always is sometimes": (claims, exact, "always", truth.eventually),
+    "claims: or is and": (claims, exact, "union", truth.intersection),
     "texts: a difference binds like a product": (texts, show, "_LEVEL", {**show._LEVEL, "-": show.PRODUCT}),
     "search: all starts are at 0": (search, question, "starting_range", lambda *_: None),
 }
