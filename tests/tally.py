@@ -105,9 +105,9 @@ def planted() -> str:
 
 
 def is_planted(case: str) -> bool:
-    """By the name of the test, its parameters and its file, not of its folder."""
+    """By the name of the test, its parameters and its file, not of its folder; not what counts them."""
     file, _, name = case.partition("::")
-    return any(word in f"{Path(file).name} {name}".lower() for word in PLANTED)
+    return file.count("/") > 1 and any(word in f"{Path(file).name} {name}".lower() for word in PLANTED)
 
 
 TABLES = {"attacks": attacks, "fuzz": fuzz, "mutants": mutants}
