@@ -5,7 +5,8 @@
 Each line is run with ``--json -`` under every condition. Exit code, complaints and all of the JSON but for
 seconds have to be the same: verdicts, counts, reasons, drives and certificates. What was run is kept in
 FOLDER, so that a run that was broken off goes on; remove the folder to begin anew. Exit code 1 where two
-answers differ. The load is busy processes, which compete with the command for every core.
+answers differ. The load is N processes at any time, which compete for every core: as many of the command
+lines at once as there are left, and busy loops for the rest of N.
 """
 
 import argparse
@@ -16,7 +17,8 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
 
@@ -63,19 +65,20 @@ def main() -> int:
     parser.add_argument("--only", metavar="PATTERN", default="", help="lines in which this is found")
     parser.add_argument("--quick", action="store_true", help="a few short lines")
     parser.add_argument("--out", type=Path, metavar="FOLDER", default=Path("out/same-answers"))
-    parser.add_argument("--load", type=int, metavar="N", default=12, help="busy processes (default: 12)")
+    parser.add_argument("--load", type=int, metavar="N", default=12, help="processes at once (default: 12; 0: idle only)")
     options = parser.parse_args()
     numbers = QUICK if options.quick else range(len(LINES))
     chosen = [n for n in numbers if re.search(options.only, " ".join(LINES[n]))]
     options.out.mkdir(parents=True, exist_ok=True)
     for load in (0, options.load):
-        left = [n for n in chosen if not all(kept(options.out, n, load, jobs).exists() for jobs in (1, 2))]
-        if not left:
-            continue
-        with busy(load):
-            for number in left:
-                for jobs in (1, 2):
-                    run(options.out, number, load, jobs)
+        runs = [(n, jobs) for n in chosen for jobs in (1, 2) if not kept(options.out, n, load, jobs).exists()]
+        with ThreadPoolExecutor(max(load, 1)) as pool, busy(load - len(runs)) as fill:
+            started = [pool.submit(run, options.out, number, load, jobs) for number, jobs in runs]
+            for done, ended in enumerate(as_completed(started), 1):
+                ended.result()
+                fill(load - len(runs) + done)
+    if not options.load:
+        return 0
     same = [report(options.out, number, options.load) for number in chosen]
     print(f"{sum(same)} of {len(same)} command lines answer the same every time")
     return 0 if all(same) else 1
@@ -87,11 +90,17 @@ def kept(folder: Path, number: int, load: int, jobs: int) -> Path:
 
 
 @contextlib.contextmanager
-def busy(count: int) -> Iterator[None]:
-    """So many processes that do nothing, as fast as they can."""
-    processes = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+def busy(count: int) -> Iterator[Callable[[int], None]]:
+    """Processes that do nothing, as fast as they can; what is given says how many there should be."""
+    processes: list[subprocess.Popen[bytes]] = []
+
+    def fill(wanted: int) -> None:
+        while len(processes) < wanted:
+            processes.append(subprocess.Popen([sys.executable, "-c", "while True: pass"]))
+
     try:
-        yield
+        fill(count)
+        yield fill
     finally:
         for process in processes:
             process.kill()
@@ -99,10 +108,8 @@ def busy(count: int) -> Iterator[None]:
 
 
 def run(folder: Path, number: int, load: int, jobs: int) -> None:
-    """Run one line under one condition, unless its answer is kept."""
+    """Run one line under one condition, and keep its answer."""
     path = kept(folder, number, load, jobs)
-    if path.exists():
-        return
     line = [*LINES[number], "--json", "-"]
     line += [] if line[0] in ALONE else ["--jobs", str(jobs)]
     begun = time.monotonic()

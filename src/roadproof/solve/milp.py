@@ -143,8 +143,8 @@ def find_solver(name: str) -> SolverFacts:
     for module in ("cvxpy", SOLVERS[name].module):
         if find_spec(module) is None:
             raise MissingSolverError(
-                f"solver={name} needs the module {module}, which is not installed: install it, or choose "
-                "highs, which comes with roadproof, or the engine smt, for which z3 is enough"
+                f"solver={name} needs the module {module}, which is missing here: pip install {module}, or "
+                "choose the engine smt, for which z3 is enough"
             )
     return SOLVERS[name]
 
