@@ -65,7 +65,7 @@ def main() -> int:
     parser.add_argument("--only", metavar="PATTERN", default="", help="lines in which this is found")
     parser.add_argument("--quick", action="store_true", help="a few short lines")
     parser.add_argument("--out", type=Path, metavar="FOLDER", default=Path("out/same-answers"))
-    parser.add_argument("--load", type=int, metavar="N", default=12, help="processes at once (default: 12; 0: idle only)")
+    parser.add_argument("--load", type=int, metavar="N", default=12, help="processes at once (12; 0: none)")
     options = parser.parse_args()
     numbers = QUICK if options.quick else range(len(LINES))
     chosen = [n for n in numbers if re.search(options.only, " ".join(LINES[n]))]
