@@ -101,7 +101,7 @@ def timed(work: Callable[[], str]) -> tuple[str, float]:
 
 
 def verdict_of(specification: Specification, claim: str) -> str:
-    return str(prove(specification, claim).verdict)
+    return str(prove(specification, read_claim(specification, claim)).verdict)
 
 
 def exit_code_of(words: list[str]) -> str:
@@ -128,7 +128,7 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=20.0, help="seconds for a solver's own attempt")
     limit = parser.parse_args().limit
     specification = bundled_library().select("base")
-    prove(specification, "true")
+    prove(specification, read_claim(specification, "true"))
     print(f"{'roadproof':>18} {'z3 alone':>18} {'cvc5 alone':>18}  claim")
     for claim in CLAIMS:
         atomised = Atoms().atomise(read_claim(specification, claim).formula)

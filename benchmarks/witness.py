@@ -16,11 +16,11 @@ from roadproof.encode.build import NONE, build_problem
 from roadproof.encode.unroll import Grid
 from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import prepare
-from roadproof.spec.bind import default_values
 from roadproof.spec.library import bundled_library
+from roadproof.spec.scenarios import Scenario, applied
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Outcome, Request, as_formula, ask, pose
-from roadproof.witness.question import Means
+from roadproof.witness.ask import Outcome, Search, ask
+from roadproof.witness.question import pose
 
 STAGES = ("encode", "solve", "shape", "judge", "all")
 
@@ -32,12 +32,13 @@ def main() -> None:
     args = parser.parse_args()
     prepare()
     library = bundled_library()
-    request = Request("", values=default_values(library), means=Means())
     rows, answers = [], {}
     print(f"{'set':5} {'row':>3}  verdict      " + "".join(f"{s:>8}" for s in STAGES) + "   z3 exact")
     for set_name in args.sets.split(","):
         for number in range(1, 25):
-            asked = replace(request, what=str(number), set_name=set_name)
+            specification = library.select(set_name)
+            query = applied(specification, Scenario(number, set_name))
+            asked = Search(specification, query, scenario=number)
             outcome = ask(asked)
             rows.append(outcome)
             shown = "".join(f"{outcome.seconds.get(s, 0.0):8.3f}" for s in STAGES)
@@ -61,16 +62,14 @@ def main() -> None:
 
 def lanes_of(outcome: Outcome) -> dict[str, str]:
     """The lane that the drive was judged with."""
-    return {"L": outcome.drives[0]["lane"]} if outcome.drives else {}
+    return dict(outcome.drives[0].file.lanes) if outcome.drives else {}
 
 
-def plainly(request: Request, lanes: dict[str, str], limit: float) -> tuple[float, str]:
+def plainly(search: Search, lanes: dict[str, str], limit: float) -> tuple[float, str]:
     """Seconds and answer of z3 on the exact encoding of the same question, on the same grid."""
-    library = bundled_library()
-    specification = library.select(request.set_name)
-    question = pose(specification, as_formula(specification, request.what)[1], request)
+    question = pose(search.specification.library, search.query, search.setting)
     manners = replace(question.manners.plain(), margin=NONE, inside=Fraction(0))
-    grid = Grid(request.dt, int(request.horizon / request.dt))
+    grid = Grid(search.setting.dt, int(search.setting.horizon / search.setting.dt))
     begun = time.perf_counter()
     problem, _ = build_problem(question.bound(lanes), question.road, question.vehicles, grid, manners)
     status = solve_exactly(problem, Effort(limit).meter()).status

@@ -10,15 +10,16 @@ from pathlib import Path
 
 import pytest
 
+from asking import prove
 from roadproof.analysis.coverage.claims import sectors_of, some_scenario
 from roadproof.analysis.coverage.classes import Classes
 from roadproof.analysis.coverage.traffic import disturbances_in
-from roadproof.analysis.meeting import Meeting, Node, conjunctions
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.meeting import Meeting, conjunctions
+from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
 from roadproof.effort import Effort
-from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
+from roadproof.spec.scenarios import Scenario
 from roadproof.verdict import Verdict
 
 pytest.importorskip("polars")
@@ -62,8 +63,11 @@ def occurrences(path: Path) -> Occurrences:
 
 def is_impossible(a: int, b: int, set_name: str) -> bool:
     specification = bundled_library().select(set_name)
-    (formula,) = conjunctions(specification, Node(a, set_name), Node(b, set_name), Meeting())
-    return prove(specification, f"not ({formula})", Effort(3)).verdict in (Verdict.PROVED, Verdict.VACUOUS)
+    (formula,) = conjunctions(specification, Scenario(a, set_name), Scenario(b, set_name), Meeting())
+    return prove(specification, f"not ({formula.text})", Effort(3)).verdict in (
+        Verdict.PROVED,
+        Verdict.VACUOUS,
+    )
 
 
 @pytest.mark.parametrize("set_name", ["base", "ext"])

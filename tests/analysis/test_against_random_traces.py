@@ -6,16 +6,18 @@ from itertools import combinations, permutations
 
 import pytest
 
+from asking import prove
 from monitor.cases import random_traffic
-from roadproof.analysis.meeting import Meeting, Node, applied, conjunctions, vehicles_of
+from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.redundancy import changes_of
+from roadproof.analysis.requests import applied
 from roadproof.effort import Effort
 from roadproof.logic.rewrite import with_values
 from roadproof.monitor import compile
-from roadproof.prove.prover import prove
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification, bundled_library
+from roadproof.spec.scenarios import Scenario, vehicles_of
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()
@@ -24,8 +26,8 @@ LIBRARY = bundled_library()
 def exclusions(home: Specification) -> Iterator[tuple[str, bool]]:
     """Claims that two scenarios never hold together, and whether they are provable."""
     for a, b in combinations((1, 3, 4, 5, 6, 7, 8), 2):
-        (both,) = conjunctions(home, Node(a, home.set_name), Node(b, home.set_name), Meeting())
-        yield f"not ({both})", (a, b) not in {(1, 5), (3, 6), (4, 6), (4, 8), (6, 8)}
+        (both,) = conjunctions(home, Scenario(a, home.set_name), Scenario(b, home.set_name), Meeting())
+        yield f"not ({both.text})", (a, b) not in {(1, 5), (3, 6), (4, 6), (4, 8), (6, 8)}
 
 
 def implications(home: Specification) -> Iterator[tuple[str, bool]]:
@@ -33,13 +35,13 @@ def implications(home: Specification) -> Iterator[tuple[str, bool]]:
     sets = ("base", "extA", "ext")
     for n in (4, 8):
         for one, other in permutations(sets, 2):
-            above, below = (applied(Node(n, x), home, ("SV", "POV")) for x in (one, other))
+            above, below = (applied(Scenario(n, x), home, ("SV", "POV")) for x in (one, other))
             yield f"{above} -> {below}", sets.index(one) < sets.index(other)
 
 
 def redundancies(home: Specification) -> Iterator[tuple[str, bool]]:
     """Of the condition on lanes in scenario 4, nothing is needed; of safety and the road, all."""
-    node = Node(4, home.set_name)
+    node = Scenario(4, home.set_name)
     text = applied(node, home, vehicles_of(home, node))
     for change in changes_of(read_claim(home, text).formula):
         if (

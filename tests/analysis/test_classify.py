@@ -12,20 +12,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from asking import prove
 from monitor.cases import random_traffic
 from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, refine, text_of
 from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, where_axis
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.text import claims_of, ranges, with_classes, write_classes
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.witness import from_json, judge_file, load_drive
+from roadproof.evidence.drive_file import load_drive, read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.monitor import compile
-from roadproof.prove.prover import prove
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Source, Specification, build_library, bundled_library, load_library
@@ -336,7 +337,7 @@ def test_a_road_of_one_zone_where_the_usual_one_does_not_do(monkeypatch: pytest.
     text = write_classes(classes, BASE)
     [example] = find_examples(Asked(effort=Effort(30)), text, classes.plan, classes.all())
     assert (example.name, example.verdict) == ("class_12", Verdict.WITNESSED)
-    file = from_json(dict(example.drive or {}), "drive")
+    file = read_drive(dict(example.drive or {}), "drive")
     assert {lanelet.zone for lanelet in file.road.lanelets} == {"merge"}
     assert judge_file(file, with_classes(text, BASE).library).accepted
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from asking import prove
 from roadproof.analysis.coverage.catalogue import HORIZON, catalogue
 from roadproof.analysis.coverage.claims import (
     claims_of,
@@ -18,15 +19,15 @@ from roadproof.analysis.coverage.claims import (
 from roadproof.analysis.coverage.classes import Classes
 from roadproof.analysis.coverage.needed import find_need, replaced_by
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, judge_drive
+from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file
+from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.replay import first_breach
 from roadproof.logic.show import text
-from roadproof.prove.prover import prove
 from roadproof.spec.library import Source, build_library, bundled_library
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
@@ -116,7 +117,7 @@ def test_danger_from_beside_the_lane_is_a_gap_that_cut_in_catches() -> None:
     file = file_of(beside())
     assert judge_file(file, LIBRARY).accepted
     assert Trials(Asked(("ext",)), ("complete",)).smallest(file) == (("cutIn",),)
-    shown = Shown(file.formula, as_json(file, {}))
+    shown = Shown(file.formula, drive_data(file, {}))
     covered = "(some M in lanes: scenario_1@complete(SV,POV,M))"
     assert judge_drive(shown, covered, LIBRARY)
     assert not judge_drive(shown, covered.replace("complete", "ext"), LIBRARY)
@@ -143,7 +144,7 @@ def test_a_definition_is_shown_needed() -> None:
     need = find_need(complete, "cutIn")
     assert need.verdict is Verdict.WITNESSED
     assert need.drive is not None
-    file = from_json(dict(need.drive), "needed")
+    file = read_drive(dict(need.drive), "needed")
     assert judge_file(file, LIBRARY).accepted
     assert not judge_file(file_of(file.drive, "complete"), LIBRARY).accepted
 

@@ -4,7 +4,8 @@ from dataclasses import replace
 from fractions import Fraction as F
 
 from roadproof.analysis.coverage.minimal import simplest
-from roadproof.evidence.witness import DriveFile, judge_file
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import judge_file
 from roadproof.spec.library import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road

@@ -2,10 +2,10 @@
 
 import pytest
 
+from asking import prove
 from roadproof.analysis.coverage.claims import two_vehicle_numbers
 from roadproof.analysis.coverage.parts import Part, parts_of
 from roadproof.effort import Effort
-from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
 

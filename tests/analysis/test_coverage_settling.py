@@ -6,16 +6,17 @@ from pathlib import Path
 
 import pytest
 
+from asking import prove
 from roadproof.analysis.coverage.claims import missed, sectors_of, some_scenario
 from roadproof.analysis.coverage.classes import Classes, Found, Group, Survey, groups_of, survey_of
 from roadproof.analysis.coverage.settling import find_in_catalogue, settle_group
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import from_json, judge_file
+from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.replay import first_breach
-from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
@@ -83,10 +84,10 @@ def test_known_drives_are_evidence_for_a_component_and_its_conditions(known: lis
         (gap,) = answer.gaps
         assert gap.first == "complete"
         assert part.without in gap.formula or answer.part is not part
-        assert judge_file(from_json(dict(gap.drive), "gap"), LIBRARY).accepted
+        assert judge_file(read_drive(dict(gap.drive), "gap"), LIBRARY).accepted
     elsewhere = answers[0].gaps[0].elsewhere["merge"]
     assert "scenario_12" in str(elsewhere["formula"])
-    placed = from_json(dict(elsewhere), "gap")
+    placed = read_drive(dict(elsewhere), "gap")
     assert judge_file(placed, LIBRARY).accepted
     assert whole.component is not None
     assert whole.component.key in Classes(EXT).of(placed)

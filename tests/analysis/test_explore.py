@@ -29,14 +29,15 @@ from roadproof.analysis.explore.search import (
     stand_ins,
 )
 from roadproof.analysis.explore.values import Asked, Explored, Finding, explore
+from roadproof.analysis.requests import Request
 from roadproof.cli.main import main
 from roadproof.effort import Effort
-from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file
+from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, pose
 from roadproof.witness.question import Means
 
 LIBRARY = bundled_library()
@@ -58,7 +59,7 @@ def complaints(explored: Explored, name: str) -> list[str]:
     for finding in (*explored.findings, *ends):
         if finding.found:
             assert finding.drive is not None
-            file = from_json(dict(finding.drive), "drive")
+            file = read_drive(dict(finding.drive), "drive")
             if file.values.get(name) != finding.at[0]:
                 wrong.append(f"{name}={finding.at[0]}, but the file says {file.values.get(name)}")
             if not judge_file(file, LIBRARY).accepted:
@@ -92,7 +93,7 @@ def test_a_boundary_in_a_limit_is_where_reasoning_puts_it() -> None:
     assert 2 <= boundary.held.at[0] <= F(21, 10)
     assert boundary.missed.at[0] < 2
     assert boundary.held.drive is not None
-    file = from_json(dict(boundary.held.drive), "drive")
+    file = read_drive(dict(boundary.held.drive), "drive")
     assert "G a_lon(SV) <= " in file.formula
     assert judge_file(file, LIBRARY).accepted
     assert "a_lon.max" in boundary.missed.reason
@@ -153,7 +154,7 @@ def test_a_drive_that_is_not_judged_again_is_caught(monkeypatch: pytest.MonkeyPa
             if not self.files:
                 return None
             file = made_for(self.files[0], claim)
-            return search.Shown(1, as_json(file, {}))
+            return search.Shown(1, drive_data(file, {}))
 
     monkeypatch.setattr(values, "Pool", Trusting)
     asked = Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3)
@@ -174,7 +175,7 @@ def extreme_of(what: str, sense: Sense, term: str, when: str = "") -> tuple[Extr
     found = find_extreme(Sought(request(what), read_measure(BASE, sense, term, when), F(1, 10)))
     assert found.best is not None
     assert found.best.drive is not None
-    file = from_json(dict(found.best.drive), "drive")
+    file = read_drive(dict(found.best.drive), "drive")
     assert judge_file(file, LIBRARY).accepted
     return found, found.best, file
 
@@ -256,7 +257,7 @@ def test_grids_fit_the_durations(safe: F, danger: F) -> None:
 
 
 def test_the_range_of_a_term_holds_its_values() -> None:
-    question = pose(BASE, "scenario_4(SV,POV,L)", request("scenario_4(SV,POV,L)"))
+    question = request("scenario_4(SV,POV,L)").question()
     ranges = starting_ranges(question)
     term, dimension = read_term(BASE, "v_lon(SV) - v_lon(POV)")
     assert range_of(term, ranges) == (-25, 25)

@@ -9,17 +9,17 @@ from typing import Any
 
 import pytest
 
+from asking import prove
 from evidence.folders import changes, check, places
 from roadproof.analysis import journal as journal_module
 from roadproof.analysis.journal import Journal, Question
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.overlap import SCHEMA
+from roadproof.analysis.requests import Asked
 from roadproof.cli.evidence import said_once
-from roadproof.cli.overlap import SCHEMA
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.finding import Outcome
 from roadproof.evidence.journal import NAME, seal_of
-from roadproof.prove.prover import prove
 from roadproof.spec.library import Source, build_library, bundled_library
 
 LIBRARY = bundled_library()

@@ -7,20 +7,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadproof.analysis.meeting import Node
+from asking import search_for
 from roadproof.analysis.order.deciding import Decided, Doubt, _Deciding, decide_family, settle_doubts
 from roadproof.analysis.order.kinds import families_of, kinds_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.report.order import as_dot
-from roadproof.spec.bind import default_values
-from roadproof.witness.ask import Request, ask
+from roadproof.spec.scenarios import Scenario
+from roadproof.witness.ask import ask
 
 
-def node(number: int, set_name: str = "base") -> Node:
-    return Node(number, set_name)
+def node(number: int, set_name: str = "base") -> Scenario:
+    return Scenario(number, set_name)
 
 
 def test_scenarios_with_one_formula_are_one_kind() -> None:
@@ -126,7 +126,8 @@ def test_a_drive_for_another_scenario_settles_a_doubt_with_its_vehicles_exchange
     asked = Asked()
     open_ = (("scenario_3(SV,POV,L)", "scenario_1(SV,POV,L)"),)
     decided = Decided(doubts=(Doubt(node(3), node(1), open_),))
-    (drive,) = ask(Request("4", values=default_values(asked.load()[0]))).drives
+    (judged,) = ask(search_for("4")).drives
+    drive = judged.as_data()
     settled = settle_doubts(asked, decided, [drive])
     assert settled.doubts == ()
     (refuting,) = settled.drives

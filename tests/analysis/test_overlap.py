@@ -5,111 +5,119 @@ from pathlib import Path
 
 import pytest
 
+from asking import prove
 from planting import plant
 from roadproof.analysis import overlap
-from roadproof.analysis.meeting import Meeting, Node, conjunctions, read_numbers
-from roadproof.analysis.overlap import Asked, Entry, decide_group, groups_of, pairs_of, without_sectors
-from roadproof.analysis.placing import Shown, show_elsewhere
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.meeting import Meeting, conjunctions
+from roadproof.analysis.overlap import Core, Overlap, PairVerdict, pairs_of
+from roadproof.analysis.placing import placed
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.certificate import read_certificate, refusal
-from roadproof.evidence.witness import from_json, judge_file
-from roadproof.prove.prover import prove
+from roadproof.evidence.certificate import refusal
+from roadproof.evidence.judged import judge_file
 from roadproof.report.overlap import as_csv, as_matrix, draw_overlap
 from roadproof.solve.smt import ask
-from roadproof.spec.elaborate import apply_definition
+from roadproof.spec.compose import negation, of_parts
+from roadproof.spec.elaborate import apply_definition, read_claim
 from roadproof.spec.library import bundled_library
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import Scenario, read_numbers, without_sectors
+from roadproof.study.frame import conduct
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")
+BASIS = Basis(BASE)
 
 
-def node(number: int, set_name: str = "base") -> Node:
-    return Node(number, set_name)
+def node(number: int, set_name: str = "base") -> Scenario:
+    return Scenario(number, set_name)
+
+
+def texts(queries: tuple[Query, ...]) -> tuple[str, ...]:
+    return tuple(query.text for query in queries)
 
 
 @pytest.fixture(scope="module")
-def entries() -> dict[tuple[int, int], Entry]:
+def entries() -> dict[tuple[int, int], PairVerdict]:
     """Pairs of every kind: exclusive, possible, and with one disturbance on two road sectors."""
-    asked = Asked()
     wanted = {(4, 5), (5, 12), (4, 8), (4, 16), (4, 24), (8, 12), (12, 24), (4, 12), (12, 20)}
-    pairs = [pair for pair in pairs_of(asked) if (pair[0].number, pair[1].number) in wanted]
-    found = [entry for seed, group in groups_of(asked, pairs) for entry in decide_group(asked, seed, group)]
+    pairs = tuple(pair for pair in pairs_of(BASIS) if (pair[0].number, pair[1].number) in wanted)
+    found = conduct(Overlap(BASIS, pairs), processes=1).answers.values()
     return {(entry.a.number, entry.b.number): entry for entry in found}
 
 
-def test_the_known_pairs_come_out(entries: dict[tuple[int, int], Entry]) -> None:
+def test_the_known_pairs_come_out(entries: dict[tuple[int, int], PairVerdict]) -> None:
     impossible = {pair for pair, entry in entries.items() if entry.verdict is Verdict.IMPOSSIBLE}
     assert impossible == {(4, 5), (5, 12)}
     assert {entry.verdict for pair, entry in entries.items() if pair not in impossible} == {Verdict.WITNESSED}
     assert len(entries) == 9
 
 
-def test_every_drive_is_one_of_its_own_pair(entries: dict[tuple[int, int], Entry]) -> None:
+def test_every_drive_is_one_of_its_own_pair(entries: dict[tuple[int, int], PairVerdict]) -> None:
     for (a, b), entry in entries.items():
         if entry.verdict is Verdict.WITNESSED:
             assert entry.drive is not None
-            file = from_json(dict(entry.drive), "drive")
-            assert set(file.formula.split(" and ")) == {f"scenario_{n}(SV,POV,L)" for n in (a, b)}
+            file = entry.drive.file
+            assert set(file.formula.split(" and ")) == {f"scenario_{n}(SV, POV, L)" for n in (a, b)}
             assert judge_file(file, bundled_library()).accepted
 
 
-def test_every_certificate_proves_its_own_pair(entries: dict[tuple[int, int], Entry], tmp_path: Path) -> None:
+def test_every_certificate_proves_its_own_pair(entries: dict[tuple[int, int], PairVerdict]) -> None:
     for (a, b), entry in entries.items():
         if entry.verdict is Verdict.IMPOSSIBLE:
             assert entry.certificate is not None
-            path = tmp_path / "certificate.json"
-            path.write_text(entry.certificate)
-            certificate = read_certificate(path)
-            assert f"scenario_{a}(SV,POV,L)" in certificate.claim
-            assert f"scenario_{b}(SV,POV,L)" in certificate.claim
-            assert certificate.claim.startswith("not (")
-            assert refusal(certificate, bundled_library(), ask) is None
+            assert f"scenario_{a}(SV, POV, L)" in entry.certificate.claim
+            assert f"scenario_{b}(SV, POV, L)" in entry.certificate.claim
+            assert entry.certificate.claim.startswith("not (")
+            assert refusal(entry.certificate, bundled_library(), ask) is None
 
 
-BOTH_ROLES = Asked(meeting=Meeting(roles="any"))
+BOTH_ROLES = Meeting(roles="any")
 
 
-def decided(a: int, b: int) -> Entry:
+def decided(a: int, b: int) -> PairVerdict:
     """The answer for a pair in either role, which is two readings of how they meet."""
-    ((seed, group),) = groups_of(BOTH_ROLES, [(node(a), node(b))])
-    return decide_group(BOTH_ROLES, seed, group)[0]
+    study = Overlap(BASIS, ((node(a), node(b)),), BOTH_ROLES)
+    return study.verdicts(conduct(study).answers)[0]
 
 
-def is_proved_of_every_reading(entry: Entry) -> bool:
+def is_proved_of_every_reading(entry: PairVerdict) -> bool:
     """Whether the certificate is about every way in which the pair might meet, and so are the cores."""
     assert entry.certificate is not None
-    readings = conjunctions(BASE, entry.a, entry.b, BOTH_ROLES.meeting)
-    claim = json.loads(entry.certificate)["claim"]
-    cores = [core.formula for core in entry.cores]
-    return claim == " and ".join(f"not ({x})" for x in readings) and cores == list(readings)
+    readings = conjunctions(BASE, entry.a, entry.b, BOTH_ROLES)
+    proved = " and ".join(negation(x).text for x in readings)
+    return entry.certificate.claim == proved and [core.whole for core in entry.cores] == list(readings)
 
 
 def test_impossible_is_proved_of_every_reading() -> None:
     entry = decided(5, 6)
     assert entry.verdict is Verdict.IMPOSSIBLE
-    assert len(conjunctions(BASE, node(5), node(6), BOTH_ROLES.meeting)) == 2
+    assert len(conjunctions(BASE, node(5), node(6), BOTH_ROLES)) == 2
     assert is_proved_of_every_reading(entry)
 
 
 def test_one_reading_that_is_impossible_does_not_make_the_pair_so() -> None:
-    first, second = conjunctions(BASE, node(3), node(8), BOTH_ROLES.meeting)
-    assert prove(BASE, f"not ({first})", Effort(5.0)).verdict is Verdict.PROVED
+    first, second = conjunctions(BASE, node(3), node(8), BOTH_ROLES)
+    assert prove(BASE, f"not ({first.text})", Effort(5.0)).verdict is Verdict.PROVED
     entry = decided(3, 8)
-    assert (entry.verdict, entry.formula) == (Verdict.WITNESSED, second)
+    assert (entry.verdict, entry.query) == (Verdict.WITNESSED, second)
 
 
-@pytest.mark.parametrize("kept", ["texts[:1]", "texts[1:]"])
+@pytest.mark.parametrize("kept", ["queries[:1]", "queries[1:]"])
 def test_a_proof_of_one_reading_only_is_noticed(kept: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = 'f"not ({x})" for x in texts'
-    plant(monkeypatch, overlap._Deciding, "_impossible", right, right.replace("texts", kept))
+    right = "negation(x) for x in queries"
+    plant(monkeypatch, overlap._Deciding, "_impossible", right, right.replace("queries", kept))
     assert not is_proved_of_every_reading(decided(5, 6))
 
 
 @pytest.mark.parametrize(
     ("right", "wrong"),
-    [("x for x in texts if", "x for x in texts[:1] if"), ("if not left:", "if len(left) < len(texts):")],
+    [
+        ("x for x in queries if", "x for x in queries[:1] if"),
+        ("if not left:", "if len(left) < len(queries):"),
+    ],
 )
 def test_a_reading_that_is_forgotten_is_noticed(
     right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
@@ -118,31 +126,32 @@ def test_a_reading_that_is_forgotten_is_noticed(
     assert decided(3, 8).verdict is not Verdict.WITNESSED
 
 
-def test_a_core_clashes_by_itself(entries: dict[tuple[int, int], Entry]) -> None:
+def test_a_core_clashes_by_itself(entries: dict[tuple[int, int], PairVerdict]) -> None:
     for entry in entries.values():
         for core in entry.cores:
-            claim = f"not ({' and '.join(f'({part})' for part in core.parts)})"
-            assert prove(BASE, claim, Effort(5.0)).verdict is Verdict.PROVED
+            claim = negation(of_parts(core.whole, core.parts))
+            assert prove(BASE, claim.text, Effort(5.0)).verdict is Verdict.PROVED
             assert len(core.parts) < 8
 
 
-def test_a_drive_is_not_taken_for_what_it_does_not_show(entries: dict[tuple[int, int], Entry]) -> None:
+def test_a_drive_is_not_taken_for_what_it_does_not_show(entries: dict[tuple[int, int], PairVerdict]) -> None:
     drive = entries[4, 8].drive
     assert drive is not None
-    shown = Shown(entries[4, 8].formula, dict(drive))
-    library = bundled_library()
-    assert show_elsewhere(shown, "scenario_20(SV,POV,L) and scenario_8(SV,POV,L)", library) is not None
-    assert show_elsewhere(shown, "scenario_4(SV,POV,L) and not scenario_4(SV,POV,L)", library) is None
-    assert show_elsewhere(shown, "scenario_3(SV,POV,L)", library) is None
+
+    def shows(text: str) -> bool:
+        return placed(drive.file, read_claim(BASE, text), bundled_library()) is not None
+
+    assert shows("scenario_20(SV,POV,L) and scenario_8(SV,POV,L)")
+    assert not shows("scenario_4(SV,POV,L) and not scenario_4(SV,POV,L)")
+    assert not shows("scenario_3(SV,POV,L)")
 
 
 def test_groups_leave_no_pair_out_and_solve_36() -> None:
-    asked = Asked()
-    pairs = pairs_of(asked)
-    groups = groups_of(asked, pairs)
+    pairs = pairs_of(BASIS)
+    groups = Overlap(BASIS, pairs).pieces({})
     assert len(pairs) == 276
     assert len(groups) == 36
-    grouped = [frozenset(pair) for _, group in groups for pair in group]
+    grouped = [frozenset(pair) for group in groups for pair in group.pairs]
     assert len(grouped) == 276
     assert set(grouped) == {frozenset(pair) for pair in pairs}
 
@@ -154,40 +163,40 @@ def test_rows_that_differ_in_more_than_their_sector_are_kept_apart() -> None:
 
 
 def test_how_scenarios_may_meet() -> None:
-    assert conjunctions(BASE, node(3), node(4), Meeting()) == (
-        "scenario_3(SV,POV,L) and scenario_4(SV,POV,L)",
+    assert texts(conjunctions(BASE, node(3), node(4), Meeting())) == (
+        "scenario_3(SV, POV, L) and scenario_4(SV, POV, L)",
     )
-    assert conjunctions(BASE, node(3), node(2), Meeting()) == (
-        "scenario_3(SV,POV1,L) and scenario_2(SV,POV1,POV2,L)",
-        "scenario_3(SV,POV2,L) and scenario_2(SV,POV1,POV2,L)",
+    assert texts(conjunctions(BASE, node(3), node(2), Meeting())) == (
+        "scenario_3(SV, POV1, L) and scenario_2(SV, POV1, POV2, L)",
+        "scenario_3(SV, POV2, L) and scenario_2(SV, POV1, POV2, L)",
     )
-    assert conjunctions(BASE, node(1), node(4), Meeting("any", "any")) == (
-        "scenario_1(SV,POV,L) and scenario_4(SV,POV,L2)",
-        "scenario_1(SV,POV,L) and scenario_4(POV,SV,L2)",
+    assert texts(conjunctions(BASE, node(1), node(4), Meeting("any", "any"))) == (
+        "scenario_1(SV, POV, L) and scenario_4(SV, POV, L2)",
+        "scenario_1(SV, POV, L) and scenario_4(POV, SV, L2)",
     )
-    assert conjunctions(BASE, node(1), node(4), Meeting(start="any")) == (
-        "scenario_1(SV,POV,L) and F scenario_4(SV,POV,L)",
-        "scenario_4(SV,POV,L) and F scenario_1(SV,POV,L)",
+    assert texts(conjunctions(BASE, node(1), node(4), Meeting(start="any"))) == (
+        "scenario_1(SV, POV, L) and F scenario_4(SV, POV, L)",
+        "scenario_4(SV, POV, L) and F scenario_1(SV, POV, L)",
     )
     across = conjunctions(BASE, node(1), node(1, "ext"), Meeting())
-    assert across == ("scenario_1(SV,POV,L) and scenario_1@ext(SV,POV,L)",)
+    assert texts(across) == ("scenario_1(SV, POV, L) and scenario_1@ext(SV, POV, L)",)
     assert len(conjunctions(BASE, node(2), node(10), Meeting(roles="any"))) == 6
 
 
 def test_across_sets_every_scenario_meets_every_other() -> None:
-    asked = Asked(sets=("base", "ext"))
-    assert len(pairs_of(asked)) == 576
-    entry = decide_group(asked, *groups_of(asked, [(node(1), node(3, "ext"))])[0])[0]
+    basis = Basis(BASE, ("base", "ext"))
+    assert len(pairs_of(basis)) == 576
+    (entry,) = conduct(Overlap(basis, ((node(1), node(3, "ext")),))).answers.values()
     assert (entry.a.set_name, entry.b.set_name) == ("base", "ext")
     assert entry.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
 
 def test_numbers() -> None:
-    assert read_numbers("1,3-5", BASE) == (1, 3, 4, 5)
+    assert read_numbers(BASE, "1,3-5, scenario_7") == (1, 3, 4, 5, 7)
     with pytest.raises(InputError, match="25"):
-        read_numbers("20-25", BASE)
+        read_numbers(BASE, "20-25")
     with pytest.raises(UsageError, match="range"):
-        read_numbers("one", BASE)
+        read_numbers(BASE, "one")
 
 
 def test_the_command_writes_what_it_promises_and_goes_on(
@@ -207,11 +216,11 @@ def test_the_command_writes_what_it_promises_and_goes_on(
     assert by_pair[5, 6]["core"] == ["not sameLane(POV, SV, L)", "sameLane(POV, SV, L)"]
     assert main(["check", str(out), "--jobs", "1"]) == 0
     assert "3 of 3 accepted" in capsys.readouterr().out
-    # One answer lost with its evidence, one line cut short: both are asked again, the third is not.
-    lines = (out / "answers.jsonl").read_text().splitlines()
-    kept = json.loads(lines[3])["verdict"]
+    # One answer lost with its evidence, one file cut short: both are asked again, the third is not.
+    kept = by_pair[4, 6]
     Path(by_pair[4, 5]["certificate"]).unlink()
-    (out / "answers.jsonl").write_text("\n".join([*lines[:2], lines[3], lines[2][:50]]))
+    cut = out / "answers/base-05-base-06.json"
+    cut.write_text(cut.read_text()[:50])
     assert main(line) == 0
     again = {(x["a"], x["b"]): x for x in json.loads(capsys.readouterr().out)["verdicts"]}
     assert {pair: x["verdict"] for pair, x in again.items()} == {p: x["verdict"] for p, x in by_pair.items()}
@@ -220,22 +229,24 @@ def test_the_command_writes_what_it_promises_and_goes_on(
     assert "another question" in capsys.readouterr().err
 
 
-def verdict(a: int, b: int, name: str, *core: str) -> dict[str, object]:
-    cores = [{"formula": "", "parts": list(core)}] if core else []
-    shown = {"a": a, "b": b, "set_a": "base", "set_b": "base", "verdict": name, "formula": "p and q"}
-    return {**shown, "core": list(core), "cores": cores, "certificate": None, "drive": None, "reason": ""}
+def verdict(a: int, b: int, name: str, *core: str) -> PairVerdict:
+    query = read_claim(BASE, "aheadOf(SV,POV) and true")
+    cores = (Core(query, tuple(read_claim(BASE, part).formula for part in core)),) if core else ()
+    return PairVerdict(node(a), node(b), Verdict(name), query, cores=cores)
 
 
 def test_the_matrix_is_symmetric_within_a_set_only() -> None:
     answers = [
-        verdict(1, 4, "IMPOSSIBLE", "p", "not p"),
+        verdict(1, 4, "IMPOSSIBLE", "aheadOf(SV,POV)", "not aheadOf(SV,POV)"),
         verdict(1, 5, "WITNESSED"),
         verdict(4, 5, "UNKNOWN"),
     ]
     rows = as_matrix(answers, across=False).splitlines()
     assert rows[:4] == ["      1  4  5", "   1     .  #", "   4  .     ?", "   5  #  ?   "]
     assert as_matrix(answers, across=True).splitlines()[:3] == ["      4  5", "   1  .  #", "   4     ?"]
-    assert as_csv(answers).splitlines()[1] == "1,4,base,base,IMPOSSIBLE,p and q,p; not p,,"
+    assert as_csv(answers).splitlines()[1] == (
+        '1,4,base,base,IMPOSSIBLE,"aheadOf(SV,POV) and true","aheadOf(SV, POV); not aheadOf(SV, POV)",,'
+    )
 
 
 def test_the_heat_map_shows_every_core_once() -> None:

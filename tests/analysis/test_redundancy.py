@@ -9,22 +9,23 @@ from hypothesis import given, settings
 
 from judge.cases import drives
 from roadproof.analysis import redundancy
-from roadproof.analysis.meeting import Node
-from roadproof.analysis.overlap import Asked
 from roadproof.analysis.redundancy import Change, Finding, _Examining, changes_of, learn
+from roadproof.analysis.requests import Asked, Request
+from roadproof.analysis.requests import ask as ask_for_drive
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.evidence.certificate import read_certificate, refusal
-from roadproof.evidence.witness import from_json, judge_file
+from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
 from roadproof.logic.formula import Formula
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
+from roadproof.spec.scenarios import Scenario
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Outcome, Request
-from roadproof.witness.ask import ask as ask_for_drive
+from roadproof.witness.ask import Outcome
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 
@@ -64,7 +65,7 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
 
 def decide(number: int, part: str, value: bool) -> Finding:
     """The finding on the first change of ``part`` in a scenario of base."""
-    examining = _Examining(Asked(effort=Effort(30)), Node(number, "base"))
+    examining = _Examining(Asked(effort=Effort(30)), Scenario(number, "base"))
     found = changes_of(read_claim(BASE, examining.text).formula)
     change = next(x for x in found if x.part == part and x.value is value)
     return examining._decide(change)
@@ -84,12 +85,12 @@ def test_adjacent_lanes_are_redundant_in_scenario_3(tmp_path: Path) -> None:
 
 def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
     found = [x for x in changes("scenario_8(SV,POV,L)") if x.part == "aheadOf(SV, POV)" and not x.value]
-    examining = _Examining(Asked(effort=Effort(30)), Node(8, "base"))
+    examining = _Examining(Asked(effort=Effort(30)), Scenario(8, "base"))
     examining._collect()
     finding = examining._decide(found[0])
     assert finding.verdict is Verdict.REFUTED
     assert finding.drive is not None
-    file = from_json(dict(finding.drive), "drive")
+    file = read_drive(dict(finding.drive), "drive")
     assert file.formula == f"scenario_8(SV,POV,L) and not ({found[0].changed})"
     assert judge_file(file, bundled_library()).accepted
 
@@ -141,7 +142,7 @@ def test_what_was_looked_for_in_vain_is_not_looked_for_again(monkeypatch: pytest
     learned = learn(asked, [], [change.changed])
     monkeypatch.setattr(redundancy, "ask", lambda request: pytest.fail("searched again"))
     (twin,) = (x for x in changes("scenario_11(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
-    finding = _Examining(asked, Node(11, "base"), learned)._decide(twin)
+    finding = _Examining(asked, Scenario(11, "base"), learned)._decide(twin)
     assert finding.verdict is Verdict.REFUTED
     assert finding.trace is not None
     assert "another road" in finding.reason
@@ -151,13 +152,13 @@ def test_what_motion_makes_redundant_is_proved_for_motion() -> None:
     """SV need not be asked to keep its lane until it or POV1 has left it: one of them leaves first."""
     part = "laneKeep(SV, L) U not sameLane(SV, POV1, L)"
     (change,) = (x for x in changes("scenario_2(SV,POV1,POV2,L)") if x.part == part and x.value)
-    finding = _Examining(Asked(proof=10.0), Node(2, "base"))._redundant_in_motion(change)
+    finding = _Examining(Asked(proof=10.0), Scenario(2, "base"))._redundant_in_motion(change)
     assert finding is not None
     assert finding.verdict is Verdict.PROVED
     assert finding.assuming.count(" U not atLane(") == 3
     assert finding.claim.count(finding.assuming) == 2
     other = next(x for x in changes("scenario_8(SV,POV,L)") if x.part == "atLane(POV, L)" and not x.value)
-    assert _Examining(Asked(), Node(8, "base"))._redundant_in_motion(other) is None
+    assert _Examining(Asked(), Scenario(8, "base"))._redundant_in_motion(other) is None
 
 
 @settings(deadline=None, derandomize=True)

@@ -8,7 +8,7 @@ import pytest
 from planting import plant
 from roadproof.analysis.coverage import claims, classes, settling
 from roadproof.analysis.coverage.classes import Found, Group, Survey, groups_of
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.requests import Asked
 from roadproof.cli import coverage
 from roadproof.cli.coverage_files import Evidence
 from roadproof.cli.main import main

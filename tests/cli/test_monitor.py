@@ -9,6 +9,7 @@ import pytest
 
 from roadproof.cli import monitor
 from roadproof.cli.main import main
+from roadproof.evidence.drive_file import load_drive
 from roadproof.export.drive_csv import csv_of
 from roadproof.traffic.evaluate import evaluate_recording
 from roadproof.traffic.highd import read_highd
@@ -105,7 +106,7 @@ def test_samples_end(
 ) -> None:
     """The same trace by --view recorded and from CSV: three answers, and clip beside them."""
     samples = drive.with_suffix(".csv")
-    samples.write_text(csv_of(json.loads(drive.read_text())))
+    samples.write_text(csv_of(load_drive(drive)))
     for trace in ([str(drive), "--view", "recorded"], [str(samples)]):
         found, told = asked([formula, *trace], capsys)
         assert (found, told["verdict"], told["underTheOtherEnd"]) == (code, verdict, clipped)

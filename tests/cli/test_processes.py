@@ -16,8 +16,10 @@ import pytest
 
 from roadproof.cli import prove, supervising, working
 from roadproof.cli.main import main
-from roadproof.cli.prove_settle import Job, Settled, settle
+from roadproof.cli.prove import How, settle
+from roadproof.cli.prove_answers import Answered
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
+from roadproof.prove.properties import Task
 from roadproof.workers import Lost, answers_of
 
 HANGS = 60.0
@@ -208,10 +210,10 @@ def test_what_cannot_be_sent_is_an_error_and_no_hang() -> None:
 def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def settle_or_die(job: Job) -> Settled:
-        if job.task.claim == "false":
+    def settle_or_die(how: How, task: Task) -> Answered:
+        if task.claim == "false":
             os.kill(os.getpid(), signal.SIGKILL)
-        return settle(job)
+        return settle(how, task)
 
     monkeypatch.setattr(prove, "settle", settle_or_die)
     claims = ["true", "false", "not false"]

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from roadproof.cli.main import main
-from roadproof.evidence.witness import SCHEMA, load_drive
+from roadproof.evidence.drive_file import SCHEMA, load_drive
 
 
 def run(capsys, *arguments):

@@ -8,6 +8,7 @@ from functools import cache
 
 import pytest
 
+from asking import prove
 from prove.claims import specification
 from roadproof.effort import Effort
 from roadproof.errors import InputError
@@ -16,7 +17,6 @@ from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, read_certificate, refusal, to_json
 from roadproof.evidence.derivation import Lemma, Site
 from roadproof.evidence.times import ZERO
-from roadproof.prove.prover import prove
 from roadproof.shipped import shipped
 from roadproof.solve.smt import ask
 from roadproof.spec.elaborate import read_claim
@@ -65,7 +65,13 @@ def rederived(changed: Certificate) -> Certificate:
             if site in walk.instanced
         }
     return certify(
-        chosen, changed.claim, instances, names, changed.lemmas, changed.property, changed.scenario
+        chosen,
+        read_claim(chosen, changed.claim),
+        instances,
+        names,
+        changed.lemmas,
+        changed.property,
+        changed.scenario,
     )
 
 
@@ -130,10 +136,10 @@ def test_an_invented_lemma_proves_nothing():
     claim = "fasterThan(SV,POV) -> fasterThan(POV,SV)"
     faster, slower = "fasterThan(SV, POV)", "fasterThan(POV, SV)"
     invented = Lemma(((faster, False), (slower, True)), ("0",))
-    forged = certify(specification(), claim, {}, {}, (invented,))
+    forged = certify(specification(), read_claim(specification(), claim), {}, {}, (invented,))
     assert ask(forged.queries[0][1]) == "unsat"
     assert "'lemma 1, case 1 of 1' was answered sat" in check(forged)
-    empty = certify(specification(), claim, {}, {}, (Lemma((), ("0",)),))
+    empty = certify(specification(), read_claim(specification(), claim), {}, {}, (Lemma((), ("0",)),))
     assert "lemma 1" in check(empty)
 
 
@@ -224,7 +230,7 @@ def forge(claim: str, names: list[tuple[Site, str]], instances: list[tuple[Site,
     for site, text in instances:
         listed[site] = (*listed.get(site, ()), text)
     try:
-        return check(certify(specification(), claim, listed, dict(names), ()))
+        return check(certify(specification(), read_claim(specification(), claim), listed, dict(names), ()))
     except InputError as error:
         return str(error)
 

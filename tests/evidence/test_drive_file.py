@@ -8,7 +8,8 @@ from fractions import Fraction
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.evidence.witness import DriveFile, as_json, from_json, judge_file, load_drive
+from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive, read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece
@@ -44,15 +45,15 @@ def test_this_drive_is_accepted():
 
 
 def test_writing_is_readings_inverse(tmp_path):
-    data = as_json(FILE, {"verdict": "WITNESSED"})
-    assert from_json(data, "test") == FILE
+    data = drive_data(FILE, {"verdict": "WITNESSED"})
+    assert read_drive(data, "test") == FILE
     path = tmp_path / "drive.json"
     path.write_text(json.dumps(data), "utf-8")
     assert load_drive(path) == FILE
 
 
 def test_the_contract_of_the_file():
-    data = as_json(FILE, {})
+    data = drive_data(FILE, {})
     assert data["schema"] == "roadproof/drive/1"
     assert data["lane"] == "main-1"
     assert data["parameters"]["rho"] == "3/5"
@@ -64,7 +65,7 @@ def test_the_contract_of_the_file():
 
 
 def changed(path, value):
-    data = json.loads(json.dumps(as_json(FILE, {})))
+    data = json.loads(json.dumps(drive_data(FILE, {})))
     place = data
     for key in path[:-1]:
         place = place[key]
@@ -95,7 +96,7 @@ def changed(path, value):
 )
 def test_damaged_files_are_refused(path, value, message):
     with pytest.raises(InputError, match=message):
-        from_json(changed(path, value), "test")
+        read_drive(changed(path, value), "test")
 
 
 @pytest.mark.parametrize(
@@ -116,7 +117,7 @@ def test_damaged_files_are_refused(path, value, message):
     ],
 )
 def test_changed_drives_are_rejected(path, value):
-    assert not judge_file(from_json(changed(path, value), "test"), LIBRARY).accepted
+    assert not judge_file(read_drive(changed(path, value), "test"), LIBRARY).accepted
 
 
 def test_overlapping_boxes_are_rejected_unless_allowed():
@@ -133,7 +134,7 @@ def test_overlapping_boxes_are_rejected_unless_allowed():
 
 def test_random_damage_never_crashes():
     dice = random.Random(4)
-    original = as_json(FILE, {"verdict": "WITNESSED"})
+    original = drive_data(FILE, {"verdict": "WITNESSED"})
     junk = [None, True, 0, -1.5, "", "x", "1e9", "9" * 50, [], {}, [None], {"a": 1}]
     refused = 0
     for _ in range(400):
@@ -147,7 +148,7 @@ def test_random_damage_never_crashes():
             place = inner
         place[key] = dice.choice(junk)
         try:
-            ruling = judge_file(from_json(data, "test"), LIBRARY)
+            ruling = judge_file(read_drive(data, "test"), LIBRARY)
             assert ruling.accepted or ruling.reason
         except InputError:
             refused += 1

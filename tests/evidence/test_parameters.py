@@ -7,8 +7,8 @@ import pytest
 
 from evidence.test_drive_file import FILE, LIBRARY
 from roadproof.errors import InputError
-from roadproof.evidence import witness
-from roadproof.evidence.witness import judge_file
+from roadproof.evidence import judged
+from roadproof.evidence.judged import judge_file
 from roadproof.spec import bind
 from roadproof.spec.bind import default_values, values_with
 from roadproof.spec.library import Library, Source, build_library
@@ -63,18 +63,18 @@ def without_units(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def declared_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """The values of a drive file are ignored."""
-    monkeypatch.setattr(witness, "values_with", lambda library, given: default_values(library))
+    monkeypatch.setattr(judged, "values_with", lambda library, given: default_values(library))
 
 
 def file_only_where_undeclared(monkeypatch: pytest.MonkeyPatch) -> None:
     """The declared values come after those of the file."""
-    monkeypatch.setattr(witness, "values_with", lambda library, given: {**given, **default_values(library)})
+    monkeypatch.setattr(judged, "values_with", lambda library, given: {**given, **default_values(library)})
 
 
 def first_value_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """A value of the file is taken for the declared one in its own unit."""
     monkeypatch.setattr(
-        witness,
+        judged,
         "values_with",
         lambda library, given: {
             **default_values(library),

@@ -11,10 +11,11 @@ from evidence.test_drive_file import FILE, LIBRARY, motion
 from roadproof.errors import InputError
 from roadproof.evidence import strict
 from roadproof.evidence.checking import Checker
+from roadproof.evidence.drive_file import drive_data, read_drive
 from roadproof.evidence.finding import Outcome
+from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import DEEPEST, Fields, parse_json, rational
 from roadproof.evidence.times import read_moment
-from roadproof.evidence.witness import as_json, from_json, judge_file, times_data
 from roadproof.prove.properties import find_label
 from roadproof.world.drive import Drive
 
@@ -105,7 +106,7 @@ def test_moments_are_ascii_and_not_empty(text: str) -> None:
         read_moment(text)
 
 
-LANELETS = as_json(FILE, {})["road"]["lanelets"]
+LANELETS = drive_data(FILE, {})["road"]["lanelets"]
 
 
 @pytest.mark.parametrize(
@@ -124,11 +125,11 @@ LANELETS = as_json(FILE, {})["road"]["lanelets"]
     ],
 )
 def test_drives_that_are_refused(changed, message) -> None:
-    data = as_json(FILE, {})
+    data = drive_data(FILE, {})
     for name, value in changed.items():
         data[name] = {**data[name], **value} if name == "road" else value
     with pytest.raises(InputError, match=message):
-        from_json(data, "test")
+        read_drive(data, "test")
 
 
 # --- what is said of a drive that is accepted ----------------------------------------------------
@@ -137,7 +138,7 @@ def test_drives_that_are_refused(changed, message) -> None:
 def line_of(tmp_path, **changed) -> tuple[Outcome, str]:
     file = replace(FILE, options=dict(LIBRARY.select().options), **changed)
     path = tmp_path / "drive.json"
-    path.write_text(json.dumps(as_json(file, {})), "utf-8")
+    path.write_text(json.dumps(drive_data(file, {})), "utf-8")
     finding = Checker(LIBRARY, answer, find_label).check(path)
     return finding.outcome, str(finding)
 
@@ -182,16 +183,16 @@ def test_what_a_drive_file_says_of_itself_is_compared(tmp_path, verdict, message
     file = replace(FILE, options=dict(LIBRARY.select().options))
     judgement = judge_file(file, LIBRARY).judgement
     path = tmp_path / "drive.json"
-    path.write_text(json.dumps(as_json(file, {"times": times_data(judgement)})), "utf-8")
+    path.write_text(json.dumps(drive_data(file, {"times": times_data(judgement)})), "utf-8")
     checker = Checker(LIBRARY, answer, find_label)
     assert checker.check(path).outcome is Outcome.ACCEPTED
-    path.write_text(json.dumps(as_json(file, verdict)), "utf-8")
+    path.write_text(json.dumps(drive_data(file, verdict)), "utf-8")
     assert message in checker.check(path).reason
 
 
 @pytest.mark.parametrize("left_out", ["rho", "lateral_sign"])
 def test_what_a_drive_was_judged_with_is_said_by_its_file(tmp_path, left_out) -> None:
-    data = as_json(replace(FILE, options=dict(LIBRARY.select().options)), {})
+    data = drive_data(replace(FILE, options=dict(LIBRARY.select().options)), {})
     del data["parameters"][left_out]
     path = tmp_path / "drive.json"
     path.write_text(json.dumps(data), "utf-8")

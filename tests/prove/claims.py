@@ -6,6 +6,7 @@ from fractions import Fraction
 from functools import cache
 from math import prod
 
+from asking import prove
 from roadproof.effort import Effort
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.refutation import Countermodel
@@ -15,7 +16,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, map_terms, without_names
-from roadproof.prove.prover import Result, prove
+from roadproof.prove.prover import Result
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification, bundled_library
 from roadproof.verdict import Verdict

@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from asking import prove
 from prove.claims import specification
 from roadproof.effort import Effort
 from roadproof.judge import judge
 from roadproof.logic.rewrite import with_values
 from roadproof.prove.properties import Task, template_properties
-from roadproof.prove.prover import prove
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.verdict import Verdict

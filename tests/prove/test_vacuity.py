@@ -2,8 +2,8 @@
 
 import pytest
 
+from asking import prove
 from roadproof.prove import prover
-from roadproof.prove.prover import prove
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.evidence.witness import load_drive
+from roadproof.evidence.drive_file import load_drive
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.traffic.evaluate import Findings, evaluate_recording

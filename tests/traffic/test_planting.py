@@ -6,7 +6,7 @@ from fractions import Fraction as F
 import pytest
 
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import DriveFile
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.spec.library import bundled_library
 from roadproof.traffic.planting import PLANTED_COLUMNS, lane_width, plant_drives, plantable, rows_of
 from roadproof.traffic.recording import Recording

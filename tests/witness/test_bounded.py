@@ -1,25 +1,23 @@
 """Bounded checks: limits are printed, counterexamples are judged, engines agree."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
+from asking import search_for
 from roadproof.effort import Effort
-from roadproof.evidence.witness import from_json, judge_file
-from roadproof.spec.bind import default_values
+from roadproof.evidence.judged import judge_file
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request
 from roadproof.witness.bounded import check_bounded
 from roadproof.witness.question import Means
 
 LIBRARY = bundled_library()
-REQUEST = Request("", values=default_values(LIBRARY), horizon=Fraction(6, 5), means=Means(effort=Effort(30)))
 
 
 def check(claim, engine):
-    return check_bounded(replace(REQUEST, what=claim, means=replace(REQUEST.means, engine=engine)))
+    means = Means(engine=engine, effort=Effort(30))
+    return check_bounded(search_for(claim, means=means, horizon=Fraction(6, 5)))
 
 
 @pytest.mark.parametrize("engine", ["milp", "smt"])
@@ -33,8 +31,7 @@ def test_limits_of_vehicles_bound_what_can_happen(engine):
     assert "main-2" in held.reason
     broken = check("not (v_lon(SV) > 39 m/s and F[1.2 s, 1.2 s] v_lon(SV) < 33 m/s)", engine)
     assert broken.verdict is Verdict.REFUTED
-    file = from_json(broken.drive, "drive")
-    assert judge_file(file, LIBRARY).accepted
+    assert judge_file(broken.drive.file, LIBRARY).accepted
 
 
 def test_what_holds_for_all_time_is_proved_so():

@@ -5,22 +5,21 @@ from fractions import Fraction
 
 import pytest
 
+from asking import posed, search_for
 from roadproof.effort import Effort
-from roadproof.evidence.witness import from_json, judge_file
-from roadproof.spec.bind import default_values
+from roadproof.evidence.judged import judge_file
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, ask, pose
+from roadproof.witness.ask import ask
 from roadproof.witness.bounded import check_bounded
 from roadproof.witness.question import Means
 from roadproof.witness.search import show_none
-from witness.known import BASE, LIBRARY, holds_on_samples, known
+from witness.known import LIBRARY, holds_on_samples, known
 
-REQUEST = Request("", values=default_values(LIBRARY), means=Means(effort=Effort(30)))
 SHORT = {"horizon": Fraction(9, 5)}
 
 
 def ask_for(what, engine="milp", **changes):
-    return ask(replace(REQUEST, what=what, means=replace(REQUEST.means, engine=engine), **changes))
+    return ask(search_for(what, means=Means(engine=engine, effort=Effort(30)), **changes))
 
 
 @pytest.mark.parametrize("engine", ["milp", "smt"])
@@ -57,7 +56,7 @@ def test_random_drives_are_not_denied(engine):
 def test_where_a_drive_starts_and_what_comes_after_it_is_left_open(what, road, engine):
     outcome = ask_for(what, engine, road=road, **SHORT)
     assert outcome.verdict is Verdict.WITNESSED
-    assert judge_file(from_json(outcome.drives[0], "drive"), LIBRARY).accepted
+    assert judge_file(outcome.drives[0].file, LIBRARY).accepted
 
 
 @pytest.mark.parametrize("engine", ["milp", "smt"])
@@ -71,10 +70,10 @@ def test_where_a_drive_starts_and_what_comes_after_it_is_left_open(what, road, e
     ],
 )
 def test_claims_about_places_are_refuted(claim, road, engine):
-    means = replace(REQUEST.means, engine=engine)
-    result = check_bounded(replace(REQUEST, what=claim, road=road, means=means))
+    means = Means(engine=engine, effort=Effort(30))
+    result = check_bounded(search_for(claim, road=road, means=means))
     assert result.verdict is Verdict.REFUTED
-    assert judge_file(from_json(result.drive, "drive"), LIBRARY).accepted
+    assert judge_file(result.drive.file, LIBRARY).accepted
 
 
 BORDERLINE = [
@@ -122,7 +121,7 @@ def test_what_fails_by_a_hair_is_denied(what):
     ],
 )
 def test_which_vehicle_comes_first_makes_no_difference(what, verdict):
-    question = pose(BASE, what.format("SV", "POV", "POV2"), replace(REQUEST, what="", natural=False, **SHORT))
+    question = posed(search_for(what.format("SV", "POV", "POV2"), natural=False, **SHORT))
     for turn in (("SV", "POV", "POV2"), ("POV2", "SV", "POV"), ("POV", "POV2", "SV")):
         turned = replace(question, vehicles={name: question.vehicles[name] for name in turn})
         assert show_none(turned, Means(effort=Effort(30))).verdict is verdict
@@ -139,7 +138,7 @@ def test_a_road_that_ends_has_drives(tmp_path):
 
 
 def test_every_limit_is_named_in_text_and_data():
-    changes = {"lanes": {"L": "main-2"}, "values": {**REQUEST.values, "rho": Fraction(1)}, **SHORT}
+    changes = {"lanes": {"L": "main-2"}, "values": {"rho": Fraction(1)}, **SHORT}
     what = "rssViolation(SV, POV) and atLane(SV, L) and s(SV) > 9 m and v_lon(SV) > 41 m/s"
     outcome = ask_for(what, **changes)
     assert outcome.verdict is Verdict.NONE_WITHIN
@@ -156,7 +155,7 @@ def test_every_limit_is_named_in_text_and_data():
         "rho=1",
     ):
         assert part in outcome.reason
-    told = outcome.as_json()
+    told = outcome.as_data()
     assert told["view"] == "grid"
     assert told["limits"]["starts"] == ["-1072", "2027/2"]
     assert told["limits"]["lanes"] == {"L": "main-2"}

@@ -5,19 +5,18 @@ from fractions import Fraction
 
 import pytest
 
+from asking import posed, search_for
 from planting import plant
 from roadproof.effort import Effort
 from roadproof.encode import build
 from roadproof.solve import bounds
-from roadproof.spec.bind import default_values
 from roadproof.verdict import Verdict
 from roadproof.witness import bounded, search
-from roadproof.witness.ask import Outcome, Request, pose
+from roadproof.witness.ask import Outcome
 from roadproof.witness.impossible import Impossibility
 from roadproof.witness.question import Means
-from witness.known import BASE, LIBRARY
 
-REQUEST = Request("", values=default_values(LIBRARY), horizon=Fraction(9, 5))
+SHORT = {"horizon": Fraction(9, 5)}
 
 # Questions that have drives, each of them out of reach of a fault below.
 DRIVES = {
@@ -39,7 +38,7 @@ def denied(means=None):
     """The drives that are denied."""
     found = []
     for name, what in DRIVES.items():
-        asked = pose(BASE, what, replace(REQUEST, what=what))
+        asked = posed(search_for(what, **SHORT))
         if search.show_none(asked, means or Means(effort=Effort(30))).verdict is Verdict.NONE_WITHIN:
             found.append(name)
     return found
@@ -97,13 +96,13 @@ def test_a_fault_that_denies_a_drive_is_caught(fault, monkeypatch):
 
 
 def outcome(verdict, **changes):
-    return Outcome(None, "base", "true", "main-2", verdict, "why", (), False, {}, {}, **changes)
+    return Outcome(None, "base", search_for("true").query, "main-2", verdict, "why", **changes)
 
 
 ANSWERS = {
     "a drive": (replace(outcome(Verdict.WITNESSED), drives=({"drive": 1},)), Verdict.REFUTED),
     "a proof": (outcome(Verdict.IMPOSSIBLE, impossibility=Impossibility((), True, {})), Verdict.PROVED),
-    "none": (outcome(Verdict.NONE_WITHIN, limits=pose(BASE, "s(SV) > 0 m", REQUEST).limits()), None),
+    "none": (outcome(Verdict.NONE_WITHIN, limits=posed(search_for("s(SV) > 0 m", **SHORT)).limits()), None),
     "in doubt": (outcome(Verdict.UNKNOWN), Verdict.UNKNOWN),
 }
 
@@ -113,7 +112,7 @@ def answered(monkeypatch):
     said = {}
     for name, (answer, _) in ANSWERS.items():
         monkeypatch.setattr(bounded, "ask", lambda request, answer=answer: answer)
-        said[name] = bounded.check_bounded(replace(REQUEST, what="true")).verdict
+        said[name] = bounded.check_bounded(search_for("true", **SHORT)).verdict
     return said
 
 
@@ -125,7 +124,7 @@ def test_only_a_none_within_makes_a_claim_proved_bounded(monkeypatch):
 
 
 def test_a_doubt_taken_for_a_bounded_proof_is_caught(monkeypatch):
-    right, wrong = "Verdict.UNKNOWN, outcome.reason", "Verdict.PROVED_BOUNDED, outcome.reason"
+    right, wrong = "BoundedResult(Verdict.UNKNOWN", "BoundedResult(Verdict.PROVED_BOUNDED"
     plant(monkeypatch, bounded, "check_bounded", right, wrong)
     assert answered(monkeypatch) != EXPECTED
 
@@ -149,7 +148,7 @@ DOUBTS = {
 
 def doubted(monkeypatch):
     """The verdicts where solvers give up, and where the judge refuses what they found."""
-    asked = pose(BASE, "s(SV) = 30 m", REQUEST)
+    asked = posed(search_for("s(SV) = 30 m", **SHORT))
     said = set()
     with monkeypatch.context() as solvers:
         solvers.setattr(search, "solve_mixed", lambda *_, **__: search.Solution("unknown"))

@@ -6,30 +6,30 @@ from itertools import pairwise
 
 import pytest
 
+from asking import search_for
 from roadproof.effort import Effort
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import from_json, judge_file
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.replay import first_breach, first_overlap
-from roadproof.spec.bind import default_values
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
 from roadproof.witness import search
-from roadproof.witness.ask import Request, ask
+from roadproof.witness.ask import ask
 from roadproof.witness.question import Means
 from roadproof.witness.variety import CLEARLY
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import starts_of, state_at
 
 LIBRARY = bundled_library()
-REQUEST = Request("4", values=default_values(LIBRARY), means=Means(effort=Effort(30)))
+MEANS = Means(effort=Effort(30))
 
 
 def ask_for(what, set_name="base", **changes):
-    return ask(replace(REQUEST, what=what, set_name=set_name, **changes))
+    return ask(search_for(what, set_name, **changes))
 
 
 def drive_of(outcome, k=0):
-    return from_json(outcome.drives[k], "drive")
+    return outcome.drives[k].file
 
 
 def gap(file, ahead, behind, time):
@@ -90,7 +90,7 @@ def test_a_drive_is_rejected_when_it_is_changed():
 def test_objectives_do_what_they_say():
     nearest = {}
     for objective in ("any", "smooth", "margin", "mild", "severe", "short"):
-        outcome = ask_for("4", means=replace(REQUEST.means, objective=objective))
+        outcome = ask_for("4", means=replace(MEANS, objective=objective))
         assert outcome.verdict is Verdict.WITNESSED
         file = drive_of(outcome)
         times = [k * Fraction(1, 10) for k in range(int(file.horizon * 10) + 1)]
@@ -121,7 +121,7 @@ def test_overlapping_scenarios_have_a_drive_and_exclusive_ones_a_proof():
     never = ask_for("scenario_1(SV,POV,L) and scenario_4(SV,POV,L)")
     assert never.verdict is Verdict.IMPOSSIBLE
     assert never.impossibility is not None
-    assert "not sameLane(POV, SV, L)" in never.impossibility.core
+    assert "not sameLane(POV, SV, L)" in never.impossibility.told
     assert never.impossibility.minimal
 
 
@@ -145,12 +145,12 @@ def test_both_engines_answer_alike():
     short = {"horizon": Fraction(9, 5)}
     for what, verdict in (("4", Verdict.WITNESSED), ("F v_lon(SV) > 41 m/s", Verdict.NONE_WITHIN)):
         for engine in ("milp", "smt"):
-            means = replace(REQUEST.means, engine=engine, effort=Effort(240))
+            means = replace(MEANS, engine=engine, effort=Effort(240))
             assert ask_for(what, means=means, **short).verdict is verdict
     cubic = "F v_lon(SV)^3 > 20000 * 1 m/s * 1 m/s * 1 m/s"
     with pytest.raises(UsageError, match="the engine smt can"):
         ask_for(cubic)
-    assert ask_for(cubic, means=replace(REQUEST.means, engine="smt"), **short).verdict is Verdict.WITNESSED
+    assert ask_for(cubic, means=replace(MEANS, engine="smt"), **short).verdict is Verdict.WITNESSED
 
 
 def test_a_drive_that_the_judge_rejects_is_never_handed_out(monkeypatch):
@@ -160,7 +160,7 @@ def test_a_drive_that_the_judge_rejects_is_never_handed_out(monkeypatch):
         holds = False
 
     monkeypatch.setattr(search, "judge", lambda formula, drive: No())
-    outcome = ask_for("4", means=replace(REQUEST.means, effort=Effort(4), refinements=0))
+    outcome = ask_for("4", means=replace(MEANS, effort=Effort(4), refinements=0))
     assert outcome.verdict is Verdict.UNKNOWN
     assert not outcome.drives
     assert true_judge is not search.judge
@@ -184,7 +184,7 @@ def test_what_fails_between_the_samples_is_looked_at_more_closely():
         ({"lanes": {"L": "main-9"}}, "has the lanes main-1, main-2"),
         ({"lanes": {"M": "main-1"}}, "speaks of L"),
         ({"vehicles": {"POV7": "car"}}, "speaks of"),
-        ({"values": {**default_values(LIBRARY), "minDanger": Fraction(1, 2)}}, "no multiple of dt"),
+        ({"values": {"minDanger": Fraction(1, 2)}}, "no multiple of dt"),
     ],
 )
 def test_requests_that_make_no_sense(changes, message):

@@ -39,7 +39,7 @@ class Question:
         library = [
             repr(sorted(getattr(self.library, part.name).items()))
             for part in fields(self.library)
-            if part.name != "sources"
+            if part.name not in ("sources", "files")
         ]
         texts = [version("roadproof"), asked, *library]
         return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]

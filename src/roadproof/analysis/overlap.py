@@ -8,261 +8,268 @@ there, and its core is looked up in the others, each of which gets a certificate
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
+from functools import cached_property
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
-from roadproof.analysis.meeting import Meeting, Node, conjunctions, scenario_numbers
-from roadproof.analysis.placing import Shown, show_elsewhere
-from roadproof.effort import Effort, Late
-from roadproof.evidence.certificate import to_json
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula, transform
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.meeting import Meeting, conjunctions
+from roadproof.analysis.placing import placed
+from roadproof.effort import Late
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
+from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.prove.prover import Result, prove
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import apply_definition, read_claim
-from roadproof.spec.library import Library, Specification, load_library
+from roadproof.spec.compose import both, either, negation
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import Scenario, likes_of, numbers_of
+from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, ask
-from roadproof.witness.impossible import parts, show_impossible
-from roadproof.witness.question import Means
+from roadproof.witness.ask import ask
+from roadproof.witness.impossible import parts, show_impossible, told_parts
 
-
-@dataclass(frozen=True)
-class Asked:
-    """What is asked of every pair, and within which limits; ``horizon`` in s.
-
-    ``effort`` is for one drive; ``proof``: units of work for a proof before a drive is looked for.
-    """
-
-    sets: tuple[str, ...] = ("base",)
-    meeting: Meeting = field(default_factory=Meeting)
-    options: Mapping[str, str] = field(default_factory=dict)
-    specs: tuple[Path, ...] = ()
-    values: Mapping[str, Fraction] = field(default_factory=dict)
-    horizon: Fraction = Fraction(6)
-    effort: Effort = field(default_factory=Effort)
-    proof: float = 3.0
-
-    def load(self) -> tuple[Library, Specification]:
-        """The library, and the definitions of the first set."""
-        library = load_library(self.specs)
-        return library, library.select(self.sets[0], self.options)
-
-    def question(self) -> dict[str, str]:
-        """What is asked as texts, without the limits of the search."""
-        values = " ".join(f"{name}={value}" for name, value in sorted(self.values.items()))
-        return {
-            "sets": ",".join(self.sets),
-            "meeting": repr(self.meeting),
-            "options": repr(sorted(self.options.items())),
-            "values": values,
-        }
+SCHEMA = "roadproof/overlap/1"
 
 
 @dataclass(frozen=True)
 class Core:
     """Parts of a conjunction that already clash."""
 
-    formula: str
-    parts: tuple[str, ...]
+    whole: Query
+    parts: tuple[Formula, ...]
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The parts as texts; the whole where no part of it is known to clash."""
+        return told_parts(self.parts) or (self.whole.text,)
 
 
 @dataclass(frozen=True)
-class Entry:
+class PairVerdict:
     """The answer for one pair: WITNESSED with a drive, IMPOSSIBLE with certificate and cores, or a reason.
 
-    ``formula`` is what the drive satisfies, or the claim that was proved; ``certificate`` a file's text.
+    ``query`` is what the drive satisfies, or the claim that was proved, or what is in doubt.
     """
 
-    a: Node
-    b: Node
+    a: Scenario
+    b: Scenario
     verdict: Verdict
-    formula: str
+    query: Query | None = None
     reason: str = ""
     cores: tuple[Core, ...] = ()
-    certificate: str | None = None
-    drive: Mapping[str, Any] | None = None
+    certificate: Certificate | None = None
+    drive: Judged | None = None
     seconds: float = 0.0
 
 
-Pair = tuple[Node, Node]
+Pair = tuple[Scenario, Scenario]
 
 
-def pairs_of(asked: Asked, numbers: Sequence[int] | None = None) -> list[Pair]:
+@dataclass(frozen=True)
+class Group:
+    """Pairs that differ in road sectors only, with the one that is solved for all."""
+
+    seed: Pair
+    pairs: tuple[Pair, ...]
+
+
+def pairs_of(basis: Basis, numbers: Sequence[int] | None = None) -> tuple[Pair, ...]:
     """The pairs of different scenarios of one set, or all pairs across two; ``numbers``: only these."""
-    library, _ = asked.load()
-    nodes = [
+    scenarios = [
         [
-            Node(number, name)
-            for number in scenario_numbers(library.select(name, asked.options))
+            Scenario(number, name)
+            for number in numbers_of(basis.specification.in_set(name))
             if numbers is None or number in numbers
         ]
-        for name in asked.sets
+        for name in basis.set_names
     ]
-    if len(nodes) == 1:
-        return list(combinations(nodes[0], 2))
-    return [(a, b) for a in nodes[0] for b in nodes[1]]
+    if len(scenarios) == 1:
+        return tuple(combinations(scenarios[0], 2))
+    return tuple((a, b) for a in scenarios[0] for b in scenarios[1])
 
 
-def groups_of(asked: Asked, pairs: Sequence[Pair]) -> list[tuple[Pair, list[Pair]]]:
-    """The pairs in groups that differ in road sectors only; with each group the pair to be solved for it.
+@dataclass(frozen=True)
+class Overlap:
+    """The question which of ``pairs`` hold together, as a ``study.frame.Study``."""
 
-    That is the pair of the first scenarios that are the same but for their sectors. Within a pair of
-    one set the order may be turned around, which a conjunction does not mind.
-    """
-    _, specification = asked.load()
-    likes = {name: likes_of(specification.in_set(name)) for name in asked.sets}
-    groups: dict[Pair, list[Pair]] = {}
-    for a, b in pairs:
-        first, second = likes[a.set_name][a.number], likes[b.set_name][b.number]
-        turned = a.set_name == b.set_name and second < first
-        seed = (Node(first, a.set_name), Node(second, b.set_name))
-        groups.setdefault(seed[::-1] if turned else seed, []).append((b, a) if turned else (a, b))
-    return list(groups.items())
+    basis: Basis
+    pairs: tuple[Pair, ...]
+    meeting: Meeting = field(default_factory=Meeting)
 
+    @property
+    def question(self) -> Question:
+        meeting = {"lanes": self.meeting.lanes, "roles": self.meeting.roles, "start": self.meeting.start}
+        said = {"set": ",".join(self.basis.set_names), **meeting, **self.basis.said()}
+        return Question(SCHEMA, said, {}, self.basis.library)
 
-def likes_of(specification: Specification) -> dict[int, int]:
-    """For every scenario the first one that differs from it in the road sector only."""
-    first: dict[Formula, int] = {}
-    likes: dict[int, int] = {}
-    for number in scenario_numbers(specification):
-        query = apply_definition(specification, f"scenario_{number}")
-        likes[number] = first.setdefault(without_sectors(query.formula), number)
-    return likes
+    def pieces(self, known: Mapping[str, PairVerdict]) -> Sequence[Group]:
+        """Groups of the pairs that are left. Within one set a pair may be turned around."""
+        groups: dict[Pair, list[Pair]] = {}
+        for a, b in self.pairs:
+            if name_of(a, b) in known:
+                continue
+            first, second = self._likes[a.set_name][a.number], self._likes[b.set_name][b.number]
+            turned = a.set_name == b.set_name and second < first
+            seed = (Scenario(first, a.set_name), Scenario(second, b.set_name))
+            groups.setdefault(seed[::-1] if turned else seed, []).append((b, a) if turned else (a, b))
+        return [Group(seed, tuple(pairs)) for seed, pairs in groups.items()]
 
+    @cached_property
+    def _likes(self) -> dict[str, dict[int, int]]:
+        return {name: likes_of(self.basis.specification.in_set(name)) for name in self.basis.set_names}
 
-def without_sectors(formula: Formula) -> Formula:
-    """``formula`` without names, and with every application of a ``roadSector_…`` replaced by true."""
-
-    def change(part: Formula) -> Formula:
-        if not isinstance(part, f.Named):
-            return part
-        return f.TRUE if part.name.startswith("roadSector_") else part.body
-
-    return transform(formula, change)
-
-
-def decide_group(asked: Asked, seed: Pair, pairs: Sequence[Pair]) -> list[Entry]:
-    """The answers for a group: the seed is solved, and the others are answered with its help."""
-    library, specification = asked.load()
-    deciding = _Deciding(asked, library, specification)
-    begun = time.monotonic()
-    first = deciding.answer(seed)
-    entries: list[Entry] = []
-    for pair in pairs:
-        entry = first if pair == seed else deciding.answer(pair, seed, first)
-        a, b = sorted(pair, key=lambda node: (asked.sets.index(node.set_name), node.number))
-        entries.append(replace(entry, a=a, b=b, seconds=time.monotonic() - begun))
+    def settle(self, piece: Group) -> dict[str, PairVerdict]:
+        """The seed is solved, and the others are answered with its help."""
+        deciding = _Deciding(self.basis, self.meeting)
         begun = time.monotonic()
-    return entries
+        first = deciding.answer(piece.seed)
+        found: dict[str, PairVerdict] = {}
+        for pair in piece.pairs:
+            verdict = first if pair == piece.seed else deciding.answer(pair, piece.seed, first)
+            a, b = self._ordered(pair)
+            found[name_of(a, b)] = replace(verdict, a=a, b=b, seconds=time.monotonic() - begun)
+            begun = time.monotonic()
+        return found
+
+    def doubt(self, piece: Group, reason: str) -> dict[str, PairVerdict]:
+        ordered = [self._ordered(pair) for pair in piece.pairs]
+        return {name_of(a, b): PairVerdict(a, b, Verdict.UNKNOWN, None, reason) for a, b in ordered}
+
+    def _ordered(self, pair: Pair) -> Pair:
+        a, b = sorted(pair, key=lambda x: (self.basis.set_names.index(x.set_name), x.number))
+        return a, b
+
+    def is_sure(self, answer: PairVerdict) -> bool:
+        return answer.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
+
+    def record(self, name: str, answer: PairVerdict, shelf: Shelf) -> dict[str, Any]:
+        verdict = {
+            "a": answer.a.number,
+            "b": answer.b.number,
+            "set_a": answer.a.set_name,
+            "set_b": answer.b.set_name,
+            "verdict": str(answer.verdict),
+            "formula": "" if answer.query is None else answer.query.text,
+            "core": list(dict.fromkeys(part for core in answer.cores for part in core.told)),
+            "cores": [{"formula": core.whole.text, "parts": list(core.told)} for core in answer.cores],
+            "certificate": shelf.certificate(f"impossible-{name}.json", answer.certificate),
+            "drive": shelf.drive(f"drive-{name}.json", answer.drive),
+            "reason": answer.reason,
+            "seconds": round(answer.seconds, 3),
+        }
+        return {"verdict": verdict}
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> PairVerdict:
+        said = record["verdict"]
+        cores = [Core(self._read(x["formula"]), self._parts(x["parts"])) for x in said["cores"]]
+        return PairVerdict(
+            Scenario(said["a"], said["set_a"]),
+            Scenario(said["b"], said["set_b"]),
+            Verdict(said["verdict"]),
+            self._read(said["formula"]),
+            said["reason"],
+            tuple(cores),
+            shelf.read_certificate(said["certificate"]),
+            shelf.read_drive(said["drive"]),
+            said["seconds"],
+        )
+
+    def _read(self, text: str) -> Query:
+        return read_claim(self.basis.specification, text)
+
+    def _parts(self, texts: Sequence[str]) -> tuple[Formula, ...]:
+        return tuple(self._read(text).formula for text in texts)
+
+    def verdicts(self, answers: Mapping[str, PairVerdict]) -> list[PairVerdict]:
+        """The answers in the order of ``pairs``."""
+        return [answers[name_of(a, b)] for a, b in self.pairs]
+
+
+def name_of(a: Scenario, b: Scenario) -> str:
+    """Under which name the answer for a pair is kept."""
+    return f"{a.set_name}-{a.number:02}-{b.set_name}-{b.number:02}"
 
 
 @dataclass(frozen=True)
 class _Deciding:
-    asked: Asked
-    library: Library
-    specification: Specification
+    basis: Basis
+    meeting: Meeting
 
-    def texts(self, pair: Pair) -> tuple[str, ...]:
-        return conjunctions(self.specification, *pair, self.asked.meeting)
+    def queries(self, pair: Pair) -> tuple[Query, ...]:
+        return conjunctions(self.basis.specification, *pair, self.meeting)
 
-    def answer(self, pair: Pair, seed: Pair | None = None, first: Entry | None = None) -> Entry:
+    def answer(self, pair: Pair, seed: Pair | None = None, first: PairVerdict | None = None) -> PairVerdict:
         """The answer for a pair, with the help of that for its group's seed; a doubt where it is late."""
         try:
             followed = None if seed is None or first is None else self.follow(pair, seed, first)
             return followed or self.decide(pair)
         except Late as late:
-            return _doubt(pair, self.texts(pair), str(late))
+            return _doubt(pair, self.queries(pair), str(late))
 
-    def decide(self, pair: Pair) -> Entry:
+    def decide(self, pair: Pair) -> PairVerdict:
         """Proofs first, which are quick where they exist; then drives for what is left."""
-        texts = self.texts(pair)
-        left = [x for x in texts if not _proved(self._prove(f"not ({x})"))]
+        queries = self.queries(pair)
+        left = [x for x in queries if not self.basis.proof_of(negation(x)).holds]
         if not left:
-            cores = tuple(self._core(x) for x in texts)
-            return self._impossible(pair, texts, cores) or _doubt(pair, texts, "a proof was lost")
-        for formula in left:
-            outcome = ask(self._request(formula, explain=False))
+            cores = tuple(self._core(x) for x in queries)
+            return self._impossible(pair, queries, cores) or _doubt(pair, queries, "a proof was lost")
+        for query in left:
+            outcome = ask(self.basis.search(query))
             if outcome.drives:
-                return Entry(*pair, Verdict.WITNESSED, formula, drive=outcome.drives[0])
-        return self._explain(pair, texts, left)
+                return PairVerdict(*pair, Verdict.WITNESSED, query, drive=outcome.drives[0])
+        return self._explain(pair, queries, left)
 
-    def follow(self, pair: Pair, seed: Pair, first: Entry) -> Entry | None:
+    def follow(self, pair: Pair, seed: Pair, first: PairVerdict) -> PairVerdict | None:
         """An answer with the help of that for the seed of the group, or None."""
-        texts = self.texts(pair)
+        queries = self.queries(pair)
         if first.verdict is Verdict.IMPOSSIBLE:
-            cores = [self._core_like(x, core) for x, core in zip(texts, first.cores, strict=True)]
-            return self._impossible(pair, texts, tuple(cores))
-        if first.drive is None:
+            cores = [self._core_like(x, core) for x, core in zip(queries, first.cores, strict=True)]
+            return self._impossible(pair, queries, tuple(cores))
+        if first.drive is None or first.query is None:
             return None
-        chosen = texts[self.texts(seed).index(first.formula)]
-        shown = show_elsewhere(Shown(first.formula, dict(first.drive)), chosen, self.library)
-        return None if shown is None else Entry(*pair, Verdict.WITNESSED, chosen, drive=shown.data)
+        chosen = queries[self.queries(seed).index(first.query)]
+        shown = placed(first.drive.file, chosen, self.basis.library)
+        return None if shown is None else PairVerdict(*pair, Verdict.WITNESSED, chosen, drive=shown)
 
-    def _impossible(self, pair: Pair, texts: Sequence[str], cores: tuple[Core, ...]) -> Entry | None:
-        claim = " and ".join(f"not ({x})" for x in texts)
-        label = f"overlap-{pair[0]}-{pair[1]}"
-        result = prove(self.specification, claim, self._longer(), label)
-        if not _proved(result) or result.certificate is None:
+    def _impossible(
+        self, pair: Pair, queries: Sequence[Query], cores: tuple[Core, ...]
+    ) -> PairVerdict | None:
+        claim = both(*(negation(x) for x in queries))
+        result = self.basis.proof_of(claim, 10 * self.basis.proof, f"overlap-{pair[0]}-{pair[1]}")
+        if not result.holds or result.certificate is None:
             return None
-        return Entry(*pair, Verdict.IMPOSSIBLE, claim, "", cores, to_json(result.certificate))
+        return PairVerdict(*pair, Verdict.IMPOSSIBLE, claim, "", cores, result.certificate)
 
-    def _explain(self, pair: Pair, texts: Sequence[str], left: Sequence[str]) -> Entry:
+    def _explain(self, pair: Pair, queries: Sequence[Query], left: Sequence[Query]) -> PairVerdict:
         """No drive was found: say within which limits there is none, or prove it after all."""
         verdicts: list[Verdict] = []
         reasons: list[str] = []
-        for formula in left:
-            outcome = ask(self._request(formula, explain=True))
+        for query in left:
+            outcome = ask(self.basis.search(query, explain=True))
             if outcome.drives:
-                return Entry(*pair, Verdict.WITNESSED, formula, drive=outcome.drives[0])
+                return PairVerdict(*pair, Verdict.WITNESSED, query, drive=outcome.drives[0])
             verdicts.append(outcome.verdict)
-            reasons.append(outcome.told(("--horizon",)) or f"proved impossible: {formula}")
+            reasons.append(outcome.told(("--horizon",)) or f"proved impossible: {query.text}")
         if all(verdict is Verdict.IMPOSSIBLE for verdict in verdicts):
-            entry = self._impossible(pair, texts, tuple(self._core(x) for x in texts))
-            if entry is not None:
-                return entry
+            found = self._impossible(pair, queries, tuple(self._core(x) for x in queries))
+            if found is not None:
+                return found
         sure = all(verdict in (Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN) for verdict in verdicts)
         verdict = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
-        return Entry(*pair, verdict, " or ".join(f"({x})" for x in left), "; ".join(dict.fromkeys(reasons)))
+        return PairVerdict(*pair, verdict, either(*left), "; ".join(dict.fromkeys(reasons)))
 
-    def _prove(self, claim: str) -> Result:
-        return prove(self.specification, claim, self.asked.effort.of(self.asked.proof))
+    def _core(self, query: Query) -> Core:
+        effort = self.basis.effort.of(10 * self.basis.proof)
+        shown = show_impossible(self.basis.specification, query, effort)
+        return Core(query, () if shown is None else shown.core)
 
-    def _longer(self) -> Effort:
-        """For proofs that are known to be there."""
-        return self.asked.effort.of(10 * self.asked.proof)
-
-    def _core(self, formula: str) -> Core:
-        shown = show_impossible(self.specification, formula, self._longer())
-        return Core(formula, shown.core if shown is not None else (formula,))
-
-    def _core_like(self, formula: str, core: Core) -> Core:
-        """``core`` for ``formula``, where all its parts are parts of that too; its own core otherwise."""
-        wanted = {without_names(self._read(part)) for part in core.parts}
-        mine = {without_names(part) for part in parts(self._read(formula))}
-        return Core(formula, core.parts) if wanted <= mine else self._core(formula)
-
-    def _read(self, formula: str) -> Formula:
-        return read_claim(self.specification, formula).formula
-
-    def _request(self, formula: str, explain: bool) -> Request:
-        return Request(
-            formula,
-            self.asked.sets[0],
-            self.asked.options,
-            self.asked.specs,
-            {**default_values(self.library), **self.asked.values},
-            horizon=self.asked.horizon,
-            means=Means("smooth", effort=self.asked.effort, explain=explain),
-        )
+    def _core_like(self, query: Query, core: Core) -> Core:
+        """``core`` for ``query``, where all its parts are parts of that too; its own core otherwise."""
+        wanted = {without_names(part) for part in core.parts}
+        mine = {without_names(part) for part in parts(query.formula)}
+        return Core(query, core.parts) if wanted and wanted <= mine else self._core(query)
 
 
-def _proved(result: Result) -> bool:
-    return result.verdict in (Verdict.PROVED, Verdict.VACUOUS)
-
-
-def _doubt(pair: Pair, texts: Sequence[str], reason: str) -> Entry:
-    return Entry(*pair, Verdict.UNKNOWN, " or ".join(f"({x})" for x in texts), reason)
+def _doubt(pair: Pair, queries: Sequence[Query], reason: str) -> PairVerdict:
+    return PairVerdict(*pair, Verdict.UNKNOWN, either(*queries), reason)

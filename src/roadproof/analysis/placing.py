@@ -6,13 +6,15 @@ from fractions import Fraction
 from typing import Any
 
 from roadproof.errors import InputError
-from roadproof.evidence.witness import DriveFile, Ruling, as_json, from_json, judge_file, times_data
+from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
+from roadproof.evidence.judged import Judged, Ruling, judge_file, times_data
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
-from roadproof.spec.bind import bind, default_values
+from roadproof.spec.bind import bind, values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
+from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 from roadproof.witness.impossible import parts
 from roadproof.world.drive import Drive
@@ -28,35 +30,43 @@ class Shown:
     data: dict[str, Any]
 
 
-def show_elsewhere(
-    shown: Shown, formula: str, library: Library, roads: Sequence[str] | None = None
-) -> Shown | None:
-    """The motions of ``shown`` on a road on which they satisfy ``formula``, judged; None where none is.
+def placed(
+    file: DriveFile, query: Query, library: Library, roads: Sequence[Road] | None = None
+) -> Judged | None:
+    """The motions of ``file`` on a road on which they satisfy ``query``, judged; None where none is.
 
-    Tried are the drive's own road and the reference roads with the zones that ``formula`` speaks of,
+    Tried are the drive's own road and the reference roads with the zones that ``query`` speaks of,
     as they are and moved along so that a zone begins or ends under one of the vehicles at time 0;
     with ``roads`` only these, whatever zones they have.
     """
-    file = replace(from_json(shown.data, "drive"), formula=formula, scenario=None)
-    query = read_claim(library.select(file.set_name, file.options), formula)
-    values = {**default_values(library), **file.values}
+    file = replace(file, formula=query.text, scenario=None)
+    values = values_with(library, file.values)
     now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
-    chosen = _roads(file, zones_of(query.formula)) if roads is None else _named(roads, file.drive)
+    chosen = _roads(file, zones_of(query.formula)) if roads is None else _with_moved(roads, file.drive)
     for road in chosen:
         if not set(file.lanes.values()) <= set(road.lanes):
             continue
         if not judge(bind(now, road, file.lanes, values), file.drive).holds:
             continue
-        placed = replace(file, road=road)
-        ruling = judge_file(placed, library)
-        if ruling.accepted:
-            return Shown(formula, as_data(placed, ruling))
+        here = replace(file, road=road)
+        if judge_file(here, library).accepted:
+            return Judged(here, library)
     return None
+
+
+def show_elsewhere(
+    shown: Shown, formula: str, library: Library, roads: Sequence[str] | None = None
+) -> Shown | None:
+    """As ``placed``, of a drive file as plain data and a formula as text; ``roads`` by name."""
+    file = read_drive(shown.data, "drive")
+    query = read_claim(library.select(file.set_name, file.options), formula)
+    judged = placed(file, query, library, None if roads is None else [load_road(name) for name in roads])
+    return None if judged is None else Shown(formula, judged.as_data())
 
 
 def judge_drive(shown: Shown, formula: str, library: Library) -> bool:
     """Whether ``formula`` holds on a drive where it is, whatever boxes do. Raises ``InputError``."""
-    file = replace(from_json(shown.data, "drive"), formula=formula)
+    file = replace(read_drive(shown.data, "drive"), formula=formula)
     ruling = judge_file(file, library)
     if ruling.judgement is None:
         raise InputError(ruling.reason)
@@ -68,7 +78,7 @@ def as_data(file: DriveFile, ruling: Ruling) -> dict[str, Any]:
     assert ruling.accepted
     assert ruling.judgement is not None
     times = times_data(ruling.judgement)
-    return as_json(file, {"verdict": str(Verdict.WITNESSED), "view": "dense", "times": times})
+    return drive_data(file, {"verdict": str(Verdict.WITNESSED), "view": "dense", "times": times})
 
 
 def zones_of(formula: Formula) -> frozenset[str]:
@@ -89,9 +99,8 @@ def _roads(file: DriveFile, zones: frozenset[str]) -> Iterator[Road]:
                 yield from _moved_under(road, file.drive)
 
 
-def _named(names: Sequence[str], drive: Drive) -> Iterator[Road]:
-    for name in names:
-        road = load_road(name)
+def _with_moved(roads: Sequence[Road], drive: Drive) -> Iterator[Road]:
+    for road in roads:
         yield road
         yield from _moved_under(road, drive)
 

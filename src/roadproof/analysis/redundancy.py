@@ -9,13 +9,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from roadproof.analysis.meeting import Node, applied, vehicles_of
-from roadproof.analysis.overlap import Asked, without_sectors
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.analysis.requests import Asked, Request, applied, ask
 from roadproof.effort import Effort, Late
 from roadproof.evidence.certificate import to_json
+from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.evidence.refutation import trace_data
-from roadproof.evidence.witness import from_json, judge_file
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
@@ -25,8 +25,8 @@ from roadproof.prove.prover import prove
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import Scenario, vehicles_of, without_sectors
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, ask
 from roadproof.witness.question import Means, usual_road
 
 # How many drives are tried on other roads for a change inside a road sector.
@@ -56,7 +56,7 @@ class Finding:
     ``late``: cut off by the clock, so that nothing was looked for in vain.
     """
 
-    node: Node
+    node: Scenario
     change: Change
     verdict: Verdict
     claim: str
@@ -127,7 +127,7 @@ class Learned:
 
 
 def examine(
-    asked: Asked, node: Node, whole: bool = False, learned: Learned = Learned()
+    asked: Asked, node: Scenario, whole: bool = False, learned: Learned = Learned()
 ) -> tuple[Finding, ...]:
     """The findings on every change of a scenario, in the order of ``changes_of``."""
     return tuple(_Examining(asked, node, learned).run(whole))
@@ -151,7 +151,7 @@ def _key(specification: Specification, changed: str) -> Formula:
 
 
 class _Examining:
-    def __init__(self, asked: Asked, node: Node, learned: Learned = Learned()) -> None:
+    def __init__(self, asked: Asked, node: Scenario, learned: Learned = Learned()) -> None:
         self.asked = asked
         self.library, self.specification = asked.load()
         self.values = {**default_values(self.library), **asked.values}
@@ -210,7 +210,12 @@ class _Examining:
             if told is not None:
                 return Finding(self.node, change, Verdict.REFUTED, apart, None, told.data)
         claim = f"{self.text} <-> ({change.changed})"
-        result = prove(self.specification, claim, self._proof(), f"redundancy-{self.node}")
+        result = prove(
+            self.specification,
+            read_claim(self.specification, claim),
+            self._proof(),
+            f"redundancy-{self.node}",
+        )
         if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
             return Finding(self.node, change, Verdict.PROVED, claim, to_json(result.certificate))
         moving = self._redundant_in_motion(change)
@@ -241,7 +246,7 @@ class _Examining:
         there = f"({assuming} and {self.text} -> ({change.changed}))"
         back = f"({assuming} and ({change.changed}) -> {self.text})"
         claim, label = f"{there} and {back}", f"redundancy-{self.node}"
-        result = prove(self.specification, claim, self._proof(), label)
+        result = prove(self.specification, read_claim(self.specification, claim), self._proof(), label)
         if result.verdict is not Verdict.PROVED or result.certificate is None:
             return None
         certificate = to_json(result.certificate)
@@ -249,7 +254,7 @@ class _Examining:
 
     def _tells_apart(self, shown: Shown, formula: str, elsewhere: bool) -> Shown | None:
         """The drive judged on ``formula`` where it is, or also on roads of other zones."""
-        file = replace(from_json(dict(shown.data), "drive"), formula=formula, scenario=None)
+        file = replace(read_drive(dict(shown.data), "drive"), formula=formula, scenario=None)
         query = read_claim(self.specification, formula)
         if not set(query.vehicles) <= set(file.drive.vehicles):
             return None
@@ -267,9 +272,9 @@ class _Examining:
     def _ask(self, formula: str) -> Shown | None:
         means = Means("smooth", effort=self.asked.effort, explain=False)
         options, specs, horizon = self.asked.options, self.asked.specs, self.asked.horizon
-        road = usual_road(read_claim(self.specification, self.text).formula)
+        road = usual_road(read_claim(self.specification, self.text).formula).name
         request = Request(
             formula, self.asked.sets[0], options, specs, self.values, road, horizon=horizon, means=means
         )
         drives = ask(request).drives
-        return Shown(formula, drives[0]) if drives else None
+        return Shown(formula, drives[0].as_data()) if drives else None

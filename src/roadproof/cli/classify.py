@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from roadproof.analysis.classify.drives import Example
     from roadproof.analysis.classify.shares import Shares
     from roadproof.analysis.classify.text import Claim
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
     from roadproof.prove.prover import Result
     from roadproof.spec.library import Specification
     from roadproof.traffic.recording import Recording
@@ -101,14 +101,14 @@ class Settled:
 def run(args: argparse.Namespace) -> int:
     from roadproof.analysis.classify.classes import plan_of
     from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
-    from roadproof.analysis.meeting import read_numbers, scenario_numbers
     from roadproof.cli.classify_output import Answers, as_data, summary, write
     from roadproof.report.classify import as_table
+    from roadproof.spec.scenarios import numbers_of, read_numbers
 
     begun = time.monotonic()
     asked = _asked(args)
     _, specification = asked.load()
-    numbers = read_numbers(args.among, specification) if args.among else scenario_numbers(specification)
+    numbers = read_numbers(specification, args.among) if args.among else numbers_of(specification)
     plan = plan_of(specification, numbers)
     folder = evidence_folder(args.out, args.json)
     if folder is not None:
@@ -141,7 +141,7 @@ def _for_exit(verdict: Verdict) -> Verdict:
 
 
 def _asked(args: argparse.Namespace) -> "Asked":
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
 
     if args.on is not None and args.no_shares:
         raise UsageError("--on and --no-shares: shares are counted on recordings; leave out one of the two")
@@ -248,10 +248,7 @@ def undecided(job: Settling, reason: str) -> Settled:
 
     return Settled(
         tuple(Example(one.name, Verdict.UNKNOWN, reason, None) for one in job.classes),
-        tuple(
-            (claim, Result(claim.text, job.asked.sets[0], Verdict.UNKNOWN, reason, 0.0))
-            for claim in job.claims
-        ),
+        tuple((claim, Result(Verdict.UNKNOWN, reason, 0.0)) for claim in job.claims),
     )
 
 
@@ -260,6 +257,7 @@ def settle(job: Settling) -> Settled:
     from roadproof.analysis.classify.drives import find_examples
     from roadproof.analysis.classify.text import with_classes
     from roadproof.prove.prover import Result, prove
+    from roadproof.spec.elaborate import read_claim
 
     if job.classes:
         return Settled(examples=tuple(find_examples(job.asked, job.text, job.plan, job.classes)))
@@ -267,8 +265,8 @@ def settle(job: Settling) -> Settled:
 
     def decide(claim: "Claim") -> Result:
         try:
-            return prove(specification, claim.text, job.asked.effort, claim.name)
+            return prove(specification, read_claim(specification, claim.text), job.asked.effort, claim.name)
         except Late as late:
-            return Result(claim.text, specification.set_name, Verdict.UNKNOWN, str(late), late.seconds)
+            return Result(Verdict.UNKNOWN, str(late), late.seconds)
 
     return Settled(proofs=tuple((claim, decide(claim)) for claim in job.claims))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from roadproof.analysis.classify.drives import Example
     from roadproof.analysis.classify.shares import Shares
     from roadproof.analysis.classify.text import Claim
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
     from roadproof.prove.prover import Result
     from roadproof.spec.library import Specification
 

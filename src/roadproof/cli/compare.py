@@ -1,12 +1,18 @@
 """``roadproof compare``: two scenarios or formulas, and which implies which."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import add_json_option, add_quiet_option, load_library_of, write_json, write_text
-from roadproof.cli.search_options import add_search_options, read_request
+from roadproof.cli.options import (
+    add_json_option,
+    add_quiet_option,
+    chosen_options,
+    load_library_of,
+    write_json,
+    write_text,
+)
+from roadproof.cli.search_options import add_search_options, read_means, read_setting
 from roadproof.errors import UsageError
 from roadproof.verdict import ExitCode
 
@@ -35,14 +41,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from roadproof.spec.compose import taken_from
+    from roadproof.spec.scenarios import read_query
+    from roadproof.witness.ask import Search
     from roadproof.witness.compare import compare
 
     sets = args.set_names or ["base"]
     if len(sets) > 2:
         raise UsageError(f"--set is given {len(sets)} times: two formulas have at most two spec sets")
-    request = read_request(args, load_library_of(args))
-    first = replace(request, what=args.first, set_name=sets[0])
-    comparison = compare(first, replace(request, what=args.second, set_name=sets[-1]))
+    library = load_library_of(args)
+    home = library.select(sets[0], chosen_options(args))
+    _, first = read_query(home, args.first)
+    _, second = read_query(home.in_set(sets[-1]), args.second)
+    search = Search(home, first, read_setting(args, library), read_means(args))
+    comparison = compare(search, taken_from(home, second, sets[-1]))
     if args.out is not None:
         _write(comparison, args.out)
     if args.json:
@@ -63,8 +75,8 @@ _SENTENCES = {
 
 def _as_text(comparison: "Comparison", sets: list[str]) -> str:
     lines = [
-        f"first   {comparison.first}  (set {sets[0]})",
-        f"second  {comparison.second}  (set {sets[-1]})",
+        f"first   {comparison.first.text}  (set {sets[0]})",
+        f"second  {comparison.second.text}  (set {sets[-1]})",
         _SENTENCES[comparison.relation],
     ]
     for name, direction in _directions(comparison):
@@ -84,20 +96,22 @@ def _directions(comparison: "Comparison") -> "list[tuple[str, Direction]]":
 
 
 def _as_json(comparison: "Comparison", sets: list[str]) -> dict[str, Any]:
+    from roadproof.evidence.certificate import to_json
+
     directions = [
         {
-            "claim": direction.claim,
+            "claim": direction.claim.text,
             "verdict": str(direction.verdict),
             "reason": direction.reason,
-            "certificate": direction.certificate,
-            "drive": direction.drive,
+            "certificate": None if direction.certificate is None else to_json(direction.certificate),
+            "drive": None if direction.drive is None else direction.drive.as_data(),
         }
         for _, direction in _directions(comparison)
     ]
     return {
         "schema": SCHEMA,
-        "first": {"formula": comparison.first, "set": sets[0]},
-        "second": {"formula": comparison.second, "set": sets[-1]},
+        "first": {"formula": comparison.first.text, "set": sets[0]},
+        "second": {"formula": comparison.second.text, "set": sets[-1]},
         "relation": comparison.relation,
         "forward": directions[0],
         "backward": directions[1],
@@ -105,12 +119,13 @@ def _as_json(comparison: "Comparison", sets: list[str]) -> dict[str, Any]:
 
 
 def _write(comparison: "Comparison", folder: Path) -> None:
+    from roadproof.evidence.certificate import to_json
     from roadproof.files import make_folder
 
     make_folder(folder)
     for name, direction in _directions(comparison):
         stem = name.replace(" ", "-")
         if direction.certificate is not None:
-            write_text(folder / f"{stem}.json", direction.certificate)
+            write_text(folder / f"{stem}.json", to_json(direction.certificate))
         elif direction.drive is not None:
-            write_json(direction.drive, str(folder / f"not-{stem}.json"))
+            write_json(direction.drive.as_data(), str(folder / f"not-{stem}.json"))

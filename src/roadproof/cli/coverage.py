@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from roadproof.analysis.coverage.claims import Covered
     from roadproof.analysis.coverage.classes import Answer, Found, Group, Survey
     from roadproof.analysis.coverage.needed import Need
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
 
 SUMMARY = "which disturbances a spec set misses, by drives in classes; or a proof that it misses none"
 SCHEMA = "roadproof/coverage/1"
@@ -161,7 +161,7 @@ def _broken(proved: bool, classes: list[dict[str, Any]], traffic: dict[str, Any]
 
 def _asked(args: argparse.Namespace) -> "tuple[Asked, Survey]":
     from roadproof.analysis.coverage.classes import survey_of
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
     from roadproof.world.models import load_road
 
     library = load_library_of(args)

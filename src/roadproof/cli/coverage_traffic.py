@@ -8,7 +8,7 @@ from roadproof.cli.progress import tell
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
 
 Entry = dict[str, Any]
 

@@ -10,7 +10,7 @@ from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
     from roadproof.analysis.journal import Journal
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
 
 
 def evidence_folder(out: Path | None, target: str | None) -> Path | None:

@@ -12,9 +12,16 @@ from roadproof.cli.evidence import evidence_folder, keep_specifications, write_i
 from roadproof.cli.explore_files import draw_all, with_evidence
 from roadproof.cli.explore_options import read_knobs, read_precision, read_steps
 from roadproof.cli.numbers import whole
-from roadproof.cli.options import add_json_option, load_library_of, write_json
+from roadproof.cli.options import (
+    add_json_option,
+    chosen_options,
+    load_library_of,
+    parameter_values,
+    read_seconds,
+    write_json,
+)
 from roadproof.cli.progress import clear, tell
-from roadproof.cli.search_options import add_search_options, read_request
+from roadproof.cli.search_options import add_search_options, named, read_means
 from roadproof.cli.working import add_working_options, count_workers, work_in_order
 from roadproof.errors import UsageError
 from roadproof.verdict import Verdict, exit_code
@@ -24,8 +31,8 @@ if TYPE_CHECKING:
     from roadproof.analysis.explore.measure import Measure
     from roadproof.analysis.explore.search import Reply, Task
     from roadproof.analysis.explore.values import Asked, Finding
+    from roadproof.analysis.requests import Request
     from roadproof.spec.library import Library
-    from roadproof.witness.ask import Request
 
 SUMMARY = "for which values of parameters and limits a scenario has a drive, and how far a measure can go"
 SCHEMA = "roadproof/explore/1"
@@ -144,30 +151,29 @@ def _jobs(args: argparse.Namespace, library: "Library") -> list[Job]:
         specification = library.select(name, request.options)
         whats = args.what
         if args.all:
-            from roadproof.analysis.meeting import scenario_numbers
+            from roadproof.spec.scenarios import numbers_of
 
-            whats = [str(number) for number in scenario_numbers(specification)]
+            whats = [str(number) for number in numbers_of(specification)]
         jobs += [_job(args, what, replace(request, set_name=name), library) for what in whats]
     return jobs
 
 
 def _job(args: argparse.Namespace, what: str, request: "Request", library: "Library") -> Job:
     from roadproof.analysis.explore.measure import read_measure
+    from roadproof.analysis.explore.text import given_of
     from roadproof.analysis.explore.values import Asked
-    from roadproof.spec.elaborate import read_claim
-    from roadproof.witness.ask import as_formula
-    from roadproof.witness.impossible import split_given
+    from roadproof.spec.scenarios import read_query
 
     specification = library.select(request.set_name, request.options)
-    scenario, text = as_formula(specification, what)
-    request = replace(request, what=text)
-    knobs = read_knobs(args.vary, request, read_claim(specification, text), library)
+    scenario, query = read_query(specification, what)
+    request = replace(request, what=query.text)
+    knobs = read_knobs(args.vary, request, query, library)
     given = {assignment.partition("=")[0].strip() for assignment in args.params}
     for knob in knobs:
         if knob.name in given:
             raise UsageError(f"{knob.name} is given by --param and varied by --vary: leave one out")
     measures: list[Measure] = []
-    when, names = args.when or "", split_given(text)[0]
+    when, names = args.when or "", given_of(query.claim)
     if args.least:
         measures.append(read_measure(specification, "least", args.least, when, names))
     if args.greatest:
@@ -175,6 +181,26 @@ def _job(args: argparse.Namespace, what: str, request: "Request", library: "Libr
     steps = read_steps(args.steps, len(knobs))
     asked = Asked(request, tuple(knobs), steps, read_precision(args.precision))
     return Job(scenario, asked, tuple(measures), args.jobs)
+
+
+def read_request(args: argparse.Namespace, library: "Library") -> "Request":
+    """The request that the options make, for no formula yet. Raises ``UsageError``, ``InputError``."""
+    from roadproof.analysis.requests import Request
+
+    return Request(
+        what="",
+        options=dict(library.select("base", chosen_options(args)).options),
+        specs=tuple(args.specs),
+        values=parameter_values(args, library),
+        road=args.road,
+        lanes=dict(named(args.lanes, "L")),
+        vehicles=dict(named(args.vehicles, "")),
+        horizon=read_seconds("--horizon", args.horizon),
+        dt=read_seconds("--dt", args.dt),
+        reach=read_seconds("--reach", args.reach),
+        collisions=args.allow_collisions,
+        means=read_means(args),
+    )
 
 
 def _make_ready(folder: Path | None, processes: int) -> None:

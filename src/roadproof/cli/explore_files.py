@@ -1,6 +1,5 @@
 """What ``roadproof explore`` writes: drive files, certificates and pictures, named in its data."""
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -60,6 +59,7 @@ def _writer(folder: Path) -> Callable[[Mapping[str, Any], str], dict[str, Any]]:
 
 def draw_all(explored: Sequence[Mapping[str, Any]], folder: Path, library: "Library") -> None:
     """A picture of each exploration, and of the drives at its boundaries and extremes."""
+    from roadproof.evidence.drive_file import load_drive
     from roadproof.files import write_whole
     from roadproof.report.drive import draw_drive
     from roadproof.report.explore import draw_exploration
@@ -72,6 +72,5 @@ def draw_all(explored: Sequence[Mapping[str, Any]], folder: Path, library: "Libr
         for end in ends:
             if end is not None and end["drive"] is not None:
                 path = Path(end["drive"])
-                drive = json.loads(path.read_text("utf-8"))
-                for kind, content in draw_drive(drive, library).items():
+                for kind, content in draw_drive(load_drive(path), library).items():
                     write_whole(path.with_suffix(f".{kind}"), content)

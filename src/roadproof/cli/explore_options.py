@@ -11,9 +11,9 @@ from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
     from roadproof.analysis.explore.knobs import Knob
+    from roadproof.analysis.requests import Request
     from roadproof.spec.library import Library
     from roadproof.spec.query import Query
-    from roadproof.witness.ask import Request
 
 _LIMIT = re.compile(r"(\w+)\.(\w+)\.(min|max)")
 EVERY_VEHICLE = "vehicle"

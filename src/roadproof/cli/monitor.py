@@ -21,7 +21,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
-    from roadproof.evidence.witness import DriveFile
+    from roadproof.evidence.drive_file import DriveFile
     from roadproof.report.one_trace import Observed
     from roadproof.spec.library import Library, Specification
     from roadproof.spec.query import Query
@@ -127,7 +127,7 @@ def _observe(args: argparse.Namespace, library: "Library") -> "tuple[Observed, d
 
 
 def _observe_drive(args: argparse.Namespace, library: "Library") -> "tuple[Observed, dict[str, str]]":
-    from roadproof.evidence.witness import load_drive
+    from roadproof.evidence.drive_file import load_drive
     from roadproof.report.one_trace import observe_drive
     from roadproof.spec.bind import bind
     from roadproof.traffic.one_trace import sample_drive

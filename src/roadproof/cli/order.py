@@ -27,10 +27,10 @@ from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
     from roadproof.analysis.journal import Journal
-    from roadproof.analysis.meeting import Node
     from roadproof.analysis.order.deciding import Decided
     from roadproof.analysis.order.kinds import Kind
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
+    from roadproof.spec.scenarios import Scenario
 
 SUMMARY = "which scenarios imply which: proofs for the implications, drives against the others"
 SCHEMA = "roadproof/order/1"
@@ -82,9 +82,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
-    from roadproof.analysis.meeting import read_numbers
     from roadproof.analysis.order.kinds import kinds_of
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
+    from roadproof.spec.scenarios import read_numbers
 
     library = load_library_of(args)
     sets = tuple(dict.fromkeys(args.set_names or ["base", "extA", "ext"]))
@@ -98,7 +98,7 @@ def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[Kind, ...]]":
         values=parameter_values(args, library),
         effort=read_effort(args),
     )
-    numbers = read_numbers(args.among, library.select(sets[0], options)) if args.among else None
+    numbers = read_numbers(library.select(sets[0], options), args.among) if args.among else None
     return asked, kinds_of(asked, numbers)
 
 
@@ -173,7 +173,7 @@ def _record(family: str, decided: "Decided", journal: "Journal | None") -> dict[
     return answer
 
 
-def _file(node: "Node") -> str:
+def _file(node: "Scenario") -> str:
     return f"{node.set_name}-{node.number:02}"
 
 

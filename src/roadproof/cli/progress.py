@@ -7,6 +7,7 @@ they come also while a solver keeps this one busy.
 import contextlib
 import os
 import sys
+import time
 from dataclasses import dataclass
 
 QUIET = "ROADPROOF_QUIET"
@@ -52,6 +53,21 @@ def note(line: str) -> None:
     _report(line)
     clear()
     print(line, file=sys.stderr, flush=True)
+
+
+class Counter:
+    """Tells how many of many are done, and how long the rest will take about."""
+
+    def __init__(self) -> None:
+        self.begun = time.monotonic()
+        self.known: int | None = None
+
+    def __call__(self, done: int, total: int, what: str) -> None:
+        """So many are done of so many; ``what`` is the word for many of them."""
+        if self.known is None or done < self.known:
+            self.begun, self.known = time.monotonic(), done
+        left = time_left(time.monotonic() - self.begun, done - self.known, total - self.known)
+        tell(f"{done} of {total} {what}{left}", last=done == total)
 
 
 def clear() -> None:

@@ -3,7 +3,11 @@
 import argparse
 import re
 import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from roadproof.cli.numbers import add_effort_options, read_effort
 from roadproof.cli.options import (
@@ -15,12 +19,17 @@ from roadproof.cli.options import (
     write_json,
 )
 from roadproof.cli.progress import clear
-from roadproof.cli.prove_answers import as_data, details, line, table
+from roadproof.cli.prove_answers import Answered, as_data, details, line, table
 from roadproof.cli.prove_files import ProofFolder
-from roadproof.cli.prove_settle import Bounded, Job, Settled, settle, undecided
 from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import UsageError
 from roadproof.verdict import Verdict, exit_code
+
+if TYPE_CHECKING:
+    from roadproof.effort import Effort
+    from roadproof.prove.properties import Task
+    from roadproof.spec.library import Specification
+    from roadproof.witness.question import Means, Setting
 
 SUMMARY = "prove claims for all time, or refute them; without a claim, the template properties"
 SCHEMA = "roadproof/verdicts/1"
@@ -76,63 +85,107 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
-    jobs = _jobs(args)
-    folder = None if args.out is None else ProofFolder(args.out, jobs[0].options, args.specs)
-    own = not jobs[0].task.title
-    settled: list[Settled] = []
-    for answer in work_in_order(settle, jobs, args.jobs, "claims", undecided):
-        settled.append(answer)
+    tasks, how = _asked(args)
+    own = not tasks[0].title
+    folder = None if args.out is None else ProofFolder(args.out, chosen_options(args), args.specs)
+    found: list[Answered] = []
+    doubt = partial(undecided, how)
+    for answer in work_in_order(partial(settle, how), tasks, args.jobs, "claims", doubt):
+        found.append(answer)
         if folder is not None:
             folder.add(answer)
         if args.json != "-" and (own or args.verbose):
             clear()
             print(details(answer) if own else line(answer), flush=True)
     if args.json != "-" and not own:
-        print(table(settled))
-        print(f"{len(settled)} claims in {time.monotonic() - begun:.1f} s")
+        print(table(found))
+        print(f"{len(found)} claims in {time.monotonic() - begun:.1f} s")
     if args.json:
         files = {} if folder is None else folder.files
-        verdicts = [as_data(s, files.get(s.task.name)) for s in settled]
+        verdicts = [as_data(x, files.get(x.task.name)) for x in found]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
-    return exit_code((s.verdict, s.task.expected) for s in settled)
+    return exit_code((x.verdict, x.expected) for x in found)
+
+
+@dataclass(frozen=True)
+class How:
+    """How the claims of a run are settled; processes that are forked know it from the start.
+
+    ``within``: where and by whom drives are looked for that refute a claim up to a horizon.
+    """
+
+    specifications: "Mapping[str, Specification]"
+    effort: "Effort"
+    seek_drive: bool
+    within: "tuple[Setting, Means] | None"
+
+
+def settle(how: How, task: "Task") -> Answered:
+    """One claim settled: in dense time, or within bounds."""
+    from roadproof.spec.elaborate import read_claim
+    from roadproof.witness import settle as ways
+    from roadproof.witness.ask import Search
+
+    specification = how.specifications[task.set_name]
+    query = read_claim(specification, task.claim)
+    if how.within is not None:
+        return Answered(task, ways.settle_bounded(Search(specification, query, *how.within)))
+    label = task.id + (f"-{task.part}" if task.part else "")
+    return Answered(task, ways.settle(specification, query, how.effort, label, task.scenario, how.seek_drive))
+
+
+def undecided(how: How, task: "Task", reason: str) -> Answered:
+    """What is said of a claim that nothing is known of."""
+    from roadproof.witness.settle import in_doubt
+
+    return Answered(task, replace(in_doubt(reason), bounded=how.within is not None))
 
 
 # --- what is asked -------------------------------------------------------------------------------
 
 
-def _jobs(args: argparse.Namespace) -> list[Job]:
-    from roadproof.prove.properties import Task, choose, read_claims, template_properties
+def _asked(args: argparse.Namespace) -> "tuple[list[Task], How]":
+    from roadproof.prove.properties import choose, template_properties
     from roadproof.spec.elaborate import read_claim
 
     library = load_library_of(args)
     options = chosen_options(args)
     named = [claim for claim in args.claims if _PROPERTY.fullmatch(claim)]
-    texts = [claim for claim in args.claims if claim not in named]
-    texts += read_claims(args.file) if args.file is not None else []
-    if named and texts:
+    own = _own_claims(args, [claim for claim in args.claims if claim not in named])
+    if named and own:
         raise UsageError("ask for properties or for claims of your own, not for both at once")
-    if texts:
-        set_name = args.set_name or "base"
-        specification = library.select(set_name, options)
-        for text in texts:
-            read_claim(specification, text)
-        expected = Verdict(args.expect)
-        tasks = [
-            Task("claim", str(number) if len(texts) > 1 else "", "", None, set_name, text, expected)
-            for number, text in enumerate(texts, 1)
-        ]
-    elif args.file is not None:
-        raise UsageError(f"{args.file} holds no claim: write one a paragraph")
-    else:
-        library.select(args.set_name or "base", options)
-        tasks = choose(template_properties(), named, args.set_name)
-    bounded = None
-    if args.engine != "dense":
-        if not texts:
-            raise UsageError(f"--engine {args.engine} is for claims of your own: the list is about all time")
-        horizon, dt = read_seconds("--horizon", args.horizon), read_seconds("--dt", args.dt)
-        bounded = Bounded(args.engine, horizon, dt, args.road)
+    tasks = own or choose(template_properties(), named, args.set_name)
     if not tasks:
         raise UsageError(f"none of {', '.join(named)} is stated for set={args.set_name}: leave out --set")
-    seek_drive, effort = not args.no_drive, read_effort(args)
-    return [Job(task, tuple(args.specs), options, effort, seek_drive, bounded) for task in tasks]
+    specifications = {name: library.select(name, options) for name in {task.set_name for task in tasks}}
+    for task in own:
+        read_claim(specifications[task.set_name], task.claim)
+    return tasks, How(specifications, read_effort(args), not args.no_drive, _within(args, bool(own)))
+
+
+def _own_claims(args: argparse.Namespace, given: "list[str]") -> "list[Task]":
+    from roadproof.prove.properties import OWN, Task, read_claims
+
+    texts = given + (read_claims(args.file) if args.file is not None else [])
+    if args.file is not None and not texts:
+        raise UsageError(f"{args.file} holds no claim: write one a paragraph")
+    parts = [str(number) if len(texts) > 1 else "" for number in range(1, len(texts) + 1)]
+    set_name, expected = args.set_name or "base", Verdict(args.expect)
+    return [
+        Task(OWN, part, "", None, set_name, text, expected) for part, text in zip(parts, texts, strict=True)
+    ]
+
+
+def _within(args: argparse.Namespace, own: bool) -> "tuple[Setting, Means] | None":
+    """Where and by whom is searched with --engine smt or milp, None in dense time."""
+    from roadproof.witness.question import Means, Setting
+    from roadproof.world.models import load_road
+
+    if args.engine == "dense":
+        return None
+    if not own:
+        raise UsageError(f"--engine {args.engine} is for claims of your own: the list is about all time")
+    road = None if args.road is None else load_road(args.road)
+    horizon, dt = read_seconds("--horizon", args.horizon), read_seconds("--dt", args.dt)
+    setting = Setting(road=road, horizon=horizon, dt=dt)
+    return setting, Means("any", args.engine, effort=read_effort(args))

@@ -1,48 +1,72 @@
 """What ``roadproof prove`` says of settled claims: a line, a table, the details, plain data."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.prove_settle import Settled
 from roadproof.verdict import Verdict
+from roadproof.world.motion import state_at
 
 if TYPE_CHECKING:
+    from roadproof.evidence.judged import Judged
     from roadproof.evidence.refutation import Countermodel
+    from roadproof.prove.properties import Task
+    from roadproof.witness.settle import Settled
     from roadproof.world.road import Road
 
 
-def line(settled: Settled) -> str:
+@dataclass(frozen=True)
+class Answered:
+    """A claim of the list or of the user, settled."""
+
+    task: "Task"
+    settled: "Settled"
+
+    @property
+    def verdict(self) -> Verdict:
+        return self.settled.verdict
+
+    @property
+    def expected(self) -> Verdict:
+        """PROVED-BOUNDED is as good as PROVED where the question was about drives up to a horizon."""
+        weaker = self.settled.bounded and self.task.expected is Verdict.PROVED
+        return Verdict.PROVED_BOUNDED if weaker else self.task.expected
+
+
+def line(answered: Answered) -> str:
     """The verdict in one line."""
-    task = settled.task
+    task = answered.task
     scenario = "" if task.scenario is None else f" {task.scenario}"
-    mark = "" if settled.verdict is task.expected else f", expected {task.expected}"
-    return f"{task.id}{scenario} {task.set_name}: {settled.verdict}{mark} ({settled.result.seconds:.2f} s)"
+    mark = "" if answered.verdict is answered.expected else f", expected {answered.expected}"
+    seconds = answered.settled.result.seconds
+    return f"{task.id}{scenario} {task.set_name}: {answered.verdict}{mark} ({seconds:.2f} s)"
 
 
-def table(settled: Sequence[Settled]) -> str:
+def table(answered: Sequence[Answered]) -> str:
     """A line for each property and set; below it what was not as expected."""
     rows: list[str] = []
     for (name, title, set_name), group in groupby(
-        settled, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
+        answered, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
     ):
         found = list(group)
         verdicts = sorted({str(s.verdict) for s in found})
-        expected = str(found[0].task.expected)
-        slowest = max(s.result.seconds for s in found)
+        expected = str(found[0].expected)
+        slowest = max(s.settled.result.seconds for s in found)
         mark = "" if verdicts == [expected] else f"   expected {expected}"
         count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
         rows.append(
             f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
         )
-        rows += [f"      {line(s)} {s.result.reason}" for s in found if s.verdict is not s.task.expected]
+        rows += [f"      {line(s)} {s.settled.result.reason}" for s in found if s.verdict is not s.expected]
     return "\n".join(rows)
 
 
-def details(settled: Settled) -> str:
+def details(answered: Answered) -> str:
     """The verdict with its evidence: certificate in numbers, drive or trace."""
-    result, task = settled.result, settled.task
+    task, settled = answered.task, answered.settled
+    result = settled.result
     lines = [f"{settled.verdict}  {' '.join(task.claim.split())}"]
     within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
     lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
@@ -63,29 +87,22 @@ def details(settled: Settled) -> str:
     return "\n".join(lines)
 
 
-def _show_drive(drive: Mapping[str, Any]) -> list[str]:
+def _show_drive(judged: "Judged") -> list[str]:
     """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
-    lanes = ", ".join(f"{k}={v}" for k, v in (drive.get("lanes") or {}).items()) or str(
-        drive.get("lane") or ""
-    )
+    named = judged.file.lanes
+    lanes = named["L"] if set(named) == {"L"} else ", ".join(f"{k}={v}" for k, v in named.items())
     lines = [f"  false on this drive, judged exactly in dense time{f' (lane {lanes})' if lanes else ''}:"]
-    for name, motion in drive["vehicles"].items():
-        start = f"starts at s={_short(motion['s'])} m, d={_short(motion['d'])} m"
-        speeds, across = [Fraction(motion["v_lon"])], Fraction(motion["d"])
-        v_lat = Fraction(motion["v_lat"])
-        for piece in motion["pieces"]:
-            if piece["duration"] is not None:
-                time, a_lat = Fraction(piece["duration"]), Fraction(piece["a_lat"])
-                across += v_lat * time + a_lat * time**2 / 2
-                v_lat += a_lat * time
-                speeds.append(speeds[-1] + Fraction(piece["a_lon"]) * time)
-        moved = f", moves to d={_short(str(across))} m" if abs(across - Fraction(motion["d"])) > 1 else ""
-        lines.append(f"    {name} {start}, {_short(str(speeds[0]))} -> {_short(str(speeds[-1]))} m/s{moved}")
+    for name, motion in judged.file.drive.vehicles.items():
+        start = f"starts at s={_short(motion.s)} m, d={_short(motion.d)} m"
+        last = sum((x.duration for x in motion.pieces if x.duration is not None), Fraction(0))
+        end = state_at(motion, last)
+        moved = f", moves to d={_short(end.d)} m" if abs(end.d - motion.d) > 1 else ""
+        lines.append(f"    {name} {start}, {_short(motion.v_lon)} -> {_short(end.v_lon)} m/s{moved}")
     return lines
 
 
-def _short(text: str) -> str:
-    return f"{float(Fraction(text)):.4g}"
+def _short(value: Fraction) -> str:
+    return f"{float(value):.4g}"
 
 
 def _show_countermodel(countermodel: "Countermodel") -> list[str]:
@@ -126,33 +143,34 @@ def _number(value: Fraction) -> str:
     return f"{float(value):.6g}"
 
 
-def as_data(settled: Settled, file: str | None) -> dict[str, Any]:
+def as_data(answered: Answered, file: str | None) -> dict[str, Any]:
     """The verdict as plain data; ``file``: where its certificate is."""
-    task, result = settled.task, settled.result
+    task, settled = answered.task, answered.settled
+    result = settled.result
     return {
         "property": task.id,
         "part": task.part,
         "scenario": task.scenario,
         "set": task.set_name,
         "claim": task.claim,
-        "expected": str(task.expected),
+        "expected": str(answered.expected),
         "verdict": str(settled.verdict),
         "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
         "seconds": round(result.seconds, 4),
         "reason": result.reason,
-        **({"limits": dict(settled.limits)} if settled.limits is not None else {}),
+        **({"limits": settled.limits.as_json()} if settled.limits is not None else {}),
         "assumptions": list(result.certificate.assumptions) if result.certificate else [],
         "certificate": file if result.certificate is not None else None,
         "counterexample": counterexample(settled),
     }
 
 
-def counterexample(settled: Settled) -> dict[str, Any] | None:
+def counterexample(settled: "Settled") -> dict[str, Any] | None:
     """The refuting drive, or else the countermodel, as plain data."""
-    from roadproof.evidence.refutation import drive_data, trace_data
+    from roadproof.evidence.refutation import trace_data
 
     if settled.drive is not None:
-        return drive_data(settled.drive)
+        return {"kind": "drive", "drive": settled.drive.as_data()}
     found = settled.result.countermodel
     if found is None:
         return None

@@ -10,8 +10,7 @@ from typing import Any
 
 from roadproof.cli.evidence import keep_specifications
 from roadproof.cli.options import write_json, write_text
-from roadproof.cli.prove_answers import counterexample
-from roadproof.cli.prove_settle import Settled
+from roadproof.cli.prove_answers import Answered, counterexample
 from roadproof.errors import UsageError
 from roadproof.files import make_folder
 
@@ -36,15 +35,15 @@ class ProofFolder:
             "specs": keep_specifications(folder, specs),
         }
 
-    def add(self, settled: Settled) -> None:
+    def add(self, answered: Answered) -> None:
         """Write the evidence of an answer, in place of that of a former one, and then the index.
 
         So a run that is broken off leaves a folder that says what it holds.
         """
-        file = _write_evidence(settled, self.folder)
+        file = _write_evidence(answered, self.folder)
         if file is not None:
-            self.files[settled.task.name] = str(self.folder / file)
-        entry = _entry(settled, file)
+            self.files[answered.task.name] = str(self.folder / file)
+        entry = _entry(answered, file)
         former = self.entries.get(_key(entry), {}).get("evidence")
         self.entries[_key(entry)] = entry
         write_json({**self.head, "claims": list(self.entries.values())}, str(self.folder / INDEX))
@@ -80,30 +79,30 @@ def _key(entry: Mapping[str, Any]) -> tuple[str, str]:
     return " ".join(str(entry["claim"]).split()), str(entry["set"])
 
 
-def _write_evidence(settled: Settled, folder: Path) -> str | None:
+def _write_evidence(answered: Answered, folder: Path) -> str | None:
     """The certificate, or else the refuting drive, as a file; its name."""
     from roadproof.evidence.certificate import to_json
 
-    name = settled.task.name
+    name, settled = answered.task.name, answered.settled
     if settled.result.certificate is not None:
         write_text(folder / f"{name}.json", to_json(settled.result.certificate))
         return f"{name}.json"
     if settled.drive is not None:
-        write_json(settled.drive, str(folder / f"{name}-drive.json"))
+        write_json(settled.drive.as_data(), str(folder / f"{name}-drive.json"))
         return f"{name}-drive.json"
     return None
 
 
-def _entry(settled: Settled, file: str | None) -> dict[str, Any]:
+def _entry(answered: Answered, file: str | None) -> dict[str, Any]:
     """What was asked and answered, and where the evidence is: a file beside the index, or in it."""
-    task = settled.task
+    task = answered.task
     entry = {
         "property": task.id,
         "part": task.part,
         "scenario": task.scenario,
         "set": task.set_name,
         "claim": task.claim,
-        "verdict": str(settled.verdict),
+        "verdict": str(answered.verdict),
         "evidence": file,
     }
-    return entry if file is not None else {**entry, "counterexample": counterexample(settled)}
+    return entry if file is not None else {**entry, "counterexample": counterexample(answered.settled)}

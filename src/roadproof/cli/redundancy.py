@@ -24,9 +24,9 @@ from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
     from roadproof.analysis.journal import Journal
-    from roadproof.analysis.meeting import Node
-    from roadproof.analysis.overlap import Asked
     from roadproof.analysis.redundancy import Finding, Learned
+    from roadproof.analysis.requests import Asked
+    from roadproof.spec.scenarios import Scenario
 
 SUMMARY = "which parts of scenarios are redundant, by proof; drives that show the others needed"
 SCHEMA = "roadproof/redundancy/1"
@@ -60,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 @dataclass(frozen=True)
 class Job:
     asked: "Asked"
-    node: "Node"
+    node: "Scenario"
     whole: bool
     learned: "Learned"
 
@@ -88,13 +88,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _asked(args: argparse.Namespace) -> "tuple[Asked, tuple[int, ...]]":
-    from roadproof.analysis.meeting import read_numbers, scenario_numbers
-    from roadproof.analysis.overlap import Asked
+    from roadproof.analysis.requests import Asked
+    from roadproof.spec.scenarios import numbers_of, read_numbers
 
     library = load_library_of(args)
     options = chosen_options(args)
     specification = library.select(args.set_name, options)
-    numbers = read_numbers(args.among, specification) if args.among else scenario_numbers(specification)
+    numbers = read_numbers(specification, args.among) if args.among else numbers_of(specification)
     asked = Asked(
         (args.set_name,),
         options=options,
@@ -118,9 +118,8 @@ def _settle(
     One scenario of each kind comes first; those that differ from it in their road sector learn from it.
     """
     from roadproof.analysis.journal import Journal, Question
-    from roadproof.analysis.meeting import Node
-    from roadproof.analysis.overlap import likes_of
     from roadproof.analysis.redundancy import Learned
+    from roadproof.spec.scenarios import Scenario, likes_of
 
     library, specification = asked.load()
     journal = None
@@ -139,7 +138,7 @@ def _settle(
 
     def settle_all(chosen: Sequence[int], learned: Mapping[int, Learned]) -> None:
         jobs = [
-            Job(asked, Node(n, specification.set_name), whole, learned.get(likes[n], Learned()))
+            Job(asked, Scenario(n, specification.set_name), whole, learned.get(likes[n], Learned()))
             for n in chosen
         ]
         with closing(work(settle, jobs, processes, "scenarios", known=len(known))) as answers:

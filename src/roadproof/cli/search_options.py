@@ -1,4 +1,4 @@
-"""Options of the sub-commands that search for drives, and the request that they make."""
+"""Options of the sub-commands that search for drives, and what they mean."""
 
 import argparse
 from collections.abc import Iterator, Sequence
@@ -10,16 +10,15 @@ from roadproof.cli.options import (
     add_specification_options,
     parameter_values,
     read_seconds,
-    select_specification,
 )
 
 if TYPE_CHECKING:
     from roadproof.spec.library import Library
-    from roadproof.witness.ask import Request
+    from roadproof.witness.question import Means, Setting
 
 
 def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> None:
-    """Where, with whom, how long and by whom is searched; ``read_request`` understands them."""
+    """Where, with whom, how long and by whom is searched; ``read_setting``, ``read_means``."""
     add_specification_options(parser, several=True)
     add_parameter_option(parser)
     parser.add_argument(
@@ -52,29 +51,32 @@ def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> 
     add_effort_options(parser, units)
 
 
-def read_request(args: argparse.Namespace, library: "Library") -> "Request":
-    """The request that the options make, for no formula yet. Raises ``UsageError``, ``InputError``."""
-    from roadproof.witness.ask import Request
-    from roadproof.witness.question import Means
+def read_setting(args: argparse.Namespace, library: "Library") -> "Setting":
+    """Where, with whom and for how long is searched. Raises ``UsageError``, ``InputError``."""
+    from roadproof.witness.question import Setting
+    from roadproof.world.models import load_road, load_vehicle
 
-    base = argparse.Namespace(**{**vars(args), "set_name": "base"})
-    return Request(
-        what="",
-        options=dict(select_specification(base, library).options),
-        specs=tuple(args.specs),
+    return Setting(
+        road=None if args.road is None else load_road(args.road),
+        lanes=dict(named(args.lanes, "L")),
+        vehicles={name: load_vehicle(model) for name, model in named(args.vehicles, "")},
         values=parameter_values(args, library),
-        road=args.road,
-        lanes=dict(_named(args.lanes, "L")),
-        vehicles=dict(_named(args.vehicles, "")),
         horizon=read_seconds("--horizon", args.horizon),
         dt=read_seconds("--dt", args.dt),
         reach=read_seconds("--reach", args.reach),
         collisions=args.allow_collisions,
-        means=Means(engine=args.engine, solver=args.solver, effort=read_effort(args)),
     )
 
 
-def _named(texts: Sequence[str], usual: str) -> Iterator[tuple[str, str]]:
+def read_means(args: argparse.Namespace) -> "Means":
+    """By whom is searched, and how much work is given."""
+    from roadproof.witness.question import Means
+
+    return Means(engine=args.engine, solver=args.solver, effort=read_effort(args))
+
+
+def named(texts: Sequence[str], usual: str) -> Iterator[tuple[str, str]]:
+    """``NAME=VALUE`` texts as pairs; the name is ``usual`` where none is given."""
     for text in texts:
         name, equals, value = text.rpartition("=")
         yield (name if equals else usual), value

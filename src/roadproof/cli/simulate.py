@@ -19,7 +19,7 @@ from roadproof.verdict import ExitCode
 _NUMBERS = re.compile(r"\d{1,2}(-\d{1,2})?(,\d{1,2}(-\d{1,2})?)*")
 
 if TYPE_CHECKING:
-    from roadproof.evidence.witness import DriveFile
+    from roadproof.evidence.drive_file import DriveFile
     from roadproof.traffic.planting import Truth
     from roadproof.traffic.simulate import Traffic
 
@@ -155,7 +155,8 @@ def _drives(texts: Sequence[str], set_name: str) -> "Iterator[DriveFile]":
 
 def _read(path: Path) -> "Iterator[DriveFile]":
     """The drives of a file or a folder."""
-    from roadproof.evidence.witness import judge_file, load_drive
+    from roadproof.evidence.drive_file import load_drive
+    from roadproof.evidence.judged import judge_file
     from roadproof.spec.library import bundled_library
     from roadproof.traffic.planting import plantable
 
@@ -177,12 +178,13 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
     A recorded trace ends with its last danger, so whatever else the scenario needs has happened then;
     L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (SPEC §7).
     """
-    from roadproof.evidence.witness import from_json
+    from roadproof.spec import scenarios as s
     from roadproof.spec.bind import default_values
-    from roadproof.spec.elaborate import signature
+    from roadproof.spec.compose import both
     from roadproof.spec.library import bundled_library
-    from roadproof.traffic.questions import POV_LANE
-    from roadproof.witness.ask import Request, ask
+    from roadproof.witness.ask import Search, ask
+    from roadproof.witness.question import Setting
+    from roadproof.world.models import load_road
 
     specification = bundled_library().select(set_name)
     for item in text.split(","):
@@ -190,18 +192,14 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
         for number in range(int(low), int(high or low) + 1):
             if not 1 <= number <= 8:
                 raise UsageError(f"--plant {text}: recordings show a main road, so scenarios 1 to 8")
-            arguments = signature(specification, f"scenario_{number}")
-            claim = f"scenario_{number}({', '.join(arguments)})"
-            values = default_values(bundled_library())
-            request = Request(what="", set_name=set_name, road="main-2", values=values)
-            latest = request.horizon - values["minDanger"]
-            owner = arguments[-2] if number in POV_LANE else "SV"
-            alone = f"(every M in adjacentLanes(L): not atLane({owner}, M))"
-            lasting = f"F[{latest}, {latest}] danger(SV, {arguments[-2]})"
-            outcome = ask(replace(request, what=f"{claim} and {alone} and {lasting}"))
+            scenario, setting = s.Scenario(number, set_name), Setting(load_road("main-2"))
+            claim, vehicles = s.applied(specification, scenario), s.vehicles_of(specification, scenario)
+            latest = setting.horizon - default_values(bundled_library())[s.MIN_DANGER]
+            alone = s.alone_in_lane(specification, s.lane_owner(specification, scenario))
+            lasting = s.danger_at(specification, *s.endangered(vehicles), latest)
+            outcome = ask(Search(specification, both(claim, alone, lasting), setting))
             if outcome.drives:
-                file = from_json(outcome.drives[0], f"the drive of scenario {number}")
-                yield replace(file, scenario=number, formula=claim)
+                yield replace(outcome.drives[0].file, scenario=number, formula=claim.text)
             else:
                 _warn(f"not planted: scenario {number}, {set_name}: {outcome.verdict}: {outcome.reason}")
 

@@ -2,15 +2,15 @@
 
 import argparse
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.cli.numbers import whole
-from roadproof.cli.options import add_json_option, json_text, load_library_of, write_json
+from roadproof.cli.options import add_json_option, chosen_options, json_text, load_library_of, write_json
 from roadproof.cli.progress import clear
-from roadproof.cli.search_options import add_search_options, read_request
+from roadproof.cli.search_options import add_search_options, read_means, read_setting
 from roadproof.cli.working import add_working_options, count_workers, work_in_order
 from roadproof.errors import UsageError
 from roadproof.files import make_folder, write_whole
@@ -18,7 +18,7 @@ from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
     from roadproof.spec.library import Library
-    from roadproof.witness.ask import Outcome, Request
+    from roadproof.witness.ask import Outcome, Search
 
 SUMMARY = "find a drive on which a scenario or a formula holds, and judge it exactly"
 SCHEMA = "roadproof/witness/1"
@@ -57,11 +57,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     library = load_library_of(args)
-    requests = list(_requests(args, library))
+    searches = list(_searches(args, library))
     if args.out is not None:
         make_folder(args.out)
     outcomes: list[Outcome] = []
-    tasks = [Task(r, k + 1, args.out, not args.no_pictures) for k, r in enumerate(requests)]
+    tasks = [Task(s, k + 1, args.out, not args.no_pictures) for k, s in enumerate(searches)]
     if count_workers(tasks, args.jobs) > 1:
         _warm_up()
     written = False
@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
     if args.out is not None and not written and args.json != "-":
         print(f"nothing is written to {args.out}, as there is no drive")
     if args.json:
-        verdicts = [outcome.as_json() for outcome in outcomes]
+        verdicts = [outcome.as_data() for outcome in outcomes]
         write_json({"schema": SCHEMA, "verdicts": verdicts}, args.json)
     if args.json != "-" and len(outcomes) > 1:
         found = sum(o.verdict is Verdict.WITNESSED for o in outcomes)
@@ -84,28 +84,28 @@ def run(args: argparse.Namespace) -> int:
     return exit_code((outcome.verdict, Verdict.WITNESSED) for outcome in outcomes)
 
 
-def _requests(args: argparse.Namespace, library: "Library") -> "Iterator[Request]":
+def _searches(args: argparse.Namespace, library: "Library") -> "Iterator[Search]":
+    from roadproof.spec.scenarios import numbers_of, read_query
+    from roadproof.witness.ask import Search
+
     if args.all == bool(args.what):
         raise UsageError("name scenarios or formulas, or ask for --all: one of the two")
     sets = [name for text in args.set_names or ["base"] for name in text.split(",")]
-    for name in sets:
-        library.select(name)
-    whats = list(args.what)
-    if args.all:
-        numbers = (d.removeprefix("scenario_") for d in library.select(sets[0]).definitions)
-        whats = [n for n in numbers if n.isdecimal()]
-    request = read_request(args, library)
-    means = replace(request.means, objective=args.objective)
-    for set_name in sets:
+    specifications = [library.select(name, chosen_options(args)) for name in sets]
+    whats = [str(n) for n in numbers_of(specifications[0])] if args.all else list(args.what)
+    setting = read_setting(args, library)
+    means = replace(read_means(args), objective=args.objective)
+    for specification in specifications:
         for what in whats:
-            yield replace(request, what=what, set_name=set_name, count=args.count, means=means)
+            scenario, query = read_query(specification, what)
+            yield Search(specification, query, setting, means, args.count, scenario)
 
 
 @dataclass(frozen=True)
 class Task:
-    """One request of a run, and where its drives go."""
+    """One search of a run, and where its drives go."""
 
-    request: "Request"
+    search: "Search"
     number: int
     folder: Path | None
     pictures: bool
@@ -119,14 +119,13 @@ def _warm_up() -> None:
 
 
 def _line(outcome: "Outcome", verbose: bool) -> str:
-    name = f"scenario {outcome.scenario}" if outcome.scenario is not None else outcome.formula
+    name = f"scenario {outcome.scenario}" if outcome.scenario is not None else outcome.query.text
     shown = f"{name:<12} {outcome.set_name:<5} {outcome.verdict:<11} road {outcome.road:<7}"
     if outcome.drives:
-        lanes: Mapping[str, str] = outcome.drives[0].get("lanes", {})
-        lane = outcome.drives[0]["lane"]
-        shown += f" lane {lane}" if lane else ""
-        shown += "".join(f" {k}={v}" for k, v in lanes.items() if k != "L")
-        shown += f" horizon {outcome.drives[0]['horizon']} s"
+        file = outcome.drives[0].file
+        shown += f" lane {file.lanes['L']}" if "L" in file.lanes else ""
+        shown += "".join(f" {k}={v}" for k, v in file.lanes.items() if k != "L")
+        shown += f" horizon {file.horizon} s"
         shown += "" if outcome.natural else " (not natural: within the vehicles' limits only)"
         shown += f" {len(outcome.drives)} drives" if len(outcome.drives) > 1 else ""
     shown += f" {outcome.seconds['all']:.2f} s"
@@ -135,7 +134,7 @@ def _line(outcome: "Outcome", verbose: bool) -> str:
     if outcome.impossibility is not None:
         kind = "minimal core" if outcome.impossibility.minimal else "core, not minimised with the work given"
         shown += f"\n  proved for all time, on every road; {kind}:"
-        shown += "".join(f"\n    {part}" for part in outcome.impossibility.core)
+        shown += "".join(f"\n    {part}" for part in outcome.impossibility.told)
     if verbose:
         shown += f"\n  sizes {dict(outcome.sizes)}"
         shown += "\n  seconds " + ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
@@ -151,23 +150,19 @@ class Done:
 
 
 def undecided(task: Task, reason: str) -> Done:
-    """The outcome of a request that nothing is known of."""
-    from roadproof.witness.ask import Outcome
+    """The outcome of a search that nothing is known of."""
+    from roadproof.witness.ask import undecided
 
-    request = task.request
-    told = (request.what, request.road or "", Verdict.UNKNOWN, reason)
-    nothing = Outcome(None, request.set_name, *told, (), natural=False, seconds={"all": 0.0}, sizes={})
-    return Done(nothing)
+    return Done(undecided(task.search, reason))
 
 
 def fulfil(task: Task) -> Done:
-    """Answer one request and write its drives: drive file, CSV, picture."""
+    """Answer one search and write its drives: drive file, CSV, picture."""
     from roadproof.export.drive_csv import csv_of
     from roadproof.report.drive import draw_drive
-    from roadproof.spec.library import load_library
     from roadproof.witness.ask import answer
 
-    outcome = answer(task.request)
+    outcome = answer(task.search)
     if task.folder is None:
         return Done(outcome)
     files: list[str] = []
@@ -178,11 +173,11 @@ def fulfil(task: Task) -> Done:
 
     folder = task.folder
     name = f"formula-{task.number:02d}" if outcome.scenario is None else f"scenario-{outcome.scenario:02d}"
-    for k, data in enumerate(outcome.drives):
+    for k, judged in enumerate(outcome.drives):
         stem = f"{name}-{outcome.set_name}" + (f"-{k + 1}" if len(outcome.drives) > 1 else "")
-        write(f"{stem}.json", json_text(data).encode())
-        write(f"{stem}.csv", csv_of(data).encode())
+        write(f"{stem}.json", json_text(judged.as_data()).encode())
+        write(f"{stem}.csv", csv_of(judged.file).encode())
         if task.pictures:
-            for kind, content in draw_drive(data, load_library(task.request.specs)).items():
+            for kind, content in draw_drive(judged.file, task.search.specification.library).items():
                 write(f"{stem}.{kind}", content)
     return Done(outcome, tuple(files))

@@ -19,6 +19,7 @@ from roadproof.evidence.strict import Fields, read_json, text
 from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
+from roadproof.spec.query import Query
 
 SCHEMA = "roadproof/certificate/1"
 VIEW = "dense"
@@ -42,16 +43,20 @@ class Certificate:
 
 def certify(
     specification: Specification,
-    claim: str,
+    query: Query,
     instances: Mapping[Site, tuple[str, ...]],
     names: Mapping[Site, str],
     lemmas: tuple[Lemma, ...],
     label: str = "",
     scenario: int | None = None,
 ) -> Certificate:
-    """The certificate for a claim, its queries derived here and not by the finder of the proof."""
-    query = read_claim(specification, claim)
+    """The certificate for a claim, its queries derived here and not by the finder of the proof.
+
+    Raises ``InputError`` where the text of a query that was put together reads as another formula.
+    """
     formula = query.formula
+    if not query.written and read_claim(specification, query.text).formula != formula:
+        raise InputError(f"the claim's text does not mean what was proved: {query.text}")
     atoms = Atoms()
     atomised = atoms.atomise(formula)
     bounds = specification.library.bounds
@@ -64,7 +69,7 @@ def certify(
     return Certificate(
         label,
         scenario,
-        claim.strip(),
+        query.text,
         specification.set_name,
         dict(specification.options),
         assumptions,
@@ -92,13 +97,13 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
     """
     try:
         specification = library.select(certificate.set_name, certificate.options)
-        read_claim(specification, certificate.claim)
+        query = read_claim(specification, certificate.claim)
     except RoadproofError as error:
         return Outcome.UNREADABLE, str(error)
     try:
         derived = certify(
             specification,
-            certificate.claim,
+            query,
             certificate.instances,
             certificate.names,
             certificate.lemmas,
@@ -110,8 +115,8 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
     difference = _difference(derived, certificate)
     if difference:
         return Outcome.REJECTED, difference
-    for title, query in derived.queries:
-        answer = ask(query)
+    for title, script in derived.queries:
+        answer = ask(script)
         if answer == "unknown":
             return Outcome.UNDECIDED, f"the query '{title}' was answered unknown, not unsat"
         if answer != "unsat":
@@ -138,7 +143,12 @@ def _listed(options: Mapping[str, str]) -> str:
 
 
 def to_json(certificate: Certificate) -> str:
-    """The certificate as a file's text; sites share a table of formulas."""
+    """The certificate as a file's text."""
+    return json.dumps(certificate_data(certificate), indent=1) + "\n"
+
+
+def certificate_data(certificate: Certificate) -> dict[str, Any]:
+    """The certificate as plain data; sites share a table of formulas."""
     sites = [*certificate.names, *certificate.instances]
     table = list(dict.fromkeys(site.formula for site in sites))
     place = {text: number for number, text in enumerate(table)}
@@ -147,7 +157,7 @@ def to_json(certificate: Certificate) -> str:
         sign = "+" if site.positive else "-"
         return [place[site.formula], sign, site.moment] + ([site.instance] if site.instance else [])
 
-    data = {
+    return {
         "schema": SCHEMA,
         "property": certificate.property,
         "scenario": certificate.scenario,
@@ -165,12 +175,11 @@ def to_json(certificate: Certificate) -> str:
         ],
         "queries": [{"title": title, "smtlib": query.splitlines()} for title, query in certificate.queries],
     }
-    return json.dumps(data, indent=1) + "\n"
 
 
 def read_certificate(path: Path) -> Certificate:
     """A certificate from a file. Raises ``InputError`` where it is none."""
-    return from_json(read_json(path), str(path))
+    return read_certificate_data(read_json(path), str(path))
 
 
 _FIELDS = (
@@ -179,8 +188,8 @@ _FIELDS = (
 )
 
 
-def from_json(content: object, where: str) -> Certificate:
-    """The inverse of ``to_json``, of parsed text. Raises ``InputError``."""
+def read_certificate_data(content: object, where: str) -> Certificate:
+    """The inverse of ``certificate_data``. Raises ``InputError``."""
     data = Fields(content, where, _FIELDS)
     if data.text("schema") != SCHEMA:
         raise InputError(f"{where} is no certificate: its schema must be {SCHEMA}")

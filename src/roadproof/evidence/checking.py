@@ -7,12 +7,13 @@ from pathlib import Path
 
 from roadproof.effort import Late
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
-from roadproof.evidence import certificate, witness
+from roadproof.evidence import certificate, drive_file
 from roadproof.evidence.answers.proofs import FindLabel, misnamed, shown
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Finding, Outcome
+from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import Fields, read_json
-from roadproof.evidence.witness import DriveFile, times_data
 from roadproof.judge.exact import Judgement
 from roadproof.judge.replay import first_overlap
 from roadproof.logic.parse import parse_claim
@@ -39,10 +40,10 @@ class Checker:
             content = read_json(path)
             schema = Fields(content, str(path)).text("schema")
             if schema == certificate.SCHEMA:
-                return self._certificate(path, certificate.from_json(content, str(path)))
-            if schema == witness.SCHEMA:
+                return self._certificate(path, certificate.read_certificate_data(content, str(path)))
+            if schema == drive_file.SCHEMA:
                 return self._drive(path, content)
-            known = f"{certificate.SCHEMA} or {witness.SCHEMA}"
+            known = f"{certificate.SCHEMA} or {drive_file.SCHEMA}"
             raise InputError(f"its schema is {schema[:60]!r}, but must be {known}")
         except MissingSolverError:
             raise
@@ -66,8 +67,8 @@ class Checker:
         return Finding(str(path), "certificate", outcome, reason, "PROVED", named, file.claim)
 
     def _drive(self, path: Path, content: object) -> Finding:
-        file = witness.from_json(content, str(path))
-        ruling = witness.judge_file(file, self.library)
+        file = drive_file.read_drive(content, str(path))
+        ruling = judge_file(file, self.library)
         reason = ruling.reason or self._untold(file, content, ruling.judgement)
         outcome = Outcome.REJECTED if reason else Outcome.ACCEPTED
         if not ruling.readable:

@@ -14,8 +14,8 @@ from roadproof.evidence.answers.proofs import FindLabel
 from roadproof.evidence.answers.read import faults_of, index_fields, read_index, read_record, said_of
 from roadproof.evidence.checking import without_place
 from roadproof.evidence.finding import NO_EVIDENCE, Finding, Outcome
+from roadproof.evidence.journal import ANSWERS, HEAD, Journal, read_kept
 from roadproof.evidence.journal import NAME as JOURNAL
-from roadproof.evidence.journal import Journal, read_journal
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.traces import judge_trace
@@ -64,10 +64,12 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
         problems += [
             Finding(str(x), "", Outcome.REJECTED, "a link is no evidence: copy the file") for x in links
         ]
-        homes = sorted({x.parent for x in inside if x.name in (INDEX, JOURNAL)})
+        homes = sorted({x.parent for x in inside if x.name in (INDEX, JOURNAL, HEAD)})
         by_home = {home: _read_told(home, given, find_label) for home in homes}
         told += by_home.values()
-        evidence = [x for x in inside if x.suffix == ".json" and x.name != INDEX]
+        kept = {home / ANSWERS for home in homes if (home / HEAD).exists()}
+        others = [x for x in inside if x.name not in (INDEX, HEAD) and x.parent not in kept]
+        evidence = [x for x in others if x.suffix == ".json"]
         if not evidence and not homes and not links:
             raise InputError(f"{path} holds no .json file: name a folder with certificates or drive files")
         for x in evidence:
@@ -97,10 +99,10 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
 def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Told:
     told = Told(home)
     try:
-        journal = read_journal(home / JOURNAL) if (home / JOURNAL).exists() else None
+        journal = read_kept(home)
     except RoadproofError as error:
         journal = None
-        told.problems.append(_unreadable(home / JOURNAL, error))
+        told.problems.append(_unreadable(home / (HEAD if (home / HEAD).exists() else JOURNAL), error))
     try:
         if (home / INDEX).exists():
             content = read_json(home / INDEX, LARGEST_INDEX)

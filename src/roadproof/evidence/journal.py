@@ -1,36 +1,39 @@
 """Journals: answers that a run has kept as they came, each under a seal.
 
-A journal is ``answers.jsonl`` in a folder of evidence: a first line says what was asked, each further line is
-an answer with the names of its evidence files, and the seal: a digest of the line and of the bytes of those
-files. A seal tells damage and carelessness, not malice, since anybody can compute it. So an answer also has
-to say what its evidence says, and ``roadproof check`` checks that evidence again.
+In a folder of evidence ``question.json`` says what was asked, and each file ``answers/NAME.json`` is an
+answer with the names of its evidence files, and the seal: a digest of the answer and of the bytes of those
+files. Before, both were lines of one file, ``answers.jsonl``, which is still read. A seal tells damage and
+carelessness, not malice, since anybody can compute it. So an answer also has to say what its evidence says,
+and ``roadproof check`` checks that evidence again.
 """
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.entry import Entry, evidence_name, mismatch, read_evidence, stray_evidence
 from roadproof.evidence.answers.read import read_record, record_fields
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json, read_json
 from roadproof.evidence.traces import judge_trace
 from roadproof.files import read_limited
 from roadproof.spec.library import Library
 
 NAME = "answers.jsonl"
+HEAD, ANSWERS = "question.json", "answers"
 SCHEMA = "roadproof/journal/1"
 _HEAD = ("schema", "of", "question", "said")
 
 
 @dataclass(frozen=True)
 class Line:
-    """One answer of a journal; ``fault`` says why it does not count."""
+    """One answer of a journal, with its number or its name; ``fault`` says why it does not count."""
 
-    number: int
+    name: str
     record: Fields | None
     fault: str = ""
 
@@ -61,6 +64,22 @@ def seal_of(record: Mapping[str, Any], question: str, folder: Path) -> str:
     return digest.hexdigest()
 
 
+def read_kept(folder: Path) -> Journal | None:
+    """The answers that are kept in a folder, each with its seal checked; None where there are none.
+
+    Raises ``InputError``.
+    """
+    if not (folder / HEAD).exists():
+        return read_journal(folder / NAME) if (folder / NAME).exists() else None
+    head, fields = _head(read_json(folder / HEAD, LARGEST_INDEX), folder / HEAD, str(folder / HEAD))
+    paths = sorted(x for x in (folder / ANSWERS).glob("*.json") if not x.name.startswith("."))
+    read = [
+        _line(path.stem, partial(read_json, path, LARGEST_INDEX), str(path), folder, fields, head)
+        for path in paths
+    ]
+    return Journal(folder / HEAD, head, tuple(read), False)
+
+
 def read_journal(path: Path) -> Journal:
     """A journal, each line with its seal checked. Raises ``InputError`` where it is none."""
     data = read_limited(path, LARGEST_INDEX, "journals of that size are not read")
@@ -68,14 +87,12 @@ def read_journal(path: Path) -> Journal:
         first, *lines = data.decode("utf-8").split("\n")
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: byte {error.start} is not UTF-8 text") from None
-    head = Fields(parse_json(first, f"{path}, line 1"), str(path), _HEAD)
-    if head.text("schema") != SCHEMA:
-        raise InputError(f"{path}: schema={head.text('schema')!r}, but a journal has {SCHEMA!r}")
-    fields = ("evidence", "seal", *record_fields(head.text("of"), str(path)))
+    head, fields = _head(parse_json(first, f"{path}, line 1"), path, str(path))
     torn = bool(lines) and lines[-1] != ""
     read = [
-        _line(number, text, path, fields, head.text("question"))
+        _line(str(number), partial(parse_json, text, where), where, path.parent, fields, head)
         for number, text in enumerate(lines, 2)
+        for where in (f"{path}, line {number}",)
         if text
     ]
     if torn and read[-1].record is None:
@@ -83,20 +100,29 @@ def read_journal(path: Path) -> Journal:
     return Journal(path, head, tuple(read), torn)
 
 
-def _line(number: int, text: str, path: Path, fields: Sequence[str], question: str) -> Line:
-    where = f"{path}, line {number}"
+def _head(content: object, path: Path, where: str) -> tuple[Fields, tuple[str, ...]]:
+    """What was asked, and the fields that each answer has."""
+    head = Fields(content, where, _HEAD)
+    if head.text("schema") != SCHEMA:
+        raise InputError(f"{path}: schema={head.text('schema')!r}, but a journal has {SCHEMA!r}")
+    return head, ("evidence", "seal", *record_fields(head.text("of"), str(path)))
+
+
+def _line(
+    name: str, read: Callable[[], object], where: str, folder: Path, fields: Sequence[str], head: Fields
+) -> Line:
     try:
-        record = Fields(parse_json(text, where), where, fields)
+        record = Fields(read(), where, fields)
     except InputError as error:
-        return Line(number, None, str(error))
+        return Line(name, None, str(error))
     try:
-        for k, name in enumerate(record.texts("evidence")):
-            evidence_name(Fields({"evidence": name}, f"{where}, evidence {k + 1}"), "evidence")
-        if record.text("seal") != seal_of(record.content, question, path.parent):
-            return Line(number, record, f"{where}: answer and evidence are not what its seal was made for")
+        for k, file in enumerate(record.texts("evidence")):
+            evidence_name(Fields({"evidence": file}, f"{where}, evidence {k + 1}"), "evidence")
+        if record.text("seal") != seal_of(record.content, head.text("question"), folder):
+            return Line(name, record, f"{where}: answer and evidence are not what its seal was made for")
     except InputError as error:
-        return Line(number, record, str(error))
-    return Line(number, record)
+        return Line(name, record, str(error))
+    return Line(name, record)
 
 
 def answers_of(journal: Journal, library: Library) -> Iterator[Line]:

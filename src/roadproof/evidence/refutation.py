@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence.witness import road_data
+from roadproof.evidence.drive_file import road_data
 from roadproof.judge import TruthSet, judge
 from roadproof.judge.signals import AbstractSignals
 from roadproof.judge.truth import from_switches
@@ -169,8 +169,3 @@ def trace_data(countermodel: Countermodel) -> dict[str, Any]:
             for instant in countermodel.instants
         ],
     }
-
-
-def drive_data(drive_file: Mapping[str, Any]) -> dict[str, Any]:
-    """A drive on which the claim is false."""
-    return {"kind": "drive", "drive": dict(drive_file)}

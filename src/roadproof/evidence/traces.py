@@ -3,10 +3,10 @@
 from fractions import Fraction
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.drive_file import read_road
 from roadproof.evidence.finding import Outcome
 from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of
 from roadproof.evidence.strict import Fields, rational
-from roadproof.evidence.witness import read_road
 from roadproof.spec.bind import values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification

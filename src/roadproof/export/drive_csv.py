@@ -2,19 +2,16 @@
 
 import csv
 import io
-from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
-from roadproof.evidence.witness import from_json
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.world.motion import state_at
 
 HEADER = ("time", "vehicle", "s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "length", "width")
 
 
-def csv_of(data: Mapping[str, Any], dt: Fraction = Fraction(1, 25)) -> str:
+def csv_of(file: DriveFile, dt: Fraction = Fraction(1, 25)) -> str:
     """The drive of a drive file (``roadproof/drive/1``) sampled every ``dt`` seconds up to its horizon."""
-    file = from_json(dict(data), "drive")
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(HEADER)

@@ -20,7 +20,6 @@ from roadproof.prove.search import GaveUp, Proof, Search
 from roadproof.prove.states import StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
@@ -45,8 +44,6 @@ class Result:
     ``work``: the units spent on the search.
     """
 
-    claim: str
-    set_name: str
     verdict: Verdict
     reason: str
     seconds: float
@@ -54,23 +51,27 @@ class Result:
     certificate: Certificate | None = None
     countermodel: Countermodel | None = None
 
+    @property
+    def holds(self) -> bool:
+        """Whether the claim is proved, be it because its premise never holds."""
+        return self.verdict in (Verdict.PROVED, Verdict.VACUOUS)
+
 
 def prove(
     specification: Specification,
-    claim: str,
+    query: Query,
     effort: Effort | None = None,
     label: str = "",
     scenario: int | None = None,
 ) -> Result:
-    """Decide whether ``claim`` holds at time 0 on all traces, for all values of its parameters.
+    """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
 
     Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
     above zero, roads, and signals as functions of time. A proof counts only once its certificate, derived
-    apart, has been answered unsat. Raises ``TextError``, and ``Late`` where the clock cuts it off.
+    apart, has been answered unsat. Raises ``Late`` where the clock cuts it off.
     """
     begun = time.monotonic()
     meter = (effort or Effort()).meter()
-    query = read_claim(specification, claim)
     atoms = Atoms()
     atomised = atoms.atomise(query.formula)
     defaults = default_values(specification.library)
@@ -85,8 +86,7 @@ def prove(
         countermodel: Countermodel | None = None,
     ) -> Result:
         seconds = time.monotonic() - begun
-        name = specification.set_name
-        return Result(claim, name, verdict, reason, seconds, meter.spent, certificate, countermodel)
+        return Result(verdict, reason, seconds, meter.spent, certificate, countermodel)
 
     names: dict[Site, str] = {}
     proofs: list[Proof] = []
@@ -212,4 +212,4 @@ def _certificate(
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
     met = met_names(atomised, atoms, instances, names, specification.library.bounds, query.lanes)
     made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-    return certify(specification, query.text, instances, met, made, label, scenario)
+    return certify(specification, query, instances, met, made, label, scenario)

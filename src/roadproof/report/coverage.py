@@ -1,8 +1,10 @@
 """The classes of gaps as a table, and a picture for each."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
+from roadproof.evidence.drive_file import read_drive
 from roadproof.report.drive import draw_drive
 from roadproof.spec.library import Library
 
@@ -68,4 +70,4 @@ def draw_gap(entry: Entry, drive: Mapping[str, Any], library: Library) -> dict[s
     title = f"missed by {drive['set']}: {entry['component'] or 'no single condition'}"
     if entry["condition"]:
         title += f", {entry['condition']}"
-    return draw_drive({**drive, "formula": formula}, library, title)
+    return draw_drive(replace(read_drive(dict(drive), "drive"), formula=formula), library, title)

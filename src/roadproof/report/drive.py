@@ -6,7 +6,8 @@ from math import nan
 from typing import Any
 
 from roadproof.errors import RoadproofError
-from roadproof.evidence.witness import DriveFile, from_json, judge_file
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.algebraic import approximate
 from roadproof.judge.robust import robustness
 from roadproof.judge.truth import TruthSet
@@ -23,12 +24,11 @@ MOST_STRIPS = 24
 GRAIN = Fraction(1, 10)
 
 
-def draw_drive(data: Mapping[str, Any], library: Library, title: str = "") -> dict[str, bytes]:
+def draw_drive(file: DriveFile, library: Library, title: str = "") -> dict[str, bytes]:
     """The picture of a drive file as ``{"png": …, "svg": …}``; the title is its formula where none is given.
 
     Raises ``InputError`` without matplotlib.
     """
-    file = from_json(dict(data), "drive")
     strips = list(_strips(file, library))[:MOST_STRIPS]
     heights = [0.75] * SNAPSHOTS + [1.5, 1.7, 0.2 + 0.16 * len(strips)]
     figure, axes = make_figure(heights)

@@ -12,8 +12,11 @@ from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import rename, rename_vehicles
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.rewrite import rename, rename_vehicles, road_names, vehicles_of
 from roadproof.logic.syntax import Binary, Binding, Chain, Claim, Expression, Prefix, Temporal
+from roadproof.spec.elaborate import elaborate
+from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 
 
@@ -92,6 +95,43 @@ def in_some_lane(query: Query, lane: str = "L", variable: str = "M") -> Query:
         claim=Claim(given, said),
         formula=f.Some(variable, f.Domain("lanes"), inside.formula),
         lanes=tuple(x for x in inside.lanes if x != variable),
+    )
+
+
+def taken_from(home: Specification, query: Query, set_name: str) -> Query:
+    """``query`` with every definition taken from the spec set ``set_name``, to be read with ``home``."""
+    if set_name == home.set_name:
+        return query
+
+    def visit(expression: Expression) -> Expression:
+        match expression:
+            case syntax.Call(name, arguments, at):
+                of_set = f"{name}@{set_name}" if name in home.definitions else name
+                return syntax.Call(of_set, tuple(visit(a) for a in arguments), at)
+            case syntax.Literal_() | syntax.Name():
+                return expression
+            case syntax.Prefix() | syntax.Quantified():
+                return replace(expression, body=visit(expression.body))
+            case syntax.Binary():
+                return replace(expression, left=visit(expression.left), right=visit(expression.right))
+            case syntax.Chain():
+                return replace(expression, parts=tuple(visit(p) for p in expression.parts))
+            case syntax.Temporal():
+                left = None if expression.left is None else visit(expression.left)
+                return replace(expression, left=left, right=visit(expression.right))
+
+    return elaborate(home, Claim(query.claim.given, visit(query.claim.body)))
+
+
+def of_parts(query: Query, parts: Sequence[Formula]) -> Query:
+    """The conjunction of some parts of ``query``, which calls definitions by name."""
+    formula = f.conjunction(*parts)
+    vehicles, roads = set(vehicles_of(formula)), road_names(formula)
+    return Query(
+        Claim(query.claim.given, as_syntax(formula)),
+        formula,
+        tuple(v for v in query.vehicles if v in vehicles),
+        tuple(lane for lane in query.lanes if lane in roads),
     )
 
 

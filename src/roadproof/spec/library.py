@@ -48,7 +48,8 @@ class Source:
 class Library:
     """Everything that specification files declare; names are unique in each mapping.
 
-    ``lanes``: by scenario, whose lane L is where that is not SV's (semantics §5).
+    ``lanes``: by scenario, whose lane L is where that is not SV's (semantics §5). ``files``: the users'
+    texts, in order.
     """
 
     parameters: Mapping[str, ParameterDeclaration]
@@ -58,6 +59,7 @@ class Library:
     variants: Mapping[tuple[str, str], tuple[Definition, ...]]
     sources: Mapping[str, Source]
     lanes: Mapping[int, LaneDeclaration]
+    files: tuple[Source, ...] = ()
 
     @property
     def bounds(self) -> dict[str, str]:
@@ -152,7 +154,7 @@ def load_library(paths: Iterable[Path] = ()) -> Library:
     """The bundled library, with the users' files on top: their definitions replace or add."""
     library = bundled_library()
     extra = [read_specification(path) for path in paths]
-    return build_library(extra, library) if extra else library
+    return replace(build_library(extra, library), files=tuple(extra)) if extra else library
 
 
 def build_library(sources: Iterable[Source], below: Library | None = None) -> Library:

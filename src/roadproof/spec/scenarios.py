@@ -9,14 +9,15 @@ whose lane L is come from the specification.
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, transform
 from roadproof.spec.compose import both, either, eventually
-from roadproof.spec.elaborate import apply_definition, signature
-from roadproof.spec.library import Specification
+from roadproof.spec.elaborate import apply_definition, read_claim, signature
+from roadproof.spec.library import Specification, unknown
 from roadproof.spec.query import Query
 
 MIN_SAFE, MIN_DANGER = "minSafe", "minDanger"
@@ -26,6 +27,7 @@ SUBJECT, LANE = "SV", "L"
 Zone: TypeAlias = Literal["main", "merge", "depart"]
 _ZONES: dict[Zone, str] = {"main": "onMainRoad", "merge": "inMergeZone", "depart": "inDepartZone"}
 _SCENARIO = re.compile(r"scenario_(\d{1,6})")
+_RANGE = re.compile(r"\s*(\d{1,4})\s*(?:-\s*(\d{1,4})\s*)?")
 _COMPONENTS = ("behaviourSV", "behaviourPOV", "initialCondition")
 
 
@@ -55,6 +57,21 @@ def number_in(name: str) -> int | None:
     return None if found is None else int(found[1])
 
 
+def read_numbers(specification: Specification, text: str) -> tuple[int, ...]:
+    """``1-8,12`` as numbers, ``scenario_12`` too. Raises ``UsageError``, ``InputError`` for unknown ones."""
+    numbers: set[int] = set()
+    for piece in text.split(","):
+        number = number_in(piece.strip())
+        read = _RANGE.fullmatch(piece if number is None else str(number))
+        if read is None:
+            raise UsageError(f"'{piece[:40]}' is no range of scenarios; write 1-8 or 1,3-8")
+        numbers |= set(range(int(read[1]), int(read[2] or read[1]) + 1))
+    known = numbers_of(specification)
+    for number in sorted(numbers - set(known)):
+        raise InputError(unknown("scenario", str(number), map(str, known)))
+    return tuple(sorted(numbers))
+
+
 def name_of(number: int) -> str:
     """What the definition of a scenario is called."""
     return f"scenario_{number}"
@@ -76,6 +93,18 @@ def applied(
     roles = tuple(vehicles) or vehicles_of(specification, scenario)
     name = _in_set(name_of(scenario.number), scenario, specification)
     return apply_definition(specification, name, (*roles, lane))
+
+
+def read_query(specification: Specification, text: str, source: str = "claim") -> tuple[int | None, Query]:
+    """A scenario by its number, ``4`` or ``scenario_4``, applied to its own arguments, or else a formula.
+
+    The number comes first, None for a formula. Raises ``TextError``.
+    """
+    word = text.strip()
+    number = int(word) if word.isdecimal() and word.isascii() and len(word) < 7 else number_in(word)
+    if number is None:
+        return None, read_claim(specification, text, source)
+    return number, apply_definition(specification, name_of(number))
 
 
 def lane_owner(specification: Specification, scenario: Scenario) -> str:
@@ -200,6 +229,16 @@ def too_near_ahead(specification: Specification, behind: str, ahead: str) -> Que
 def in_lane(specification: Specification, vehicle: str, lane: str = LANE) -> Query:
     """A vehicle occupies a lanelet of a lane."""
     return apply_definition(specification, "atLane", (vehicle, lane))
+
+
+def alone_in_lane(specification: Specification, vehicle: str) -> Query:
+    """A vehicle occupies no lanelet of a lane beside L."""
+    return read_claim(specification, f"every M in adjacentLanes({LANE}): not atLane({vehicle}, M)")
+
+
+def danger_at(specification: Specification, a: str, b: str, time: Fraction) -> Query:
+    """Two vehicles violate the RSS distances for minDanger from ``time`` (s) on."""
+    return read_claim(specification, f"F[{time} s, {time} s] danger({a}, {b})")
 
 
 def in_zone(specification: Specification, vehicle: str, zone: Zone) -> Query:

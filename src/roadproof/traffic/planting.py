@@ -13,7 +13,7 @@ from itertools import cycle
 import numpy as np
 
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import DriveFile
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.monitor.batch import steps_of
 from roadproof.monitor.recursive import Reading
 from roadproof.spec.bind import bind, default_values

@@ -1,19 +1,16 @@
 """Two formulas side by side: which implies which, by a proof or a drive in each direction."""
 
-import json
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from roadproof.effort import Late
-from roadproof.evidence.certificate import to_json
-from roadproof.logic import syntax
-from roadproof.logic.parse import parse_claim
-from roadproof.logic.show import text
-from roadproof.logic.syntax import Claim, Expression
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
 from roadproof.prove.prover import prove
-from roadproof.spec.library import Specification, load_library
+from roadproof.spec.compose import both, implication, negation
+from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Outcome, Request, as_formula, ask
+from roadproof.witness.ask import Search, ask
 
 Relation: TypeAlias = Literal["equivalent", "stronger", "weaker", "incomparable", "unknown"]
 
@@ -24,37 +21,32 @@ PROOF = 5.0  # units of work for a proof before a drive is looked for
 class Direction:
     """``claim`` is ``F1 -> F2``: PROVED with a certificate, REFUTED with a drive, or neither."""
 
-    claim: str
+    claim: Query
     verdict: Verdict
-    reason: str
-    certificate: str | None
-    drive: dict[str, Any] | None
+    reason: str = ""
+    certificate: Certificate | None = None
+    drive: Judged | None = None
 
 
 @dataclass(frozen=True)
 class Comparison:
     """How the first formula relates to the second: stronger is to imply it and not the reverse."""
 
-    first: str
-    second: str
+    first: Query
+    second: Query
     relation: Relation
     forward: Direction
     backward: Direction
 
 
-def compare(first: Request, second: Request) -> Comparison:
-    """Compare the formulas of two requests, each in its own spec set, on the road and grid of the first.
+def compare(search: Search, other: Query) -> Comparison:
+    """Compare the formula of a search with another, both read with the search's specification.
 
-    Raises as ``ask`` does.
+    Drives that tell them apart are looked for in the search's setting. Raises as ``ask`` does.
     """
-    specification = load_library(first.specs).select(first.set_name, first.options)
-    _, one = as_formula(specification, first.what)
-    _, other = as_formula(specification.in_set(second.set_name), second.what)
-    if second.set_name != first.set_name:
-        other = qualified(specification, other, second.set_name)
-    forward = _imply(specification, first, one, other)
-    backward = _imply(specification, first, other, one)
-    return Comparison(one, other, _relation(forward, backward), forward, backward)
+    forward = _imply(search, search.query, other)
+    backward = _imply(search, other, search.query)
+    return Comparison(search.query, other, _relation(forward, backward), forward, backward)
 
 
 def _relation(forward: Direction, backward: Direction) -> Relation:
@@ -71,50 +63,25 @@ def _relation(forward: Direction, backward: Direction) -> Relation:
             return "unknown"
 
 
-def _imply(specification: Specification, request: Request, one: str, other: str) -> Direction:
+def _imply(search: Search, one: Query, other: Query) -> Direction:
     """Which of the two is so; UNKNOWN where the clock cuts the search off."""
-    claim = f"({one}) -> ({other})"
+    claim = implication(one, other)
     try:
-        return _decide(specification, request, claim, f"({one}) and not ({other})")
+        return _decide(replace(search, query=both(one, negation(other)), count=1), claim)
     except Late as late:
-        return Direction(claim, Verdict.UNKNOWN, str(late), None, None)
+        return Direction(claim, Verdict.UNKNOWN, str(late))
 
 
-def _decide(specification: Specification, request: Request, claim: str, against: str) -> Direction:
-    """Ask for a proof first, which takes a moment where there is one, then for a drive."""
-    effort = request.means.effort
-    proof = prove(specification, claim, effort.of(min(PROOF, effort.units)))
-    if proof.verdict in (Verdict.PROVED, Verdict.VACUOUS) and proof.certificate is not None:
-        return Direction(claim, Verdict.PROVED, proof.reason, to_json(proof.certificate), None)
-    found: Outcome = ask(replace(request, what=against, count=1))
+def _decide(against: Search, claim: Query) -> Direction:
+    """Ask for a proof first, which takes a moment where there is one, then for a drive against the claim."""
+    effort = against.means.effort
+    proof = prove(against.specification, claim, effort.of(min(PROOF, effort.units)))
+    if proof.holds and proof.certificate is not None:
+        return Direction(claim, Verdict.PROVED, proof.reason, certificate=proof.certificate)
+    found = ask(against)
     if found.drives:
-        return Direction(claim, Verdict.REFUTED, "", None, found.drives[0])
+        return Direction(claim, Verdict.REFUTED, drive=found.drives[0])
     if found.impossibility is not None:
-        certificate = json.dumps(found.impossibility.certificate, indent=2, ensure_ascii=False)
-        return Direction(claim, Verdict.PROVED, "", certificate, None)
+        return Direction(claim, Verdict.PROVED, certificate=found.impossibility.certificate)
     verdict = Verdict.PROVED_BOUNDED if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
-    return Direction(claim, verdict, found.reason, None, None)
-
-
-def qualified(specification: Specification, formula: str, set_name: str) -> str:
-    """``formula`` with every definition taken from the spec set ``set_name``."""
-
-    def visit(expression: Expression) -> Expression:
-        match expression:
-            case syntax.Call(name, arguments, at):
-                of_set = f"{name}@{set_name}" if name in specification.definitions else name
-                return syntax.Call(of_set, tuple(visit(a) for a in arguments), at)
-            case syntax.Literal_() | syntax.Name():
-                return expression
-            case syntax.Prefix() | syntax.Quantified():
-                return replace(expression, body=visit(expression.body))
-            case syntax.Binary():
-                return replace(expression, left=visit(expression.left), right=visit(expression.right))
-            case syntax.Chain():
-                return replace(expression, parts=tuple(visit(p) for p in expression.parts))
-            case syntax.Temporal():
-                left = None if expression.left is None else visit(expression.left)
-                return replace(expression, left=left, right=visit(expression.right))
-
-    claim = parse_claim(formula)
-    return text(Claim(claim.given, visit(claim.body)))
+    return Direction(claim, verdict, found.reason)

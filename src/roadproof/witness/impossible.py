@@ -1,73 +1,73 @@
 """No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
 
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from roadproof.effort import Effort
-from roadproof.evidence.certificate import to_json
+from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.logic import formula as f
-from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
-from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.prove.prover import prove
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.compose import negation, of_parts
 from roadproof.spec.library import Specification
-from roadproof.verdict import Verdict
+from roadproof.spec.query import Query
 
 SHORTER = 1.5  # units of work for a proof with one part less
 
 
 @dataclass(frozen=True)
 class Impossibility:
-    """``certificate`` proves ``not formula`` for all time; ``core`` are parts that already clash.
+    """``certificate`` proves for all time that a formula never holds at 0; ``core`` are parts that clash.
 
     ``minimal``: no part of the core can be left out and the rest still be proved to clash.
     """
 
-    core: tuple[str, ...]
+    core: tuple[Formula, ...]
     minimal: bool
-    certificate: Mapping[str, Any]
+    certificate: Certificate
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The core as texts."""
+        return told_parts(self.core)
+
+    def as_data(self) -> dict[str, Any]:
+        """Core and certificate as plain data."""
+        return {"core": list(self.told), "certificate": certificate_data(self.certificate)}
 
 
-def show_impossible(specification: Specification, formula: str, effort: Effort) -> Impossibility | None:
-    """A proof in dense, unbounded time that ``formula`` never holds at 0, or None. Raises ``Late``."""
-    given, body = split_given(formula)
-    whole = prove(specification, f"{given}not ({body})", effort)
-    if whole.verdict not in (Verdict.PROVED, Verdict.VACUOUS) or whole.certificate is None:
+def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
+    """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``Late``."""
+    whole = prove(specification, negation(query), effort)
+    if not whole.holds or whole.certificate is None:
         return None
-    core, minimal = _core(specification, formula, effort.of(effort.units - whole.work))
-    return Impossibility(core, minimal, json.loads(to_json(whole.certificate)))
+    core, minimal = _core(specification, query, effort.of(effort.units - whole.work))
+    return Impossibility(core, minimal, whole.certificate)
 
 
-def split_given(claim: str) -> tuple[str, str]:
-    """What a claim declares in front, as text to be put in front of others, and the formula behind it."""
-    parsed = parse_claim(claim)
-    if not parsed.given:
-        return "", claim
-    return text(syntax.Claim(parsed.given, syntax.Literal_(True))).removesuffix("true"), text(parsed.body)
+def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
+    """Parts of a formula as texts, definitions by name."""
+    return tuple(text(as_syntax(part)) for part in core)
 
 
-def _core(specification: Specification, formula: str, effort: Effort) -> tuple[tuple[str, ...], bool]:
+def _core(specification: Specification, query: Query, effort: Effort) -> tuple[tuple[Formula, ...], bool]:
     """Leave out one part after the other where the rest still clashes."""
-    kept = [text(as_syntax(part, expand=False)) for part in parts(read_claim(specification, formula).formula)]
-    kept = list(dict.fromkeys(kept))
-    given, _ = split_given(formula)
-    for part in tuple(kept):
-        rest = [p for p in kept if p != part]
+    kept = tuple(dict.fromkeys(parts(query.formula)))
+    for part in kept:
+        rest = tuple(p for p in kept if p != part)
         if effort.units <= 0:
-            return tuple(kept), False
+            return kept, False
         if not rest:
             continue
-        claim = f"{given}not ({' and '.join(f'({p})' for p in rest)})"
+        claim = negation(of_parts(query, rest))
         found = prove(specification, claim, effort.of(min(effort.units, SHORTER)))
         effort = effort.of(effort.units - found.work)
-        if found.verdict in (Verdict.PROVED, Verdict.VACUOUS):
+        if found.holds:
             kept = rest
-    return tuple(kept), True
+    return kept, True
 
 
 def parts(formula: Formula) -> Iterator[Formula]:

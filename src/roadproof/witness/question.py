@@ -15,17 +15,42 @@ from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import parameters_of
-from roadproof.spec.bind import bind
+from roadproof.spec.bind import bind, values_with
+from roadproof.spec.library import Library
 from roadproof.spec.query import Query
 from roadproof.witness.limits import Limits
 from roadproof.world.drive import Drive
+from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.road import Road
-from roadproof.world.vehicle import Range, Vehicle
+from roadproof.world.vehicle import Range, Vehicle, with_limits
 
 Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
 Engine: TypeAlias = Literal["milp", "smt"]
-OBJECTIVES: tuple[Objective, ...] = ("any", "smooth", "margin", "mild", "severe", "short")
-ENGINES: tuple[Engine, ...] = ("milp", "smt")
+MOST_STEPS = 400
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where, with whom and for how long drives are looked for; a formula makes a ``Question`` of it.
+
+    ``road`` None is the usual road of the formula; ``lanes`` are free lanes that stand for one lane.
+    ``vehicles`` by name, "" for all others (a car where nothing is said), and ``limits`` other limits than
+    theirs, such as ``{"POV": {"a_lon.min": -2}}`` (``world.vehicle.with_limits``). ``values``: parameters
+    with another value than the declared one (SI). ``horizon``, ``dt``: seconds; ``reach``: how far apart
+    vehicles may start (m). ``collisions``: boxes may overlap. ``natural``: whether natural drives are tried
+    first.
+    """
+
+    road: Road | None = None
+    lanes: Mapping[str, str] = field(default_factory=dict)
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
+    limits: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    horizon: Fraction = Fraction(6)
+    dt: Fraction = Fraction(3, 5)
+    reach: Fraction = Fraction(80)
+    collisions: bool = False
+    natural: bool = True
 
 
 @dataclass(frozen=True)
@@ -96,6 +121,42 @@ class Found:
     manners: Manners
 
 
+def pose(library: Library, query: Query, setting: Setting) -> Question:
+    """The question with road, vehicles and grid in place. Raises ``UsageError``, ``InputError``."""
+    road = setting.road or usual_road(query.formula)
+    for name in (*setting.vehicles, *setting.limits):
+        if name and name not in query.vehicles:
+            known = ", ".join(query.vehicles)
+            raise UsageError(f"vehicle {name}: the formula speaks of {known or 'no vehicle'}")
+    if not query.vehicles:
+        raise UsageError("the formula speaks of no vehicle, so no drive can show anything about it")
+    usual = setting.vehicles.get("") or load_vehicle("car")
+    models = {name: setting.vehicles.get(name, usual) for name in query.vehicles}
+    vehicles = {name: with_limits(model, setting.limits.get(name, {})) for name, model in models.items()}
+    values = values_with(library, setting.values)
+    lanes = assignments(query, road, setting.lanes)
+    manners = Manners(reach=setting.reach, collisions=setting.collisions)
+    manners = manners if setting.natural else manners.plain()
+    return Question(query, road, vehicles, values, lanes, make_grid(setting.horizon, setting.dt), manners)
+
+
+def make_grid(horizon: Fraction, dt: Fraction) -> Grid:
+    """Raises ``UsageError`` unless the horizon is a sensible multiple of dt."""
+    if dt <= 0 or horizon <= 0:
+        raise UsageError(f"horizon={horizon} s and dt={dt} s must be greater than 0")
+    steps = horizon / dt
+    if steps.denominator != 1:
+        raise UsageError(
+            f"horizon={horizon} s is no multiple of dt={dt} s: choose a horizon "
+            f"such as {dt * (int(steps) + 1)} s, or another dt"
+        )
+    if steps > MOST_STEPS:
+        raise UsageError(
+            f"horizon={horizon} s with dt={dt} s is {steps} steps; at most {MOST_STEPS} are allowed"
+        )
+    return Grid(dt, int(steps))
+
+
 def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[dict[str, str], ...]:
     """Every way to give the free lanes of ``query`` lanes of ``road`` that agrees with ``chosen``.
 
@@ -111,11 +172,11 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
     return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
 
 
-def usual_road(formula: Formula) -> str:
+def usual_road(formula: Formula) -> Road:
     """The reference road that has the zones which ``formula`` speaks of: merge, depart, else main-2."""
     zones = {
         x.domain.of
         for x in subformulas(formula)
         if isinstance(x, f.Some | f.Every) and x.domain.kind == "zone"
     }
-    return "merge" if "merge" in zones else "depart" if "depart" in zones else "main-2"
+    return load_road("merge" if "merge" in zones else "depart" if "depart" in zones else "main-2")

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from roadproof.effort import Effort
 from roadproof.prove.prover import prove
+from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
 from roadproof.verdict import Verdict
 
@@ -125,4 +126,7 @@ def refine(
 
 
 def _proves(specification: Specification, claim: str, effort: Effort) -> bool:
-    return prove(specification, claim, effort).verdict in (Verdict.PROVED, Verdict.VACUOUS)
+    return prove(specification, read_claim(specification, claim), effort).verdict in (
+        Verdict.PROVED,
+        Verdict.VACUOUS,
+    )

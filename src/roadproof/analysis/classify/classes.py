@@ -12,13 +12,12 @@ from dataclasses import dataclass
 from itertools import product
 
 from roadproof.analysis.classify.cells import Axis, Cell
-from roadproof.analysis.meeting import Node, vehicles_of
-from roadproof.analysis.overlap import likes_of
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 from roadproof.spec.elaborate import read_claim, signature
 from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import Scenario, likes_of, vehicles_of
 
 SET_NAME = "classes"
 _WORD = re.compile(r"[a-z][a-z0-9]*")
@@ -127,7 +126,7 @@ def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
     sectors: dict[Formula, int] = {}
     groups: dict[tuple[str, ...], dict[int, tuple[int, int]]] = {}
     for number in numbers:
-        vehicles = vehicles_of(specification, Node(number, specification.set_name))
+        vehicles = vehicles_of(specification, Scenario(number, specification.set_name))
         sector = sectors.setdefault(_sector(specification, number), number)
         disturbance = disturbances.setdefault(likes[number], number)
         groups.setdefault(vehicles, {})[number] = (disturbance, sector)

@@ -10,10 +10,11 @@ from typing import Any, get_args
 
 from roadproof.analysis.classify.classes import SET_NAME, Class, Plan, where_axis
 from roadproof.analysis.classify.text import FILE_NAME, with_classes
-from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere, zones_of
+from roadproof.analysis.requests import Asked, Request, ask
 from roadproof.effort import Late
-from roadproof.evidence.witness import from_json, judge_file
+from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import is_state
@@ -21,7 +22,6 @@ from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, ask
 from roadproof.witness.impossible import parts
 from roadproof.witness.question import Means, usual_road
 from roadproof.world.drive import Drive
@@ -99,8 +99,8 @@ class _Searching:
         for road in self._roads(one):
             outcome = ask(self._request(one, road))
             if outcome.drives:
-                self.found.append(Shown(one.formula, dict(outcome.drives[0])))
-                return Example(one.name, Verdict.WITNESSED, "", outcome.drives[0])
+                self.found.append(Shown(one.formula, outcome.drives[0].as_data()))
+                return Example(one.name, Verdict.WITNESSED, "", outcome.drives[0].as_data())
             told = outcome.reason or "a proof that the class is empty was found late, and is not kept"
             reasons.append(f"{told} (road {outcome.road}, {self.asked.effort.units:g} units of work)")
         self.failures += 1
@@ -129,7 +129,7 @@ class _Searching:
             axis = where_axis(self.plan, one.vehicles)
             sectors = " and ".join(axis.rows[number] for number in one.where.holds)
         formula = read_claim(self.library.select(SET_NAME, self.asked.options), sectors).formula
-        usual = usual_road(formula)
+        usual = usual_road(formula).name
         yield usual
         zones = zones_of(formula)
         if len(zones) == 1 and not zones >= {x.zone for x in load_road(usual).lanelets}:
@@ -140,7 +140,7 @@ class _Searching:
 
     def _on_patched_road(self, shown: Shown, one: Class) -> Shown | None:
         """The motions of ``shown`` on their own road with other zones, judged; None where none does."""
-        file = replace(from_json(shown.data, "drive"), formula=one.formula)
+        file = replace(read_drive(shown.data, "drive"), formula=one.formula)
         query = read_claim(self.library.select(file.set_name, file.options), one.formula)
         values = {**default_values(self.library), **file.values}
         now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))

@@ -7,9 +7,8 @@ scenario of the set holds at the start, for any lane and with the two vehicles i
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from roadproof.analysis.meeting import Node, scenario_numbers, vehicles_of
-from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import zones_of
+from roadproof.analysis.requests import Asked
 from roadproof.effort import Late
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
@@ -18,6 +17,7 @@ from roadproof.logic.rewrite import without_names
 from roadproof.prove.prover import prove
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
+from roadproof.spec.scenarios import Scenario, numbers_of, vehicles_of
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 
@@ -38,8 +38,8 @@ class Covered:
 def two_vehicle_numbers(specification: Specification) -> tuple[int, ...]:
     """The scenarios between SV and one POV."""
     name = specification.set_name
-    numbers = scenario_numbers(specification)
-    return tuple(n for n in numbers if len(vehicles_of(specification, Node(n, name))) == 2)
+    numbers = numbers_of(specification)
+    return tuple(n for n in numbers if len(vehicles_of(specification, Scenario(n, name))) == 2)
 
 
 def sectors_of(specification: Specification) -> tuple[tuple[int, ...], ...]:
@@ -83,7 +83,7 @@ def prove_claim(asked: Asked, claim: str) -> Covered:
     """Try to prove one claim about the first set of ``asked``."""
     _, specification = asked.load()
     try:
-        result = prove(specification, claim, asked.effort.of(PROOF), "coverage")
+        result = prove(specification, read_claim(specification, claim), asked.effort.of(PROOF), "coverage")
     except Late as late:
         return Covered(claim, Verdict.UNKNOWN, None, str(late))
     certificate = None if result.certificate is None else to_json(result.certificate)

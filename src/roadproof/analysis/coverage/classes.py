@@ -14,13 +14,14 @@ from typing import Any
 
 from roadproof.analysis.coverage.claims import numbers_on, sectors_of, wider_sets
 from roadproof.analysis.coverage.parts import Part, parts_of
-from roadproof.analysis.overlap import Asked, likes_of
-from roadproof.evidence.witness import DriveFile
+from roadproof.analysis.requests import Asked
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
+from roadproof.spec.scenarios import likes_of
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.evidence.witness import DriveFile
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.judge.replay import first_breach, first_overlap
 from roadproof.spec.bind import bind, default_values

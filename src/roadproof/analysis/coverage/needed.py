@@ -15,9 +15,10 @@ from roadproof.analysis.coverage.claims import (
     two_vehicle_numbers,
 )
 from roadproof.analysis.coverage.trial import TRIAL, Trials
-from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import as_data
-from roadproof.evidence.witness import DriveFile, judge_file
+from roadproof.analysis.requests import Asked
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
 from roadproof.judge.replay import first_breach, first_overlap
 from roadproof.logic.restore import as_syntax
@@ -110,7 +111,9 @@ def _spare(asked: Asked, trials: Trials, name: str, written: str) -> Need:
     specification = _select(asked, trials, written)
     claims = claims_of(specification)
     effort = asked.effort.of(PROOF)
-    proved = all(prove(specification, c, effort).verdict is Verdict.PROVED for c in claims)
+    proved = all(
+        prove(specification, read_claim(specification, c), effort).verdict is Verdict.PROVED for c in claims
+    )
     verdict = Verdict.PROVED if proved else Verdict.UNKNOWN
     return Need(name, trials.asked.sets[0], verdict)
 

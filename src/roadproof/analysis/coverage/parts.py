@@ -8,13 +8,14 @@ part out means putting true in its place, so that what is left holds wherever th
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from roadproof.analysis.meeting import Node, applied, vehicles_of
+from roadproof.analysis.requests import applied
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import Scenario, vehicles_of
 
 Rebuild = Callable[[Formula], Formula]
 
@@ -47,7 +48,7 @@ def parts_of(specification: Specification, number: int) -> tuple[Part, ...]:
 
     A component with one condition only is a part, its condition is no second one.
     """
-    node = Node(number, specification.set_name)
+    node = Scenario(number, specification.set_name)
     written = applied(node, specification, vehicles_of(specification, node))
     whole = read_claim(specification, written).formula
     found: list[Part] = []

@@ -21,10 +21,12 @@ from roadproof.analysis.coverage.minimal import simplest
 from roadproof.analysis.coverage.parts import Part
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.analysis.requests import Request, ask
 from roadproof.effort import Late
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
-from roadproof.evidence.witness import DriveFile, from_json, judge_file
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
 from roadproof.judge.replay import first_breach, first_overlap
 from roadproof.logic.formula import transform
@@ -32,7 +34,6 @@ from roadproof.prove.prover import prove
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, ask
 from roadproof.witness.question import Means
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle
@@ -139,11 +140,16 @@ class _Settling:
         """That the class of ``part`` is empty, in every road sector; ``units`` for a look at the first."""
         attempts = [self._all_are_near()] if part is None else [self._is_redundant(part), self._no_gaps(part)]
         for claims in attempts:
-            if prove(self.specification, claims[0], self.asked.effort.of(units)).certificate is None:
+            if (
+                prove(
+                    self.specification, read_claim(self.specification, claims[0]), self.asked.effort.of(units)
+                ).certificate
+                is None
+            ):
                 continue
             claim = " and ".join(claims)
             long = self.asked.effort.of(max(LONG_PROOF, units) * len(self.sectors))
-            result = prove(self.specification, claim, long, "gap")
+            result = prove(self.specification, read_claim(self.specification, claim), long, "gap")
             if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
                 return Answer(part, Verdict.IMPOSSIBLE, (), claim, to_json(result.certificate))
         return None
@@ -198,7 +204,7 @@ class _Settling:
                     reasons.append(f"no search on {name}: {error}")
                     continue
                 if outcome.drives:
-                    file = simplest(from_json(dict(outcome.drives[0]), "drive"), self.library)
+                    file = simplest(outcome.drives[0].file, self.library)
                     self.known.append(Found(file, self.trials.first(file), self.classes.of(file)))
                     return ""
                 reasons.append(f"{outcome.reason or 'none'} on {name}")

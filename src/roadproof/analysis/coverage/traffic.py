@@ -12,7 +12,7 @@ import numpy as np
 
 from roadproof.analysis.coverage.claims import missed, numbers_on
 from roadproof.analysis.coverage.classes import Classes
-from roadproof.analysis.overlap import Asked
+from roadproof.analysis.requests import Asked
 from roadproof.monitor.batch import Array, Batch
 from roadproof.monitor.compiled import Monitor, compile
 from roadproof.spec.bind import bind

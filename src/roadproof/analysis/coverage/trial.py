@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from itertools import combinations
 
 from roadproof.analysis.coverage.claims import missed, numbers_on, replaced_in
-from roadproof.analysis.overlap import Asked
-from roadproof.evidence.witness import DriveFile
+from roadproof.analysis.requests import Asked
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.logic.formula import Formula, transform
 from roadproof.logic.show import text

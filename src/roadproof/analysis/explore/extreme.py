@@ -33,16 +33,18 @@ from roadproof.analysis.explore.values import (
     Say,
     look_one_by_one,
 )
+from roadproof.analysis.requests import Request
 from roadproof.encode.along import names_places
 from roadproof.errors import InputError
-from roadproof.evidence.witness import DriveFile, from_json, judge_file
+from roadproof.evidence.drive_file import DriveFile, read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.signals import Courses, DriveSignals
 from roadproof.logic import formula as f
 from roadproof.logic.terms import Term, number
 from roadproof.spec.bind import bind, default_values
+from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import load_library
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, pose
 from roadproof.witness.impossible import show_impossible
 from roadproof.world.road import Road
 
@@ -144,7 +146,7 @@ class _Seeking:
         """The best value that any drive could start with, where that is known."""
         if self.measure.when:
             return None
-        question = pose(self.specification, self.request.what, self.request)
+        question = self.request.question()
         try:
             term = self.bound_term(question.road, {})
             if names_places(f.Compare(term, ">", number(0)), question.vehicles):
@@ -178,17 +180,19 @@ class _Seeking:
         return self.proved((value,), self.text(value))
 
     def proved(self, at: Point, text: str, units: float = PROOF) -> Finding | None:
-        shown = show_impossible(self.specification, text, self.request.means.effort.of(units))
+        shown = show_impossible(
+            self.specification, read_claim(self.specification, text), self.request.means.effort.of(units)
+        )
         if shown is None:
             return None
-        reason = f"proved for all time; core: {' and '.join(shown.core)}"
-        return Finding(at, Verdict.IMPOSSIBLE, text, reason, certificate=shown.certificate)
+        reason = f"proved for all time; core: {' and '.join(shown.told)}"
+        return Finding(at, Verdict.IMPOSSIBLE, text, reason, certificate=shown.as_data()["certificate"])
 
     def best_of(self, drives: Sequence[Mapping[str, Any]]) -> Finding | None:
         """The best value that is judged on one of the drives."""
         found: list[Finding] = []
         for data in drives:
-            file = from_json(dict(data), "drive")
+            file = read_drive(dict(data), "drive")
             value = self.at_start(file) if not self.measure.when else self.at_moment(file)
             shown = None if value is None else self.shown(file, value)
             if value is not None and shown is not None:

@@ -6,9 +6,9 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.analysis.explore.text import always, compared, expression
+from roadproof.analysis.requests import Request
 from roadproof.logic.syntax import Expression
 from roadproof.spec.quantity import UNITS
-from roadproof.witness.ask import Request
 
 # A value for each knob, in order, in SI units.
 Point: TypeAlias = tuple[Fraction, ...]

@@ -12,9 +12,11 @@ from math import ceil, floor, gcd
 from typing import Any, Literal, TypeAlias
 
 from roadproof.analysis.placing import as_data
+from roadproof.analysis.requests import Request
 from roadproof.effort import Late
 from roadproof.errors import UsageError
-from roadproof.evidence.witness import DriveFile, from_json, judge_file
+from roadproof.evidence.drive_file import DriveFile, read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.replay import first_overlap
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
@@ -23,7 +25,7 @@ from roadproof.logic.terms import Parameter, leaves
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification, load_library
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, drive_data, pose, telling_values
+from roadproof.witness.ask import judge_found, telling_values
 from roadproof.witness.question import Question
 from roadproof.witness.search import Answer, find_witness, show_none
 
@@ -92,14 +94,14 @@ def _search(task: Task, library: Library) -> Reply:
     def reply(question: Question, answer: Answer) -> Reply:
         if answer.found is None:
             return Reply(answer.verdict, answer.reason)
-        data = drive_data(library, specification, None, request.what, question, answer.found)
-        return Reply(Verdict.WITNESSED, "", (data,))
+        judged = judge_found(replace(request, count=1).search(), question, answer.found)
+        return Reply(Verdict.WITNESSED, "", (judged.as_data(),))
 
     last = Reply(Verdict.UNKNOWN, "")
     for stage in task.stages:
         for horizon in _horizons(request, specification):
             asked = replace(request, natural=stage == "natural", horizon=horizon)
-            question = pose(specification, request.what, asked)
+            question = asked.question()
             answer = (show_none if stage == "none" else find_witness)(question, means)
             last = reply(question, answer)
             if answer.found is None:
@@ -214,7 +216,7 @@ class Pool:
     def add(self, drives: Iterable[Mapping[str, Any]]) -> None:
         """Add drive files by their data."""
         for data in drives:
-            self.files.append(from_json(dict(data), "drive"))
+            self.files.append(read_drive(dict(data), "drive"))
             self._last = len(self.files) - 1
 
     def show(self, claim: Claim, since: int = 0) -> Shown | None:

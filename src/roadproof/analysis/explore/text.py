@@ -22,6 +22,13 @@ def conjoin(claim: str, parts: Iterable[Expression]) -> str:
     return text(syntax.Claim(parsed.given, syntax.Chain("and", (parsed.body, *added))))
 
 
+def given_of(claim: syntax.Claim) -> str:
+    """What a claim declares in front, as text to be put in front of others."""
+    if not claim.given:
+        return ""
+    return text(syntax.Claim(claim.given, syntax.Literal_(True))).removesuffix("true")
+
+
 def expression(written: str) -> Expression:
     """What a user wrote, as a part to be added. Raises ``TextError``."""
     return parse_claim(written).body

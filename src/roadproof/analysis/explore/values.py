@@ -24,10 +24,10 @@ from roadproof.analysis.explore.search import (
     look,
 )
 from roadproof.analysis.explore.text import conjoin
+from roadproof.analysis.requests import Request
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import load_library
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request
 from roadproof.witness.impossible import Impossibility, show_impossible
 
 PROOF = 5.0  # units of work for a proof that there is no drive
@@ -169,12 +169,11 @@ class Exploring:
         self.searches = 0
         self.searched: list[Point] = []
         self.claims: dict[Point, Claim] = {}
-        what = asked.request.what
+        query = read_claim(self.specification, asked.request.what)
         self.impossibility: Impossibility | None = show_impossible(
-            self.specification, what, asked.request.means.effort.of(QUICK_PROOF)
+            self.specification, query, asked.request.means.effort.of(QUICK_PROOF)
         )
-        formula = read_claim(self.specification, asked.request.what).formula
-        self.lasting = duration_parameters(formula)
+        self.lasting = duration_parameters(query.formula)
 
     def request(self, point: Point) -> Request:
         """The question at a point."""
@@ -194,8 +193,8 @@ class Exploring:
         """
         claim = self.claim(point)
         if self.impossibility is not None:
-            core = f"proved for all values; core: {' and '.join(self.impossibility.core)}"
-            certificate = self.impossibility.certificate
+            core = f"proved for all values; core: {' and '.join(self.impossibility.told)}"
+            certificate = self.impossibility.as_data()["certificate"]
             return Finding(point, Verdict.IMPOSSIBLE, claim.text, core, certificate=certificate)
         shown = self.pool.show(claim, since)
         if shown is None:

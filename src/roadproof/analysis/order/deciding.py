@@ -13,21 +13,21 @@ from fractions import Fraction
 from itertools import permutations
 from typing import Any
 
-from roadproof.analysis.meeting import Node, applied, vehicles_of
 from roadproof.analysis.order.kinds import Kind, text_of
-from roadproof.analysis.overlap import Asked
 from roadproof.analysis.placing import Shown, as_data, show_elsewhere
+from roadproof.analysis.requests import Asked, Request, applied, ask
 from roadproof.effort import Late
 from roadproof.evidence.certificate import to_json
-from roadproof.evidence.witness import DriveFile, from_json, judge_file
+from roadproof.evidence.drive_file import DriveFile, read_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
 from roadproof.prove.prover import prove
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
+from roadproof.spec.scenarios import Scenario, vehicles_of
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Request, ask
 from roadproof.witness.question import Means, usual_road
 from roadproof.world.drive import Drive
 
@@ -38,8 +38,8 @@ FAR = Fraction(2000)
 class Edge:
     """A proved implication that does not follow from others; ``certificate`` is a file's text."""
 
-    above: Node
-    below: Node
+    above: Scenario
+    below: Scenario
     claim: str
     certificate: str
 
@@ -48,8 +48,8 @@ class Edge:
 class Refuting:
     """A judged drive on which ``node`` holds and some reading of each of ``others`` does not."""
 
-    node: Node
-    others: tuple[Node, ...]
+    node: Scenario
+    others: tuple[Scenario, ...]
     data: Mapping[str, Any]
 
 
@@ -61,8 +61,8 @@ class Doubt:
     search off, where it did.
     """
 
-    above: Node
-    below: Node
+    above: Scenario
+    below: Scenario
     open: tuple[tuple[str, str], ...]
     late: str = ""
 
@@ -128,7 +128,7 @@ class _Cast:
     """One way to give the vehicles of a drive to a kind, and what else may hold of it then."""
 
     text: str
-    others: tuple[tuple[Node, str], ...]
+    others: tuple[tuple[Scenario, str], ...]
 
 
 class _Deciding:
@@ -145,7 +145,7 @@ class _Deciding:
         self.doubts: list[Doubt] = []
         self.vain: set[int] = set()  # what kinds are like that no drive was found against
         # By kind and kind: the readings of the second that no drive has refuted yet.
-        self.open: dict[tuple[Node, Node], set[tuple[str, str]]] = {}
+        self.open: dict[tuple[Scenario, Scenario], set[tuple[str, str]]] = {}
 
     def run(self) -> Decided:
         for kind in self.family:
@@ -168,7 +168,7 @@ class _Deciding:
 
     def _casts(self, kind: Kind) -> Iterator[_Cast]:
         mine = vehicles_of(self.specification, kind.node)
-        by_size: dict[tuple[str, ...], list[tuple[Node, str]]] = {}
+        by_size: dict[tuple[str, ...], list[tuple[Scenario, str]]] = {}
         for other in self.kinds:
             if other == kind:
                 continue
@@ -210,7 +210,7 @@ class _Deciding:
     def _use(self, kind: Kind, shown: Shown) -> None:
         """Refute with a drive all that it refutes of what is still open."""
         for cast in self._casts(kind):
-            file = self._recast(from_json(dict(shown.data), "drive"), kind, cast)
+            file = self._recast(read_drive(dict(shown.data), "drive"), kind, cast)
             still = [(n, x) for n, x in cast.others if (cast.text, x) in self.open[kind.node, n]]
             false = [(node, text) for node, text in still if not self._holds(file, text)]
             if not false:
@@ -253,12 +253,12 @@ class _Deciding:
             self.asked.options,
             self.asked.specs,
             self.values,
-            usual_road(self._query(on).formula),
+            usual_road(self._query(on).formula).name,
             horizon=self.asked.horizon,
             means=Means("smooth", effort=self.asked.effort, explain=False),
         )
         drives = ask(request).drives
-        return Shown(text, drives[0]) if drives else None
+        return Shown(text, drives[0].as_data()) if drives else None
 
     # --- proofs ----------------------------------------------------------------------------------
 
@@ -270,7 +270,11 @@ class _Deciding:
         one, other = kind.node, target.node
         for text, below in sorted(self.open[one, other]):
             claim = f"{text} -> {below}"
-            result = prove(self.specification, claim, self.asked.effort.of(self.asked.proof))
+            result = prove(
+                self.specification,
+                read_claim(self.specification, claim),
+                self.asked.effort.of(self.asked.proof),
+            )
             if result.verdict is Verdict.PROVED and result.certificate is not None:
                 self.edges.append(Edge(one, other, claim, to_json(result.certificate)))
                 return

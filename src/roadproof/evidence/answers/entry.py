@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence import certificate, witness
+from roadproof.evidence import certificate
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.drive_file import SCHEMA, DriveFile, read_drive
 from roadproof.evidence.strict import Fields, rational, read_json
-from roadproof.evidence.witness import DriveFile
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.spec.bind import values_with
@@ -107,9 +107,9 @@ def one_of(data: Fields, shows: Shows, proof: str = "certificate", drive: str = 
 def read_evidence(path: Path) -> Certificate | DriveFile:
     """A certificate or a drive file. Raises ``InputError``."""
     content = read_json(path)
-    if Fields(content, str(path)).text("schema") == witness.SCHEMA:
-        return witness.from_json(content, str(path))
-    return certificate.from_json(content, str(path))
+    if Fields(content, str(path)).text("schema") == SCHEMA:
+        return read_drive(content, str(path))
+    return certificate.read_certificate_data(content, str(path))
 
 
 def mismatch(entry: Entry, said: Certificate | DriveFile) -> str:

@@ -1,7 +1,7 @@
 """Drive files, ``roadproof/drive/1``: a drive with everything that is needed to judge it again.
 
-Numbers are rationals as text; null is without bound. Reading checks every field; ``judge_file``
-elaborates the formula with the library at hand and asks the exact judge, no solver.
+Numbers are rationals as text; null is without bound. Reading checks every field; whether the formula
+holds on the drive is for ``judged``.
 """
 
 from collections.abc import Mapping, Sized
@@ -10,13 +10,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, cast, get_args
 
-from roadproof.errors import InputError, RoadproofError
+from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, is_rational, rational, read_json, text
-from roadproof.judge.exact import Judgement, judge
-from roadproof.judge.replay import first_overlap
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
@@ -48,52 +43,7 @@ class DriveFile:
     overlaps_allowed: bool = False
 
 
-@dataclass(frozen=True)
-class Ruling:
-    """Whether the file's claim stands; ``reason`` says why where it does not.
-
-    ``readable``: whether the library at hand has all that the claim speaks of.
-    """
-
-    judgement: Judgement | None
-    reason: str
-    readable: bool = True
-
-    @property
-    def accepted(self) -> bool:
-        return not self.reason
-
-
-def judge_file(file: DriveFile, library: Library) -> Ruling:
-    """Judge the drive on the formula in dense and unbounded time, with no look at the file's verdict."""
-    try:
-        query = read_claim(library.select(file.set_name, file.options), file.formula, "formula")
-    except RoadproofError as error:
-        return Ruling(None, str(error), readable=False)
-    try:
-        missing = set(query.lanes) - set(file.lanes)
-        if missing:
-            raise InputError(f"the file names no lane for {', '.join(sorted(missing))}")
-        for name, lane in file.lanes.items():
-            if lane not in file.road.lanes:
-                raise InputError(f"lane {name}={lane}: the road has {', '.join(file.road.lanes)}")
-        absent = set(query.vehicles) - set(file.drive.vehicles)
-        if absent:
-            raise InputError(f"the file has no vehicle {', '.join(sorted(absent))}")
-        formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
-        judgement = judge(formula, file.drive)
-    except RoadproofError as error:
-        return Ruling(None, str(error))
-    if not judgement.holds:
-        return Ruling(judgement, f"the formula does not hold on the drive: {file.formula}")
-    if not file.overlaps_allowed:
-        overlap = first_overlap(file.drive, file.horizon)
-        if overlap is not None:
-            return Ruling(judgement, str(overlap))
-    return Ruling(judgement, "")
-
-
-def as_json(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
+def drive_data(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
     """The file as plain data, in the order in which a reader wants it."""
     data: dict[str, Any] = {"schema": SCHEMA, "scenario": file.scenario, "set": file.set_name}
     data |= {"formula": file.formula, "horizon": str(file.horizon), "lane": file.lanes.get("L")}
@@ -115,14 +65,6 @@ def road_data(road: Road) -> dict[str, Any]:
         "lanelets": [_lanelet_json(x) for x in road.lanelets],
         "adjacent": sorted(sorted(pair) for pair in road.adjacent),
     }
-
-
-def times_data(judgement: Judgement) -> list[dict[str, str]]:
-    """When each definition in the formula is true, as files tell it."""
-    return [
-        {"formula": f"{part.name}({', '.join(part.arguments)})", "true": str(truth)}
-        for part, truth in judgement.named()
-    ]
 
 
 def _lanelet_json(lanelet: Lanelet) -> dict[str, Any]:
@@ -152,11 +94,11 @@ def _motion_json(motion: Motion) -> dict[str, Any]:
 
 def load_drive(path: Path) -> DriveFile:
     """Read a drive file. Raises ``InputError`` naming file, field, value and rule."""
-    return from_json(read_json(path), str(path))
+    return read_drive(read_json(path), str(path))
 
 
-def from_json(content: object, where: str) -> DriveFile:
-    """The inverse of ``as_json``. Raises ``InputError``."""
+def read_drive(content: object, where: str) -> DriveFile:
+    """The inverse of ``drive_data``. Raises ``InputError``."""
     data = Fields(content, where, _FIELDS)
     if data.text("schema") != SCHEMA:
         raise InputError(f"{where}: schema={data.text('schema')!r}, but a drive file has {SCHEMA!r}")

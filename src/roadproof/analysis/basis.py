@@ -1,0 +1,68 @@
+"""What analyses of scenarios rest on: definitions, values of parameters, and how hard is searched."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from roadproof.effort import Effort
+from roadproof.prove.prover import Result, prove
+from roadproof.spec.bind import values_with
+from roadproof.spec.library import Library, Specification
+from roadproof.spec.query import Query
+from roadproof.study.shelf import specification_names
+from roadproof.witness.ask import Search
+from roadproof.witness.question import Means, Setting
+from roadproof.world.road import Road
+
+
+@dataclass(frozen=True)
+class Basis:
+    """``specification`` has the definitions of the first of ``sets``, in which names without @ are read.
+
+    ``values``: parameters with another value than the declared one (SI); ``horizon``: seconds of driving
+    that are searched; ``effort`` for one drive; ``proof``: units of work for a proof before a drive is
+    looked for.
+    """
+
+    specification: Specification
+    sets: tuple[str, ...] = ()
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    horizon: Fraction = Fraction(6)
+    effort: Effort = field(default_factory=Effort)
+    proof: float = 3.0
+
+    @property
+    def library(self) -> Library:
+        return self.specification.library
+
+    @property
+    def set_names(self) -> tuple[str, ...]:
+        """The spec sets that are spoken of; that of the specification where no others are."""
+        return self.sets or (self.specification.set_name,)
+
+    def all_values(self) -> dict[str, Fraction]:
+        """The value of every parameter. Raises ``InputError``."""
+        return values_with(self.library, self.values)
+
+    def said(self) -> dict[str, Any]:
+        """What an index says of all its answers: readings, values of parameters, specification files."""
+        values = {name: str(value) for name, value in sorted(self.all_values().items())}
+        return {
+            "options": dict(self.specification.options),
+            "parameters": values,
+            "specs": specification_names(self.library),
+        }
+
+    def search(
+        self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
+    ) -> Search:
+        """A search for a smooth drive on which ``query`` holds."""
+        setting = Setting(road=road, values=self.values, horizon=self.horizon)
+        means = Means("smooth", effort=effort or self.effort, explain=explain)
+        return Search(self.specification, query, setting, means)
+
+    def proof_of(self, query: Query, units: float | None = None, label: str = "") -> Result:
+        """The prover's verdict on a claim with so many units of work (``proof``). Raises ``Late``."""
+        effort = self.effort.of(self.proof if units is None else units)
+        return prove(self.specification, query, effort, label)

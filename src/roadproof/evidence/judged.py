@@ -1,0 +1,97 @@
+"""Drives that have been judged: the formula of a drive file elaborated with the library at hand, and the
+exact judge asked, no solver.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.drive_file import DriveFile, drive_data
+from roadproof.judge.exact import Judgement, judge
+from roadproof.judge.replay import first_overlap
+from roadproof.spec.bind import bind, values_with
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Library
+from roadproof.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Ruling:
+    """Whether the file's claim stands; ``reason`` says why where it does not.
+
+    ``readable``: whether the library at hand has all that the claim speaks of.
+    """
+
+    judgement: Judgement | None
+    reason: str
+    readable: bool = True
+
+    @property
+    def accepted(self) -> bool:
+        return not self.reason
+
+
+def judge_file(file: DriveFile, library: Library) -> Ruling:
+    """Judge the drive on the formula in dense and unbounded time, with no look at the file's verdict."""
+    try:
+        query = read_claim(library.select(file.set_name, file.options), file.formula, "formula")
+    except RoadproofError as error:
+        return Ruling(None, str(error), readable=False)
+    try:
+        missing = set(query.lanes) - set(file.lanes)
+        if missing:
+            raise InputError(f"the file names no lane for {', '.join(sorted(missing))}")
+        for name, lane in file.lanes.items():
+            if lane not in file.road.lanes:
+                raise InputError(f"lane {name}={lane}: the road has {', '.join(file.road.lanes)}")
+        absent = set(query.vehicles) - set(file.drive.vehicles)
+        if absent:
+            raise InputError(f"the file has no vehicle {', '.join(sorted(absent))}")
+        formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
+        judgement = judge(formula, file.drive)
+    except RoadproofError as error:
+        return Ruling(None, str(error))
+    if not judgement.holds:
+        return Ruling(judgement, f"the formula does not hold on the drive: {file.formula}")
+    if not file.overlaps_allowed:
+        overlap = first_overlap(file.drive, file.horizon)
+        if overlap is not None:
+            return Ruling(judgement, str(overlap))
+    return Ruling(judgement, "")
+
+
+@dataclass(frozen=True, init=False)
+class Judged:
+    """A drive file that stands: its formula holds on its drive. Only judging makes one.
+
+    ``natural``: whether it was looked for among natural drives (``encode.build.Manners``), None where it
+    was not looked for.
+    """
+
+    file: DriveFile
+    judgement: Judgement
+    natural: bool | None
+
+    def __init__(self, file: DriveFile, library: Library, natural: bool | None = None) -> None:
+        """Raises ``InputError`` where the judge rejects the file."""
+        ruling = judge_file(file, library)
+        if not ruling.accepted or ruling.judgement is None:
+            raise InputError(ruling.reason)
+        object.__setattr__(self, "file", file)
+        object.__setattr__(self, "judgement", ruling.judgement)
+        object.__setattr__(self, "natural", natural)
+
+    def as_data(self) -> dict[str, Any]:
+        """The drive file as plain data, with the verdict and with what is true when."""
+        verdict: dict[str, Any] = {"verdict": str(Verdict.WITNESSED), "view": "dense"}
+        if self.natural is not None:
+            verdict["natural"] = self.natural
+        return drive_data(self.file, verdict | {"times": times_data(self.judgement)})
+
+
+def times_data(judgement: Judgement) -> list[dict[str, str]]:
+    """When each definition in the formula is true, as files tell it."""
+    return [
+        {"formula": f"{part.name}({', '.join(part.arguments)})", "true": str(truth)}
+        for part, truth in judgement.named()
+    ]

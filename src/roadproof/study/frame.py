@@ -1,0 +1,82 @@
+"""A long question: asked in pieces, each answered by itself, kept, and taken up again.
+
+What is asked is a ``Study``; ``conduct`` asks it, in several processes, and with a folder of evidence so that
+a run that was broken off goes on where it was.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, Protocol, TypeVar
+
+from roadproof.study.pool import Progress, work
+from roadproof.study.shelf import Question, Shelf
+
+Piece = TypeVar("Piece")
+Answer = TypeVar("Answer")
+
+
+class Study(Protocol[Piece, Answer]):
+    """A long question. Pieces and answers are plain data that can be sent to other processes."""
+
+    @property
+    def question(self) -> Question:
+        """What is asked, and on what the answers depend."""
+
+    def pieces(self, known: Mapping[str, Answer]) -> Sequence[Piece]:
+        """What is to be asked next; nothing where all that is wanted is among the ``known`` answers.
+
+        It is asked again after all these are answered, so later pieces may rest on earlier answers, and a
+        doubt may be asked again.
+        """
+
+    def settle(self, piece: Piece) -> Mapping[str, Answer]:
+        """The answers to a piece by name, in a process of its own; doubts where the clock cuts it off."""
+
+    def doubt(self, piece: Piece, reason: str) -> Mapping[str, Answer]:
+        """The answers to a piece that nothing is known of."""
+
+    def is_sure(self, answer: Answer) -> bool:
+        """Whether an answer stands; others are asked again by the next run into the same folder."""
+
+    def record(self, name: str, answer: Answer, shelf: Shelf) -> dict[str, Any]:
+        """An answer as plain data; its evidence goes to the shelf."""
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> Answer:
+        """The inverse of ``record``."""
+
+
+@dataclass(frozen=True)
+class Conducted(Generic[Answer]):
+    """All answers by name, and the same as plain data; evidence that has a file is named by its path."""
+
+    answers: Mapping[str, Answer]
+    records: Mapping[str, Mapping[str, Any]]
+
+
+def conduct(
+    study: Study[Piece, Answer],
+    folder: Path | None = None,
+    processes: int | None = None,
+    progress: Progress | None = None,
+    what: str = "pieces",
+    say: Callable[[str], None] | None = None,
+) -> Conducted[Answer]:
+    """Ask all pieces that a folder does not have the answers of. ``processes`` None is one a core.
+
+    ``what`` is the word for many pieces, for ``progress``; ``say`` is told of kept answers that do not
+    count. Raises ``UsageError`` where the folder holds the answers to another question, and what
+    ``study.settle`` raises.
+    """
+    shelf = Shelf(folder, study.question)
+    records = {name: dict(record) for name, record in shelf.answers(say)}
+    known = {name: study.recall(record, shelf) for name, record in records.items()}
+    while pieces := study.pieces(known):
+        with closing(work(study.settle, pieces, processes, study.doubt, progress, what)) as answered:
+            for _, answers in answered:
+                for name, answer in answers.items():
+                    record = study.record(name, answer, shelf)
+                    records[name] = shelf.keep(name, record, study.is_sure(answer))
+                    known[name] = answer
+    return Conducted(known, {name: shelf.with_paths(record) for name, record in records.items()})

@@ -1,0 +1,185 @@
+"""Where the evidence of a study is: files in a folder, with one file an answer, or inside the answers.
+
+An answer is kept in ``answers/NAME.json``, written whole, so that several runs can share a folder. It counts
+again only where its seal holds and it says what its evidence says (``evidence.journal``).
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
+from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
+from roadproof.files import make_folder, write_whole
+from roadproof.spec.library import Library
+
+INDEX = "index.json"
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked: ``schema`` is that of the index, ``said`` what the index says once for all answers.
+
+    ``more`` is what else an answer depends on.
+    """
+
+    schema: str
+    said: Mapping[str, Any]
+    more: Mapping[str, str]
+    library: Library
+
+    @property
+    def fingerprint(self) -> str:
+        """A short text that changes with the question, with all that the library says, with the version."""
+        asked = json.dumps([self.schema, dict(self.said), dict(self.more)], sort_keys=True)
+        library = [
+            repr(sorted(getattr(self.library, part.name).items()))
+            for part in fields(self.library)
+            if part.name not in ("sources", "files")
+        ]
+        texts = [version("roadproof"), asked, *library]
+        return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
+
+
+class Shelf:
+    """The evidence of one question in a folder, or in memory where there is none.
+
+    Raises ``UsageError`` where the folder holds another's.
+    """
+
+    def __init__(self, folder: Path | None, question: Question) -> None:
+        self.folder = folder
+        self.library = question.library
+        self.question = question.fingerprint
+        self.head = head_of(question.schema, self.question, question.said)
+        self.written: list[str] = []
+        self.names: set[str] = set()
+        if folder is not None:
+            make_folder(folder / ANSWERS)
+            if not (folder / HEAD).exists():
+                write_whole(folder / HEAD, _text(self.head))
+            keep_specifications(folder, question.library)
+
+    # --- evidence ------------------------------------------------------------------------------
+
+    def certificate(self, name: str, certificate: Certificate | None) -> str | dict[str, Any] | None:
+        """The name of a file with a certificate, or its data."""
+        return None if certificate is None else self._put(name, certificate_data(certificate))
+
+    def drive(self, name: str, drive: Judged | None) -> str | dict[str, Any] | None:
+        """The name of a drive file, or its data."""
+        return None if drive is None else self._put(name, drive.as_data())
+
+    def read_certificate(self, kept: object) -> Certificate | None:
+        """The inverse of ``certificate``. Raises ``InputError``."""
+        return None if kept is None else read_certificate_data(self._get(kept), str(kept)[:60])
+
+    def read_drive(self, kept: object) -> Judged | None:
+        """The inverse of ``drive``: judged again. Raises ``InputError``."""
+        return None if kept is None else Judged(read_drive(self._get(kept), str(kept)[:60]), self.library)
+
+    def _put(self, name: str, data: dict[str, Any]) -> str | dict[str, Any]:
+        if self.folder is None:
+            return data
+        write_whole(self.folder / name, _text(data))
+        self.written.append(name)
+        return name
+
+    def _get(self, kept: object) -> object:
+        if isinstance(kept, str) and self.folder is not None:
+            return read_json(self.folder / kept, LARGEST_EVIDENCE)
+        return kept
+
+    # --- answers -------------------------------------------------------------------------------
+
+    def answers(self, say: Callable[[str], None] | None = None) -> Iterator[tuple[str, Mapping[str, Any]]]:
+        """The answers that count, by name; of others ``say`` is told, and they are asked again."""
+        if self.folder is None:
+            return
+        try:
+            kept = read_kept(self.folder)
+        except InputError as error:
+            raise UsageError(self._foreign(f"they are not of this version ({error})")) from None
+        if kept is None or kept.head.content != self.head:
+            raise UsageError(self._foreign("to this one under another library"))
+        for line in answers_of(kept, self.library):
+            if line.fault and say is not None:
+                say(f"asked again, since a kept answer does not count: {line.fault}")
+            elif not line.fault and line.record is not None:
+                self.names |= set(line.record.texts("evidence"))
+                bare = {k: v for k, v in line.record.content.items() if k not in ("evidence", "seal")}
+                yield line.name, bare
+
+    def _foreign(self, otherwise: str) -> str:
+        return (
+            f"{self.folder} holds the answers to another question, or {otherwise}: name another folder with "
+            "--out, or remove it"
+        )
+
+    def keep(self, name: str, record: dict[str, Any], sure: bool) -> dict[str, Any]:
+        """Keep an answer under its seal, whose evidence has been written before, if it is ``sure``."""
+        names, self.written = self.written, []
+        self.names |= set(names)
+        if self.folder is not None and sure:
+            sealed = {"evidence": names, **record}
+            sealed["seal"] = seal_of(sealed, self.question, self.folder)
+            write_whole(self.folder / ANSWERS / f"{name}.json", _text(sealed))
+        return record
+
+    def with_paths(self, data: Any) -> Any:
+        """``data`` with the names of evidence files as paths from here."""
+        match data:
+            case dict():
+                return {k: self.with_paths(v) for k, v in data.items()}
+            case list():
+                return [self.with_paths(item) for item in data]
+            case str() if data in self.names and self.folder is not None:
+                return str(self.folder / data)
+            case _:
+                return data
+
+
+def write_index(folder: Path, data: Mapping[str, Any]) -> None:
+    """The index of a folder; files in it are named as they are from there. Raises ``InputError``."""
+    write_whole(folder / INDEX, _text(inside(dict(data), folder)))
+
+
+def inside(data: Any, folder: Path) -> Any:
+    """``data`` with paths into ``folder`` as they are from there, so that the folder may be moved."""
+    match data:
+        case dict():
+            return {key: inside(value, folder) for key, value in data.items()}
+        case list():
+            return [inside(item, folder) for item in data]
+        case str() if data.startswith(f"{folder}{os.sep}"):
+            return Path(data).relative_to(folder).as_posix()
+        case _:
+            return data
+
+
+def specification_names(library: Library) -> list[str]:
+    """The names of the users' specification files, as ``check`` looks for them beside the evidence."""
+    names = [Path(source.name).name for source in library.files]
+    if len(set(names)) < len(names):
+        told = ", ".join(source.name for source in library.files)
+        raise UsageError(f"two files of --spec have the same name: {told}")
+    return names
+
+
+def keep_specifications(folder: Path, library: Library) -> None:
+    """Copies of the users' specification files in a folder of evidence: ``check`` reads them there."""
+    for name, source in zip(specification_names(library), library.files, strict=True):
+        write_whole(folder / name, source.text.encode("utf-8"))
+
+
+def _text(data: Mapping[str, Any]) -> bytes:
+    return (json.dumps(data, indent=2, ensure_ascii=False) + "\n").encode("utf-8")

@@ -1,0 +1,41 @@
+"""Questions of tests as text: the doors of the command line, without one."""
+
+from roadproof.effort import Effort
+from roadproof.prove import prover
+from roadproof.prove.prover import Result
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification, bundled_library
+from roadproof.spec.scenarios import read_query
+from roadproof.witness.ask import Search
+from roadproof.witness.question import Means, Question, Setting, pose
+from roadproof.world.models import load_road, load_vehicle
+
+
+def prove(specification: Specification, claim: str, *options: object) -> Result:
+    """``prover.prove`` of a claim as text."""
+    return prover.prove(specification, read_claim(specification, claim), *options)  # type: ignore[arg-type]
+
+
+def search_for(
+    what: str,
+    set_name: str = "base",
+    means: Means | None = None,
+    count: int = 1,
+    road: str | None = None,
+    vehicles: dict[str, str] | None = None,
+    **setting: object,
+) -> Search:
+    """A search for a scenario by number, or a formula; ``setting`` as ``Setting``."""
+    specification = bundled_library().select(set_name)
+    scenario, query = read_query(specification, what)
+    place = Setting(
+        road=None if road is None else load_road(road),
+        vehicles={name: load_vehicle(model) for name, model in (vehicles or {}).items()},
+        **setting,  # type: ignore[arg-type]
+    )
+    return Search(specification, query, place, means or Means(effort=Effort(30)), count, scenario)
+
+
+def posed(search: Search) -> Question:
+    """The question of a search, with road, vehicles and grid in place."""
+    return pose(search.specification.library, search.query, search.setting)
