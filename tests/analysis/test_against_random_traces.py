@@ -10,14 +10,14 @@ from asking import prove
 from monitor.cases import random_traffic
 from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.redundancy import changes_of
-from roadproof.analysis.requests import applied
 from roadproof.effort import Effort
 from roadproof.logic.rewrite import with_values
 from roadproof.monitor import compile
 from roadproof.spec.bind import default_values
+from roadproof.spec.compose import equivalence, implication
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification, bundled_library
-from roadproof.spec.scenarios import Scenario, vehicles_of
+from roadproof.spec.scenarios import Scenario, applied
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()
@@ -35,20 +35,19 @@ def implications(home: Specification) -> Iterator[tuple[str, bool]]:
     sets = ("base", "extA", "ext")
     for n in (4, 8):
         for one, other in permutations(sets, 2):
-            above, below = (applied(Scenario(n, x), home, ("SV", "POV")) for x in (one, other))
-            yield f"{above} -> {below}", sets.index(one) < sets.index(other)
+            above, below = (applied(home, Scenario(n, x)) for x in (one, other))
+            yield implication(above, below).text, sets.index(one) < sets.index(other)
 
 
 def redundancies(home: Specification) -> Iterator[tuple[str, bool]]:
     """Of the condition on lanes in scenario 4, nothing is needed; of safety and the road, all."""
-    node = Scenario(4, home.set_name)
-    text = applied(node, home, vehicles_of(home, node))
-    for change in changes_of(read_claim(home, text).formula):
+    whole = applied(home, Scenario(4, home.set_name))
+    for change in changes_of(whole):
         if (
             change.part.startswith(("sameLane", "inAdjLanes", "initSafe", "roadSector", "laneKeep"))
             and change.value
         ):
-            yield f"{text} <-> ({change.changed})", change.part.startswith(("sameLane", "inAdjLanes"))
+            yield equivalence(whole, change.changed).text, change.part.startswith(("sameLane", "inAdjLanes"))
 
 
 def false_somewhere(home: Specification, claims: Sequence[str]) -> set[str]:

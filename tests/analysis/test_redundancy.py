@@ -9,36 +9,36 @@ from hypothesis import given, settings
 
 from judge.cases import drives
 from roadproof.analysis import redundancy
-from roadproof.analysis.redundancy import Change, Finding, _Examining, changes_of, learn
-from roadproof.analysis.requests import Asked, Request
-from roadproof.analysis.requests import ask as ask_for_drive
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.redundancy import Change, Finding, Learned, _Examining, changes_of
 from roadproof.cli.main import main
 from roadproof.effort import Effort
-from roadproof.evidence.certificate import read_certificate, refusal
-from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
-from roadproof.logic.formula import Formula
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import Scenario
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import Scenario, without_sectors
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Outcome
+from roadproof.witness.ask import Outcome, Search
+from roadproof.witness.ask import ask as ask_for_drive
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 
 BASE = bundled_library().select("base")
+BASIS = Basis(BASE, effort=Effort(30))
 
 
 def changes(text: str, whole: bool = False) -> list[Change]:
-    return list(changes_of(read_claim(BASE, text).formula, whole))
+    return list(changes_of(read_claim(BASE, text), whole))
 
 
 def test_every_occurrence_is_changed_to_both_values() -> None:
     found = changes("laneKeep(SV,L) U not aheadOf(SV,POV)")
-    texts = {x.changed for x in found}
+    texts = {x.changed.text for x in found}
     assert texts == {
         "true U not aheadOf(SV, POV)",
         "false U not aheadOf(SV, POV)",
@@ -47,7 +47,7 @@ def test_every_occurrence_is_changed_to_both_values() -> None:
         "laneKeep(SV, L) U not true",
         "laneKeep(SV, L) U not false",
     }
-    weaker = {x.changed for x in found if x.weakens}
+    weaker = {x.changed.text for x in found if x.weakens}
     assert weaker == {
         "true U not aheadOf(SV, POV)",
         "laneKeep(SV, L) U true",
@@ -65,42 +65,38 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
 
 def decide(number: int, part: str, value: bool) -> Finding:
     """The finding on the first change of ``part`` in a scenario of base."""
-    examining = _Examining(Asked(effort=Effort(30)), Scenario(number, "base"))
-    found = changes_of(read_claim(BASE, examining.text).formula)
+    examining = _Examining(BASIS, Scenario(number, "base"))
+    found = changes_of(examining.query)
     change = next(x for x in found if x.part == part and x.value is value)
     return examining._decide(change)
 
 
-def test_adjacent_lanes_are_redundant_in_scenario_3(tmp_path: Path) -> None:
+def test_adjacent_lanes_are_redundant_in_scenario_3() -> None:
     part = "atLane(SV, L) and (some M in adjacentLanes(L): atLane(POV, M))"
     finding = decide(3, part, False)
     assert finding.verdict is Verdict.PROVED
     assert finding.certificate is not None
-    path = tmp_path / "certificate.json"
-    path.write_text(finding.certificate)
-    certificate = read_certificate(path)
-    assert certificate.claim.startswith("scenario_3(SV,POV,L) <-> (")
-    assert refusal(certificate, bundled_library(), ask) is None
+    assert finding.certificate.claim.startswith("scenario_3(SV, POV, L) <-> ")
+    assert refusal(finding.certificate, bundled_library(), ask) is None
 
 
 def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
     found = [x for x in changes("scenario_8(SV,POV,L)") if x.part == "aheadOf(SV, POV)" and not x.value]
-    examining = _Examining(Asked(effort=Effort(30)), Scenario(8, "base"))
+    examining = _Examining(BASIS, Scenario(8, "base"))
     examining._collect()
     finding = examining._decide(found[0])
     assert finding.verdict is Verdict.REFUTED
     assert finding.drive is not None
-    file = read_drive(dict(finding.drive), "drive")
-    assert file.formula == f"scenario_8(SV,POV,L) and not ({found[0].changed})"
-    assert judge_file(file, bundled_library()).accepted
+    assert finding.drive.file.formula == f"scenario_8(SV, POV, L) and not ({found[0].changed.text})"
+    assert judge_file(finding.drive.file, bundled_library()).accepted
 
 
 @pytest.fixture
 def few_changes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only the changes of one part of scenarios 3 and 11, so that a run takes seconds."""
 
-    def few(formula: Formula, whole: bool = False) -> Iterator[Change]:
-        yield from (x for x in changes_of(formula, whole) if x.part.startswith(("sameLane", "aheadOf")))
+    def few(query: Query, whole: bool = False) -> Iterator[Change]:
+        yield from (x for x in changes_of(query, whole) if x.part.startswith(("sameLane", "aheadOf")))
 
     monkeypatch.setattr(redundancy, "changes_of", few)
 
@@ -110,9 +106,9 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
 ) -> None:
     searched: list[str] = []
 
-    def counted(request: Request) -> Outcome:
-        searched.append(request.what)
-        return ask_for_drive(request)
+    def counted(search: Search) -> Outcome:
+        searched.append(search.query.text)
+        return ask_for_drive(search)
 
     monkeypatch.setattr(redundancy, "ask", counted)
     out = tmp_path / "out"
@@ -127,9 +123,7 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
     assert main(["check", str(out), "--jobs", "1"]) == 0
     capsys.readouterr()
 
-    journal = out / "answers.jsonl"
-    question, first, _ = journal.read_text().splitlines(keepends=True)
-    journal.write_text(question + first)
+    (out / "answers/scenario-11.json").unlink()
     searched.clear()
     assert main(line) == 0
     assert json.loads(capsys.readouterr().out)["verdicts"] == whole
@@ -137,12 +131,11 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
 
 
 def test_what_was_looked_for_in_vain_is_not_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = Asked(effort=Effort(30))
     (change,) = (x for x in changes("scenario_3(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
-    learned = learn(asked, [], [change.changed])
+    learned = Learned(vain=frozenset({without_sectors(change.changed.formula)}))
     monkeypatch.setattr(redundancy, "ask", lambda request: pytest.fail("searched again"))
     (twin,) = (x for x in changes("scenario_11(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
-    finding = _Examining(asked, Scenario(11, "base"), learned)._decide(twin)
+    finding = _Examining(BASIS, Scenario(11, "base"), learned)._decide(twin)
     assert finding.verdict is Verdict.REFUTED
     assert finding.trace is not None
     assert "another road" in finding.reason
@@ -152,13 +145,14 @@ def test_what_motion_makes_redundant_is_proved_for_motion() -> None:
     """SV need not be asked to keep its lane until it or POV1 has left it: one of them leaves first."""
     part = "laneKeep(SV, L) U not sameLane(SV, POV1, L)"
     (change,) = (x for x in changes("scenario_2(SV,POV1,POV2,L)") if x.part == part and x.value)
-    finding = _Examining(Asked(proof=10.0), Scenario(2, "base"))._redundant_in_motion(change)
+    finding = _Examining(Basis(BASE, proof=10.0), Scenario(2, "base"))._redundant_in_motion(change)
     assert finding is not None
     assert finding.verdict is Verdict.PROVED
-    assert finding.assuming.count(" U not atLane(") == 3
-    assert finding.claim.count(finding.assuming) == 2
+    assert finding.assuming is not None
+    assert finding.assuming.text.count(" U not atLane(") == 3
+    assert finding.claim.text.count(finding.assuming.text) == 2
     other = next(x for x in changes("scenario_8(SV,POV,L)") if x.part == "atLane(POV, L)" and not x.value)
-    assert _Examining(Asked(), Scenario(8, "base"))._redundant_in_motion(other) is None
+    assert _Examining(Basis(BASE), Scenario(8, "base"))._redundant_in_motion(other) is None
 
 
 @settings(deadline=None, derandomize=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
-from roadproof.evidence.judged import Judged, Ruling, judge_file, times_data
+from roadproof.evidence.judged import Judged, RejectedError, Ruling, judge_file, times_data
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
@@ -39,7 +39,6 @@ def placed(
     as they are and moved along so that a zone begins or ends under one of the vehicles at time 0;
     with ``roads`` only these, whatever zones they have.
     """
-    file = replace(file, formula=query.text, scenario=None)
     values = values_with(library, file.values)
     now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
     chosen = _roads(file, zones_of(query.formula)) if roads is None else _with_moved(roads, file.drive)
@@ -48,10 +47,19 @@ def placed(
             continue
         if not judge(bind(now, road, file.lanes, values), file.drive).holds:
             continue
-        here = replace(file, road=road)
-        if judge_file(here, library).accepted:
-            return Judged(here, library)
+        judged = judged_as(replace(file, road=road), query, library)
+        if judged is not None:
+            return judged
     return None
+
+
+def judged_as(file: DriveFile, query: Query, library: Library) -> Judged | None:
+    """The drive where it is, as one of ``query``; None where the judge rejects that."""
+    here = replace(file, formula=query.text, scenario=None)
+    try:
+        return Judged(here, library)
+    except RejectedError:
+        return None
 
 
 def show_elsewhere(

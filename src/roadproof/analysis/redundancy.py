@@ -5,30 +5,42 @@ needed where a judged drive tells the two apart. Drives found for one question a
 and those for one scenario on the scenarios that differ from it in the road sector only.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
-from roadproof.analysis.placing import Shown, as_data, show_elsewhere
-from roadproof.analysis.requests import Asked, Request, applied, ask
-from roadproof.effort import Effort, Late
-from roadproof.evidence.certificate import to_json
-from roadproof.evidence.drive_file import read_drive
-from roadproof.evidence.judged import judge_file
-from roadproof.evidence.refutation import trace_data
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.placing import judged_as, placed
+from roadproof.effort import Late
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.refutation import Countermodel, trace_data
+from roadproof.evidence.traces import read_trace
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.prove.prover import prove
-from roadproof.spec.bind import bind, default_values
+from roadproof.spec.bind import bind
+from roadproof.spec.compose import both, equivalence, implication, negation, of_parts
 from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import Scenario, vehicles_of, without_sectors
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import (
+    Scenario,
+    applied,
+    is_sector,
+    leaves_at_once,
+    likes_of,
+    vehicles_of,
+    without_sectors,
+)
+from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
-from roadproof.witness.question import Means, usual_road
+from roadproof.witness.ask import Search, ask
+from roadproof.witness.question import usual_road
 
+SCHEMA = "roadproof/redundancy/1"
 # How many drives are tried on other roads for a change inside a road sector.
 MOVED = 5
 
@@ -43,7 +55,7 @@ class Change:
     where: tuple[str, ...]
     part: str
     value: bool
-    changed: str
+    changed: Query
     weakens: bool
 
 
@@ -56,20 +68,27 @@ class Finding:
     ``late``: cut off by the clock, so that nothing was looked for in vain.
     """
 
-    node: Scenario
     change: Change
     verdict: Verdict
-    claim: str
-    certificate: str | None = None
-    drive: Mapping[str, Any] | None = None
-    trace: Mapping[str, Any] | None = None
+    claim: Query
+    certificate: Certificate | None = None
+    drive: Judged | None = None
+    trace: Countermodel | None = None
     reason: str = ""
-    assuming: str = ""
+    assuming: Query | None = None
     late: bool = False
 
+    @property
+    def redundant(self) -> bool | None:
+        """Whether the part could be left out; None where it is in doubt."""
+        return None if self.verdict is Verdict.UNKNOWN else self.verdict is Verdict.PROVED
 
-def changes_of(formula: Formula, whole: bool = False) -> Iterator[Change]:
-    """Every occurrence of a part of ``formula``, but itself, by true and by false, from the outside in.
+
+Findings = tuple[Finding, ...]
+
+
+def changes_of(query: Query, whole: bool = False) -> Iterator[Change]:
+    """Every occurrence of a part of ``query``, but itself, by true and by false, from the outside in.
 
     A definition of one instant that compares numbers, or uses no other one, is one part unless
     ``whole``: ``rssViolation``, ``aheadOf``, ``atLane``.
@@ -91,14 +110,14 @@ def changes_of(formula: Formula, whole: bool = False) -> Iterator[Change]:
         if not root:
             shown = text(as_syntax(current))
             for value in (True, False):
-                changed = text(as_syntax(rebuild(f.Truth(value))))
+                changed = of_parts(query, [rebuild(f.Truth(value))])
                 yield Change(where, shown, value, changed, value == positive)
         parts = () if isinstance(current, f.Named) else f.children(current)
         for place, part in enumerate(parts):
             inside = _inside(current, parts, place, rebuild)
             yield from walk(part, inside, where, positive != isinstance(current, f.Not), False)
 
-    yield from walk(formula, lambda x: x, (), True, True)
+    yield from walk(query.formula, lambda x: x, (), True, True)
 
 
 def _inside(
@@ -122,159 +141,236 @@ class Learned:
     By the changed formula, without sectors: drives that told it apart; ``vain``: looked for in vain.
     """
 
-    drives: Mapping[Formula, Shown] = field(default_factory=dict)
+    drives: Mapping[Formula, Judged] = field(default_factory=dict)
     vain: frozenset[Formula] = frozenset()
 
 
-def examine(
-    asked: Asked, node: Scenario, whole: bool = False, learned: Learned = Learned()
-) -> tuple[Finding, ...]:
-    """The findings on every change of a scenario, in the order of ``changes_of``."""
-    return tuple(_Examining(asked, node, learned).run(whole))
-
-
-def learn(asked: Asked, drives: Iterable[tuple[str, Shown]], vain: Iterable[str]) -> Learned:
-    """What the findings on one scenario teach about its likes; changed formulas are given as text."""
-    _, specification = asked.load()
+def learn(findings: Findings) -> Learned:
+    """What the findings on one scenario teach about its likes."""
+    vain = (x for x in findings if x.drive is None and not x.redundant and not x.late)
     return Learned(
-        {_key(specification, changed): shown for changed, shown in drives},
-        frozenset(_key(specification, changed) for changed in vain),
+        {_key(x.change): x.drive for x in findings if x.drive is not None},
+        frozenset(_key(x.change) for x in vain),
     )
 
 
+def _key(change: Change) -> Formula:
+    return without_sectors(change.changed.formula)
+
+
 def _in_sector(change: Change) -> bool:
-    return any(name.startswith("roadSector_") for name in (*change.where, change.part))
+    return any(is_sector(name) for name in (*change.where, change.part))
 
 
-def _key(specification: Specification, changed: str) -> Formula:
-    return without_sectors(read_claim(specification, changed).formula)
+@dataclass(frozen=True)
+class Examined:
+    """A scenario whose changes are to be decided, with what its likes have taught."""
+
+    scenario: Scenario
+    learned: Learned = Learned()
+
+
+@dataclass(frozen=True)
+class Redundancy:
+    """The question which parts of scenarios are redundant, as a ``study.frame.Study``.
+
+    ``whole``: also the parts of simple predicates (``changes_of``).
+    """
+
+    basis: Basis
+    numbers: tuple[int, ...]
+    whole: bool = False
+
+    @property
+    def question(self) -> Question:
+        said = {"set": self.basis.specification.set_name, **self.basis.said()}
+        more = {"whole": str(self.whole), "effort": f"{self.basis.effort.units:g}"}
+        return Question(SCHEMA, said, more, self.basis.library)
+
+    def pieces(self, known: Mapping[str, Findings]) -> Sequence[Examined]:
+        """One scenario of each kind comes first; those that differ in their road sector learn from it."""
+        first: dict[int, int] = {}
+        for number in self.numbers:
+            first.setdefault(self._likes[number], number)
+        left = [n for n in self.numbers if name_of(n) not in known]
+        leaders = [n for n in left if n in first.values()]
+        if leaders:
+            return [Examined(self._scenario(n)) for n in leaders]
+        taught = {kind: learn(known[name_of(leader)]) for kind, leader in first.items()} if left else {}
+        return [Examined(self._scenario(n), taught[self._likes[n]]) for n in left]
+
+    def _scenario(self, number: int) -> Scenario:
+        return Scenario(number, self.basis.specification.set_name)
+
+    @cached_property
+    def _likes(self) -> dict[int, int]:
+        return likes_of(self.basis.specification)
+
+    def settle(self, piece: Examined) -> dict[str, Findings]:
+        examining = _Examining(self.basis, piece.scenario, piece.learned)
+        return {name_of(piece.scenario.number): tuple(examining.run(self.whole))}
+
+    def doubt(self, piece: Examined, reason: str) -> dict[str, Findings]:
+        examining = _Examining(self.basis, piece.scenario)
+        changes = changes_of(examining.query, self.whole)
+        return {name_of(piece.scenario.number): tuple(examining.doubt(x, reason) for x in changes)}
+
+    def is_sure(self, answer: Findings) -> bool:
+        return all(x.verdict is not Verdict.UNKNOWN for x in answer)
+
+    def record(self, name: str, answer: Findings, shelf: Shelf) -> dict[str, Any]:
+        number = int(name.rpartition("-")[2])
+        verdicts = [
+            {
+                "scenario": number,
+                "part": x.change.part,
+                "where": list(x.change.where),
+                "as": x.change.value,
+                "changed": x.change.changed.text,
+                "redundant": x.redundant,
+                "verdict": str(x.verdict),
+                "assuming": "" if x.assuming is None else x.assuming.text,
+                "claim": x.claim.text,
+                "certificate": shelf.certificate(f"redundant-{number:02}-{place:03}.json", x.certificate),
+                "drive": shelf.drive(f"needed-{number:02}-{place:03}.json", x.drive),
+                "trace": None if x.trace is None else trace_data(x.trace),
+                "reason": x.reason,
+                "late": x.late,
+            }
+            for place, x in enumerate(answer, 1)
+        ]
+        return {"scenario": number, "verdicts": verdicts}
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> Findings:
+        examining = _Examining(self.basis, self._scenario(record["scenario"]))
+        changes = changes_of(examining.query, self.whole)
+        return tuple(
+            self._recalled(change, said, shelf)
+            for change, said in zip(changes, record["verdicts"], strict=True)
+        )
+
+    def _recalled(self, change: Change, said: Mapping[str, Any], shelf: Shelf) -> Finding:
+        specification = self.basis.specification
+        return Finding(
+            change,
+            Verdict(said["verdict"]),
+            read_claim(specification, said["claim"]),
+            shelf.read_certificate(said["certificate"]),
+            shelf.read_drive(said["drive"]),
+            None if said["trace"] is None else read_trace(said["trace"], change.part),
+            said["reason"],
+            read_claim(specification, said["assuming"]) if said["assuming"] else None,
+            said["late"],
+        )
+
+
+def name_of(number: int) -> str:
+    """Under which name the findings on a scenario are kept."""
+    return f"scenario-{number:02}"
 
 
 class _Examining:
-    def __init__(self, asked: Asked, node: Scenario, learned: Learned = Learned()) -> None:
-        self.asked = asked
-        self.library, self.specification = asked.load()
-        self.values = {**default_values(self.library), **asked.values}
-        self.node = node
-        self.text = applied(node, self.specification, vehicles_of(self.specification, node))
+    def __init__(self, basis: Basis, scenario: Scenario, learned: Learned = Learned()) -> None:
+        self.basis = basis
+        self.scenario = scenario
+        self.query = applied(basis.specification, scenario)
         self.learned = learned
-        self.mine: list[Shown] = []
+        self.mine: list[Judged] = []
 
     def run(self, whole: bool) -> Iterator[Finding]:
-        formula = read_claim(self.specification, self.text).formula
-        changes = list(changes_of(formula, whole))
-        known: dict[str, Finding] = {}
+        """The findings on every change, in the order of ``changes_of``."""
+        changes = list(changes_of(self.query, whole))
+        known: dict[Formula, Finding] = {}
         try:
             self._collect()
         except Late as late:
-            known = {x.changed: self._doubt(x, late) for x in changes}
+            known = {x.changed.formula: self.doubt(x, str(late)) for x in changes}
         for change in changes:
-            if change.changed not in known:
+            if change.changed.formula not in known:
                 try:
-                    known[change.changed] = self._decide(change)
+                    known[change.changed.formula] = self._decide(change)
                 except Late as late:
-                    known[change.changed] = self._doubt(change, late)
-            yield replace(known[change.changed], change=change)
+                    known[change.changed.formula] = self.doubt(change, str(late))
+            yield replace(known[change.changed.formula], change=change)
 
-    def _doubt(self, change: Change, late: Late) -> Finding:
-        claim = f"{self.text} <-> ({change.changed})"
-        return Finding(self.node, change, Verdict.UNKNOWN, claim, reason=str(late), late=True)
+    def doubt(self, change: Change, reason: str) -> Finding:
+        """What is said of a change that nothing is known of."""
+        claim = equivalence(self.query, change.changed)
+        return Finding(change, Verdict.UNKNOWN, claim, reason=reason, late=True)
 
     def _collect(self) -> None:
         """Drives of this scenario, and drives for earlier ones put on a road of its sector."""
-        distinct = {repr(shown.data["vehicles"]): shown for shown in self.learned.drives.values()}
-        for shown in distinct.values():
-            placed = show_elsewhere(shown, self.text, self.library)
-            if placed is not None:
-                self.mine.append(placed)
+        distinct = {repr(x.file.drive): x for x in self.learned.drives.values()}
+        for judged in distinct.values():
+            here = placed(judged.file, self.query, self.basis.library)
+            if here is not None:
+                self.mine.append(here)
         if not self.mine:
-            found = self._ask(self.text)
-            if found is not None:
-                self.mine.append(found)
+            self.mine += ask(self._search(self.query)).drives
 
-    def _candidates(self, change: Change) -> Iterator[tuple[Shown, bool]]:
+    def _search(self, query: Query) -> Search:
+        return self.basis.search(query, usual_road(self.query.formula))
+
+    def _candidates(self, change: Change) -> Iterator[tuple[Judged, bool]]:
         """Known drives that may tell a change apart, and whether they are to be tried on other roads too."""
-        yield from ((shown, False) for shown in self.mine)
+        yield from ((judged, False) for judged in self.mine)
         if _in_sector(change):
-            yield from ((shown, True) for shown in self.mine[:MOVED])
+            yield from ((judged, True) for judged in self.mine[:MOVED])
         else:
-            twin = self.learned.drives.get(_key(self.specification, change.changed))
+            twin = self.learned.drives.get(_key(change))
             yield from [] if twin is None else [(twin, True)]
 
     def _decide(self, change: Change) -> Finding:
-        apart = f"{self.text} and not ({change.changed})"
+        apart = both(self.query, negation(change.changed))
         if change.weakens:
-            apart = f"({change.changed}) and not {self.text}"
-        for shown, elsewhere in self._candidates(change):
-            told = self._tells_apart(shown, apart, elsewhere)
+            apart = both(change.changed, negation(self.query))
+        for judged, elsewhere in self._candidates(change):
+            told = self._tells_apart(judged, apart, elsewhere)
             if told is not None:
-                return Finding(self.node, change, Verdict.REFUTED, apart, None, told.data)
-        claim = f"{self.text} <-> ({change.changed})"
-        result = prove(
-            self.specification,
-            read_claim(self.specification, claim),
-            self._proof(),
-            f"redundancy-{self.node}",
-        )
-        if result.verdict in (Verdict.PROVED, Verdict.VACUOUS) and result.certificate is not None:
-            return Finding(self.node, change, Verdict.PROVED, claim, to_json(result.certificate))
+                return Finding(change, Verdict.REFUTED, apart, drive=told)
+        claim, label = equivalence(self.query, change.changed), f"redundancy-{self.scenario}"
+        result = self.basis.proof_of(claim, label=label)
+        if result.holds and result.certificate is not None:
+            return Finding(change, Verdict.PROVED, claim, result.certificate)
         moving = self._redundant_in_motion(change)
         if moving is not None:
             return moving
-        vain = not _in_sector(change) and _key(self.specification, change.changed) in self.learned.vain
-        found = None if vain else self._ask(apart)
-        if found is not None:
-            self.mine.append(found)
-            return Finding(self.node, change, Verdict.REFUTED, apart, None, found.data)
-        within = (
-            f"no drive was found with {self.asked.effort.units:g} units of work, {self.asked.horizon} s ahead"
-        )
+        vain = not _in_sector(change) and _key(change) in self.learned.vain
+        drives = () if vain else ask(self._search(apart)).drives
+        if drives:
+            self.mine.append(drives[0])
+            return Finding(change, Verdict.REFUTED, apart, drive=drives[0])
+        units, horizon = self.basis.effort.units, self.basis.horizon
+        within = f"no drive was found with {units:g} units of work, {horizon} s ahead"
         within += ", for the same scenario on another road" if vain else ""
         if result.countermodel is not None:
-            trace = trace_data(result.countermodel)
-            return Finding(self.node, change, Verdict.REFUTED, claim, trace=trace, reason=within)
-        reason = f"{within}, and no proof with {self.asked.proof:g}: {result.reason}"
-        return Finding(self.node, change, Verdict.UNKNOWN, claim, reason=reason)
+            return Finding(change, Verdict.REFUTED, claim, trace=result.countermodel, reason=within)
+        reason = f"{within}, and no proof with {self.basis.proof:g}: {result.reason}"
+        return Finding(change, Verdict.UNKNOWN, claim, reason=reason)
 
     def _redundant_in_motion(self, change: Change) -> Finding | None:
         """A proof for traces on which a vehicle that leaves L has a first moment outside it.
 
         Every drive is one: it does not jump, and a lane is an open set, since touching is not occupying.
         """
-        vehicles = vehicles_of(self.specification, self.node)
-        assuming = " and ".join(f"((atLane({x},L) U not atLane({x},L)) or G atLane({x},L))" for x in vehicles)
-        there = f"({assuming} and {self.text} -> ({change.changed}))"
-        back = f"({assuming} and ({change.changed}) -> {self.text})"
-        claim, label = f"{there} and {back}", f"redundancy-{self.node}"
-        result = prove(self.specification, read_claim(self.specification, claim), self._proof(), label)
+        vehicles = vehicles_of(self.basis.specification, self.scenario)
+        moving = [leaves_at_once(self.basis.specification, vehicle) for vehicle in vehicles]
+        there = implication(both(*moving, self.query), change.changed)
+        back = implication(both(*moving, change.changed), self.query)
+        claim, label = both(there, back), f"redundancy-{self.scenario}"
+        result = self.basis.proof_of(claim, label=label)
         if result.verdict is not Verdict.PROVED or result.certificate is None:
             return None
-        certificate = to_json(result.certificate)
-        return Finding(self.node, change, Verdict.PROVED, claim, certificate, assuming=assuming)
+        return Finding(change, Verdict.PROVED, claim, result.certificate, assuming=both(*moving))
 
-    def _tells_apart(self, shown: Shown, formula: str, elsewhere: bool) -> Shown | None:
-        """The drive judged on ``formula`` where it is, or also on roads of other zones."""
-        file = replace(read_drive(dict(shown.data), "drive"), formula=formula, scenario=None)
-        query = read_claim(self.specification, formula)
+    def _tells_apart(self, judged: Judged, query: Query, elsewhere: bool) -> Judged | None:
+        """The drive judged on ``query`` where it is, or also on roads of other zones."""
+        file, library = judged.file, self.basis.library
         if not set(query.vehicles) <= set(file.drive.vehicles):
             return None
         if elsewhere:
-            return show_elsewhere(shown, formula, self.library)
-        values = {**self.values, **file.values}
+            return placed(file, query, library)
+        values = self.basis.all_values() | dict(file.values)
         if not judge(bind(query.formula, file.road, file.lanes, values), file.drive).holds:
             return None
-        ruling = judge_file(file, self.library)
-        return Shown(formula, as_data(file, ruling)) if ruling.accepted else None
-
-    def _proof(self) -> Effort:
-        return self.asked.effort.of(self.asked.proof)
-
-    def _ask(self, formula: str) -> Shown | None:
-        means = Means("smooth", effort=self.asked.effort, explain=False)
-        options, specs, horizon = self.asked.options, self.asked.specs, self.asked.horizon
-        road = usual_road(read_claim(self.specification, self.text).formula).name
-        request = Request(
-            formula, self.asked.sets[0], options, specs, self.values, road, horizon=horizon, means=means
-        )
-        drives = ask(request).drives
-        return Shown(formula, drives[0].as_data()) if drives else None
+        return judged_as(file, query, library)

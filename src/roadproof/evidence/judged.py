@@ -60,6 +60,10 @@ def judge_file(file: DriveFile, library: Library) -> Ruling:
     return Ruling(judgement, "")
 
 
+class RejectedError(InputError):
+    """The judge rejects a drive file, for this reason."""
+
+
 @dataclass(frozen=True, init=False)
 class Judged:
     """A drive file that stands: its formula holds on its drive. Only judging makes one.
@@ -73,10 +77,10 @@ class Judged:
     natural: bool | None
 
     def __init__(self, file: DriveFile, library: Library, natural: bool | None = None) -> None:
-        """Raises ``InputError`` where the judge rejects the file."""
+        """Raises ``RejectedError`` where the judge rejects the file."""
         ruling = judge_file(file, library)
         if not ruling.accepted or ruling.judgement is None:
-            raise InputError(ruling.reason)
+            raise RejectedError(ruling.reason)
         object.__setattr__(self, "file", file)
         object.__setattr__(self, "judgement", ruling.judgement)
         object.__setattr__(self, "natural", natural)

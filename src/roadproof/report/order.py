@@ -1,36 +1,55 @@
-"""The Hasse diagram of scenarios under implication: DOT text, and a picture."""
+"""The order of scenarios under implication: in words, as DOT text, and as a Hasse diagram."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
+from roadproof.analysis.order.deciding import Edge
+from roadproof.analysis.order.kinds import Kind
+from roadproof.analysis.order.study import Order
 from roadproof.report.figures import as_bytes, make_figure
+from roadproof.spec.scenarios import Scenario
 
 
-def as_dot(kinds: Sequence[Sequence[str]], edges: Sequence[Mapping[str, Any]]) -> str:
+def as_text(order: Order, seconds: float) -> str:
+    """The edges, the scenarios with one formula, the doubts; the rest in numbers."""
+    lines = [f"{edge.above} -> {edge.below}" for edge in order.edges]
+    shared = [kind for kind in order.kinds if len(kind.nodes) > 1]
+    lines += [f"one formula: {', '.join(map(str, kind.nodes))}" for kind in shared]
+    lines += [f"in doubt: {x.above} -> {x.below}: {x.reason}" for x in order.doubts]
+    count = sum(len(kind.nodes) for kind in order.kinds)
+    lines.append(
+        f"{count} scenarios, {len(order.kinds)} formulas: {len(order.edges)} edges proved, "
+        f"{len(order.missing)} implications refuted by {len(order.drives)} drives, "
+        f"{len(order.doubts)} in doubt, in {seconds:.1f} s"
+    )
+    return "\n".join(lines)
+
+
+def as_dot(order: Order) -> str:
     """A graph in which an arrow leads from what implies to what is implied; one box a formula."""
-    number = {kind[0]: k for k, kind in enumerate(kinds)}
+    number = {kind.node: k for k, kind in enumerate(order.kinds)}
     lines = ["digraph order {", "  rankdir=BT;", "  node [shape=box, fontsize=10];"]
-    lines += [f'  k{k} [label="{_label(kind)}"];' for k, kind in enumerate(kinds)]
-    lines += [f"  k{number[e['from']]} -> k{number[e['to']]};" for e in edges]
+    labels = ["\\n".join(map(str, kind.nodes)) for kind in order.kinds]
+    lines += [f'  k{k} [label="{label}"];' for k, label in enumerate(labels)]
+    lines += [f"  k{number[edge.above]} -> k{number[edge.below]};" for edge in order.edges]
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def draw_order(
-    kinds: Sequence[Sequence[str]], edges: Sequence[Mapping[str, Any]], title: str
-) -> dict[str, bytes]:
+def draw_order(order: Order, title: str) -> dict[str, bytes]:
     """The diagram as ``{"png": …, "svg": …}``: a column for each scenario's number, weaker ones higher."""
+    kinds, edges = order.kinds, order.edges
     height = _heights(kinds, edges)
-    columns = sorted({_number(kind[0]) for kind in kinds})
+    columns = sorted({kind.node.number for kind in kinds})
     figure, (axes,) = make_figure([1.2 + 0.7 * (max(height.values()) + 1)], width=0.55 * len(columns) + 1)
     place = _places(kinds, height, columns)
     for edge in edges:
-        (x1, y1), (x2, y2) = place[edge["from"]], place[edge["to"]]
+        (x1, y1), (x2, y2) = place[edge.above], place[edge.below]
         arrow = {"arrowstyle": "->", "lw": 0.8, "shrinkA": 8, "shrinkB": 8, "color": "#444444"}
         axes.annotate("", (x2, y2), (x1, y1), arrowprops=arrow)
     for kind in kinds:
-        x, y = place[kind[0]]
+        x, y = place[kind.node]
         box = {"boxstyle": "round,pad=0.2", "fc": "#eef2f5", "ec": "#667788", "lw": 0.6}
-        axes.text(x, y, "\n".join(kind), fontsize=5, ha="center", va="center", bbox=box)
+        names = "\n".join(map(str, kind.nodes))
+        axes.text(x, y, names, fontsize=5, ha="center", va="center", bbox=box)
     axes.set_xlim(-0.7, len(columns) - 0.3)
     axes.set_ylim(-0.5, max(y for _, y in place.values()) + 0.5)
     axes.axis("off")
@@ -38,31 +57,23 @@ def draw_order(
     return as_bytes(figure)
 
 
-def _label(kind: Sequence[str]) -> str:
-    return "\\n".join(kind)
-
-
-def _number(name: str) -> int:
-    return int(name.partition("@")[0])
-
-
-def _heights(kinds: Sequence[Sequence[str]], edges: Sequence[Mapping[str, Any]]) -> dict[str, int]:
+def _heights(kinds: Sequence[Kind], edges: Sequence[Edge]) -> dict[Scenario, int]:
     """The longest chain of edges below each kind; a circle of equivalent ones is cut at the bound."""
-    height = {kind[0]: 0 for kind in kinds}
+    height = {kind.node: 0 for kind in kinds}
     for _ in kinds:
         for edge in edges:
-            height[edge["to"]] = min(max(height[edge["to"]], height[edge["from"]] + 1), len(kinds))
+            height[edge.below] = min(max(height[edge.below], height[edge.above] + 1), len(kinds))
     return height
 
 
 def _places(
-    kinds: Sequence[Sequence[str]], height: Mapping[str, int], columns: Sequence[int]
-) -> dict[str, tuple[float, float]]:
+    kinds: Sequence[Kind], height: Mapping[Scenario, int], columns: Sequence[int]
+) -> dict[Scenario, tuple[float, float]]:
     """A place for each kind; of two that would have the same one, the later is put higher."""
-    place: dict[str, tuple[float, float]] = {}
+    place: dict[Scenario, tuple[float, float]] = {}
     for kind in kinds:
-        spot = (float(columns.index(_number(kind[0]))), float(height[kind[0]]))
+        spot = (float(columns.index(kind.node.number)), float(height[kind.node]))
         while spot in place.values():
             spot = (spot[0], spot[1] + 0.5)
-        place[kind[0]] = spot
+        place[kind.node] = spot
     return place

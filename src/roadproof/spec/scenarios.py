@@ -231,6 +231,12 @@ def in_lane(specification: Specification, vehicle: str, lane: str = LANE) -> Que
     return apply_definition(specification, "atLane", (vehicle, lane))
 
 
+def leaves_at_once(specification: Specification, vehicle: str) -> Query:
+    """A vehicle that leaves L has a first moment outside it, as all that move without jumps have."""
+    inside = f"atLane({vehicle}, {LANE})"
+    return read_claim(specification, f"({inside} U not {inside}) or G {inside}")
+
+
 def alone_in_lane(specification: Specification, vehicle: str) -> Query:
     """A vehicle occupies no lanelet of a lane beside L."""
     return read_claim(specification, f"every M in adjacentLanes({LANE}): not atLane({vehicle}, M)")

@@ -1,4 +1,4 @@
-"""Which scenarios imply which: every implication proved, every other one refuted by a drive.
+"""One family of scenarios: every implication from it proved, or refuted by a drive.
 
 ``a -> b`` is about all traces, roads, lanes L and parameter values, with the same roles. Where one of
 the two has more vehicles, the other may have any of its POVs: there is an edge if one such reading is
@@ -7,28 +7,26 @@ one road sector is put on roads of the others. Families of nodes that differ in 
 nothing with other families, so that each can be decided by itself.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import permutations
-from typing import Any
 
-from roadproof.analysis.order.kinds import Kind, text_of
-from roadproof.analysis.placing import Shown, as_data, show_elsewhere
-from roadproof.analysis.requests import Asked, Request, applied, ask
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.order.kinds import Kind
+from roadproof.analysis.placing import judged_as, placed
 from roadproof.effort import Late
-from roadproof.evidence.certificate import to_json
-from roadproof.evidence.drive_file import DriveFile, read_drive
-from roadproof.evidence.judged import judge_file
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged
 from roadproof.judge.exact import judge
-from roadproof.prove.prover import prove
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification
+from roadproof.spec.bind import bind
+from roadproof.spec.compose import both, implication, negation
 from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, vehicles_of
+from roadproof.spec.scenarios import Scenario, applied, vehicles_of
 from roadproof.verdict import Verdict
-from roadproof.witness.question import Means, usual_road
+from roadproof.witness.ask import ask
+from roadproof.witness.question import usual_road
 from roadproof.world.drive import Drive
 
 FAR = Fraction(2000)
@@ -36,12 +34,12 @@ FAR = Fraction(2000)
 
 @dataclass(frozen=True)
 class Edge:
-    """A proved implication that does not follow from others; ``certificate`` is a file's text."""
+    """A proved implication that does not follow from others."""
 
     above: Scenario
     below: Scenario
-    claim: str
-    certificate: str
+    claim: Query
+    certificate: Certificate
 
 
 @dataclass(frozen=True)
@@ -50,215 +48,206 @@ class Refuting:
 
     node: Scenario
     others: tuple[Scenario, ...]
-    data: Mapping[str, Any]
+    drive: Judged
 
 
 @dataclass(frozen=True)
 class Doubt:
     """An implication of which no reading was proved, and those in ``open`` were not refuted either.
 
-    A reading is the two scenarios applied to vehicles and a lane, as text. ``late``: why the clock cut the
-    search off, where it did.
+    A reading is the two scenarios applied to vehicles and a lane. ``late``: why the search was cut off,
+    where it was.
     """
 
     above: Scenario
     below: Scenario
-    open: tuple[tuple[str, str], ...]
+    open: tuple[tuple[Query, Query], ...]
     late: str = ""
 
     @property
     def reason(self) -> str:
-        readings = "neither a proof nor a drive against " + ", ".join(f"{a} -> {b}" for a, b in self.open)
+        told = ", ".join(f"{a.text} -> {b.text}" for a, b in self.open) or f"{self.above} -> {self.below}"
+        readings = f"neither a proof nor a drive against {told}"
         return f"{readings}; {self.late}" if self.late else readings
 
 
 @dataclass(frozen=True)
 class Decided:
-    """All that was found about implications: together it settles each of them, or doubts it."""
+    """All that was found about implications: together it settles each of them, or doubts it.
+
+    ``again``: whether the drives of all other families were tried on the doubts.
+    """
 
     edges: tuple[Edge, ...] = ()
     drives: tuple[Refuting, ...] = ()
     doubts: tuple[Doubt, ...] = ()
+    again: bool = False
 
 
-def decide_family(asked: Asked, kinds: Sequence[Kind], family: Sequence[Kind]) -> Decided:
+def decide_family(basis: Basis, kinds: Sequence[Kind], family: Sequence[Kind]) -> Decided:
     """Decide the implications from the kinds of ``family`` to all other ``kinds``."""
-    return _Deciding(asked, tuple(kinds), tuple(family)).run()
+    return _Deciding(basis, tuple(kinds), tuple(family)).run()
 
 
-def settle_doubts(asked: Asked, decided: Decided, drives: Sequence[Mapping[str, Any]]) -> Decided:
+def settle_doubts(basis: Basis, decided: Decided, drives: Sequence[Judged]) -> Decided:
     """``decided`` with the doubts settled that drives found for other scenarios settle.
 
     The vehicles may be exchanged: what is ahead for one scenario is behind for its mirror image.
     """
-    library, specification = asked.load()
-    distinct = {repr(data["vehicles"]): data for data in drives}.values()
+    distinct = {repr(x.file.drive): x.file for x in drives}.values()
     refuting = list(decided.drives)
     doubts: list[Doubt] = []
     for doubt in decided.doubts:
-        shown = [_refuted_by(distinct, *reading, library, specification) for reading in doubt.open]
-        if None in shown:
+        shown = [_refuted_by(basis, distinct, *reading) for reading in doubt.open]
+        if None in shown or not shown:
             doubts.append(doubt)
         else:
-            refuting += [Refuting(doubt.above, (doubt.below,), x.data) for x in shown if x is not None]
-    return replace(decided, drives=tuple(refuting), doubts=tuple(doubts))
+            refuting += [Refuting(doubt.above, (doubt.below,), x) for x in shown if x is not None]
+    return Decided(decided.edges, tuple(refuting), tuple(doubts), again=True)
 
 
-def _refuted_by(
-    drives: Iterable[Mapping[str, Any]],
-    text: str,
-    below: str,
-    library: Library,
-    specification: Specification,
-) -> Shown | None:
-    formula = f"{text} and not {below}"
-    wanted = set(read_claim(specification, formula).vehicles)
-    for data in drives:
-        names = tuple(data["vehicles"])
+def _refuted_by(basis: Basis, files: Iterable[DriveFile], above: Query, below: Query) -> Judged | None:
+    against = both(above, negation(below))
+    wanted = set(against.vehicles)
+    for file in files:
+        names = tuple(file.drive.vehicles)
         for roles in permutations(names) if wanted <= set(names) else ():
-            vehicles = {role: data["vehicles"][name] for name, role in zip(names, roles, strict=True)}
-            shown = show_elsewhere(Shown(formula, {**data, "vehicles": vehicles}), formula, library)
+            motions = {role: file.drive.vehicles[name] for name, role in zip(names, roles, strict=True)}
+            shown = placed(replace(file, drive=Drive(motions)), against, basis.library)
             if shown is not None:
                 return shown
     return None
 
 
 @dataclass(frozen=True)
-class _Cast:
-    """One way to give the vehicles of a drive to a kind, and what else may hold of it then."""
+class Cast:
+    """A scenario, and the vehicles that play in it."""
 
-    text: str
-    others: tuple[tuple[Scenario, str], ...]
+    scenario: Scenario
+    vehicles: tuple[str, ...]
+
+
+Reading = tuple[Cast, Cast]
 
 
 class _Deciding:
-    def __init__(self, asked: Asked, kinds: tuple[Kind, ...], family: tuple[Kind, ...]) -> None:
-        self.asked = asked
-        self.library, self.specification = asked.load()
-        self.values = {**default_values(self.library), **asked.values}
+    def __init__(self, basis: Basis, kinds: tuple[Kind, ...], family: tuple[Kind, ...]) -> None:
+        self.basis = basis
+        self.specification = basis.specification
+        self.values = basis.all_values()
         self.kinds = kinds
         self.family = family
-        self.pool: list[Shown] = []
-        self.queries: dict[str, Query] = {}
+        self.pool: list[Judged] = []
+        self.queries: dict[Cast, Query] = {}
         self.edges: list[Edge] = []
         self.drives: list[Refuting] = []
         self.doubts: list[Doubt] = []
         self.vain: set[int] = set()  # what kinds are like that no drive was found against
         # By kind and kind: the readings of the second that no drive has refuted yet.
-        self.open: dict[tuple[Scenario, Scenario], set[tuple[str, str]]] = {}
+        self.open: dict[tuple[Scenario, Scenario], set[Reading]] = {}
 
     def run(self) -> Decided:
         for kind in self.family:
-            for cast in self._casts(kind):
-                for node, text in cast.others:
-                    self.open.setdefault((kind.node, node), set()).add((cast.text, text))
+            for mine, others in self._casts(kind):
+                for other in others:
+                    self.open.setdefault((kind.node, other.scenario), set()).add((mine, other))
         for kind in self.family:
             self._refute_with_pool(kind)
         for kind in self.family:
-            for other in self.kinds:
-                if self.open.get((kind.node, other.node)):
+            for target in self.kinds:
+                if self.open.get((kind.node, target.node)):
                     try:
-                        self._decide(kind, other)
+                        self._decide(kind, target)
                     except Late as late:
-                        still = tuple(sorted(self.open[kind.node, other.node]))
-                        self.doubts.append(Doubt(kind.node, other.node, still, str(late)))
+                        self._doubt(kind, target, str(late))
         return Decided(tuple(self.edges), tuple(self.drives), tuple(self.doubts))
 
-    # --- drives ----------------------------------------------------------------------------------
+    def _doubt(self, kind: Kind, target: Kind, late: str = "") -> None:
+        still = [(self._query(a), self._query(b)) for a, b in self._still_open(kind, target)]
+        self.doubts.append(Doubt(kind.node, target.node, tuple(still), late))
 
-    def _casts(self, kind: Kind) -> Iterator[_Cast]:
+    def _still_open(self, kind: Kind, target: Kind) -> list[Reading]:
+        return sorted(self.open[kind.node, target.node], key=lambda x: (x[0].vehicles, x[1].vehicles))
+
+    # --- who plays whom --------------------------------------------------------------------------
+
+    def _casts(self, kind: Kind) -> Iterator[tuple[Cast, tuple[Cast, ...]]]:
+        """The ways to give vehicles to a kind, each with what else may hold then."""
         mine = vehicles_of(self.specification, kind.node)
-        by_size: dict[tuple[str, ...], list[tuple[Scenario, str]]] = {}
+        by_roles: dict[tuple[str, ...], list[Cast]] = {}
         for other in self.kinds:
             if other == kind:
                 continue
             theirs = vehicles_of(self.specification, other.node)
-            if len(theirs) <= len(mine):
-                readings = [(mine[0], *rest) for rest in permutations(mine[1:], len(theirs) - 1)]
-                if len(theirs) == len(mine):
-                    readings = [mine]
-                for reading in readings:
-                    text = applied(other.node, self.specification, reading)
-                    by_size.setdefault(mine, []).append((other.node, text))
+            if len(theirs) == len(mine):
+                by_roles.setdefault(mine, []).append(Cast(other.node, mine))
+            elif len(theirs) < len(mine):
+                for rest in permutations(mine[1:], len(theirs) - 1):
+                    by_roles.setdefault(mine, []).append(Cast(other.node, (mine[0], *rest)))
             else:
-                for reading in ((theirs[0], *rest) for rest in permutations(theirs[1:], len(mine) - 1)):
-                    text = applied(other.node, self.specification, theirs)
-                    by_size.setdefault(reading, []).append((other.node, text))
-        for vehicles, others in by_size.items():
-            yield _Cast(applied(kind.node, self.specification, vehicles), tuple(others))
+                for rest in permutations(theirs[1:], len(mine) - 1):
+                    by_roles.setdefault((theirs[0], *rest), []).append(Cast(other.node, theirs))
+        for vehicles, others in by_roles.items():
+            yield Cast(kind.node, vehicles), tuple(others)
+
+    def _query(self, cast: Cast) -> Query:
+        if cast not in self.queries:
+            self.queries[cast] = applied(self.specification, cast.scenario, cast.vehicles)
+        return self.queries[cast]
+
+    def _own(self, kind: Kind) -> Query:
+        return self._query(Cast(kind.node, vehicles_of(self.specification, kind.node)))
+
+    def _alone(self, kind: Kind) -> Query:
+        """A kind, and none of those that differ from it in the sector only."""
+        return both(self._own(kind), *(negation(self._own(x)) for x in self.family if x != kind))
+
+    # --- drives ----------------------------------------------------------------------------------
 
     def _refute_with_pool(self, kind: Kind) -> None:
-        text = text_of(self.asked, kind.node)
-        alone = " and ".join([text, *(f"not {x}" for x in self._same_elsewhere(kind))])
         if not self.pool:
             try:
-                found = self._ask(text, text)
+                self.pool += self._ask(self._own(kind), kind)
             except Late:  # each implication that is still open then is asked by itself
-                found = None
-            if found is None:
                 return
-            self.pool.append(found)
-        for shown in tuple(self.pool):
-            placed = show_elsewhere(shown, alone, self.library)
-            if placed is not None:
-                self._use(kind, placed)
+        for judged in tuple(self.pool):
+            here = placed(judged.file, self._alone(kind), self.basis.library)
+            if here is not None:
+                self._use(kind, here)
 
-    def _same_elsewhere(self, kind: Kind) -> list[str]:
-        """The kinds that differ from this one in the sector only."""
-        return [text_of(self.asked, x.node) for x in self.family if x != kind]
-
-    def _use(self, kind: Kind, shown: Shown) -> None:
+    def _use(self, kind: Kind, judged: Judged) -> None:
         """Refute with a drive all that it refutes of what is still open."""
-        for cast in self._casts(kind):
-            file = self._recast(read_drive(dict(shown.data), "drive"), kind, cast)
-            still = [(n, x) for n, x in cast.others if (cast.text, x) in self.open[kind.node, n]]
-            false = [(node, text) for node, text in still if not self._holds(file, text)]
+        for mine, others in self._casts(kind):
+            file = self._recast(judged.file, kind, mine, others)
+            still = [x for x in others if (mine, x) in self.open[kind.node, x.scenario]]
+            false = [x for x in still if not self._holds(file, self._query(x))]
             if not false:
                 continue
-            formula = " and ".join([cast.text, *(f"not {text}" for _, text in false)])
-            file = replace(file, formula=formula, scenario=None)
-            ruling = judge_file(file, self.library)
-            if not ruling.accepted:
+            refuted = both(self._query(mine), *(negation(self._query(x)) for x in false))
+            shown = judged_as(file, refuted, self.basis.library)
+            if shown is None:
                 continue
-            self.drives.append(Refuting(kind.node, tuple(node for node, _ in false), as_data(file, ruling)))
-            for node, text in false:
-                self.open[kind.node, node].discard((cast.text, text))
+            self.drives.append(Refuting(kind.node, tuple(x.scenario for x in false), shown))
+            for x in false:
+                self.open[kind.node, x.scenario].discard((mine, x))
 
-    def _recast(self, file: DriveFile, kind: Kind, cast: _Cast) -> DriveFile:
+    def _recast(self, file: DriveFile, kind: Kind, mine: Cast, others: Sequence[Cast]) -> DriveFile:
         """The drive with the vehicles of a cast; those that it does not have are far behind all others."""
-        mine = vehicles_of(self.specification, kind.node)
-        query = self._query(cast.text)
-        playing = cast.text[cast.text.index("(") + 1 : -1].split(",")[:-1]
-        motions = {new: file.drive.vehicles[old] for new, old in zip(playing, mine, strict=True)}
-        wanted = {v for _, text in cast.others for v in self._query(text).vehicles} | set(query.vehicles)
+        own = vehicles_of(self.specification, kind.node)
+        motions = {new: file.drive.vehicles[old] for new, old in zip(mine.vehicles, own, strict=True)}
+        wanted = {v for x in (mine, *others) for v in x.vehicles}
         for name in sorted(wanted - set(motions)):
             slowest = min(motions.values(), key=lambda motion: motion.s)
             motions[name] = replace(slowest, s=slowest.s - FAR)
         return replace(file, drive=Drive(motions))
 
-    def _holds(self, file: DriveFile, text: str) -> bool:
-        formula = bind(self._query(text).formula, file.road, file.lanes, {**self.values, **file.values})
+    def _holds(self, file: DriveFile, query: Query) -> bool:
+        formula = bind(query.formula, file.road, file.lanes, {**self.values, **file.values})
         return judge(formula, file.drive).holds
 
-    def _query(self, text: str) -> Query:
-        if text not in self.queries:
-            self.queries[text] = read_claim(self.specification, text)
-        return self.queries[text]
-
-    def _ask(self, text: str, on: str) -> Shown | None:
-        """A drive for a formula, on the usual road of another: what is negated chooses no road."""
-        request = Request(
-            text,
-            self.asked.sets[0],
-            self.asked.options,
-            self.asked.specs,
-            self.values,
-            usual_road(self._query(on).formula).name,
-            horizon=self.asked.horizon,
-            means=Means("smooth", effort=self.asked.effort, explain=False),
-        )
-        drives = ask(request).drives
-        return Shown(text, drives[0].as_data()) if drives else None
+    def _ask(self, query: Query, kind: Kind) -> tuple[Judged, ...]:
+        """A drive for a formula, on the usual road of a kind: what is negated chooses no road."""
+        return ask(self.basis.search(query, usual_road(self._own(kind).formula))).drives
 
     # --- proofs ----------------------------------------------------------------------------------
 
@@ -268,38 +257,33 @@ class _Deciding:
         What was looked for in vain is not looked for again on another road.
         """
         one, other = kind.node, target.node
-        for text, below in sorted(self.open[one, other]):
-            claim = f"{text} -> {below}"
-            result = prove(
-                self.specification,
-                read_claim(self.specification, claim),
-                self.asked.effort.of(self.asked.proof),
-            )
+        for mine, theirs in self._still_open(kind, target):
+            claim = implication(self._query(mine), self._query(theirs))
+            result = self.basis.proof_of(claim)
             if result.verdict is Verdict.PROVED and result.certificate is not None:
-                self.edges.append(Edge(one, other, claim, to_json(result.certificate)))
+                self.edges.append(Edge(one, other, claim, result.certificate))
                 return
-        for text, below in sorted(self.open[one, other]):
-            if (text, below) not in self.open[one, other]:
+        for reading in self._still_open(kind, target):
+            if reading not in self.open[one, other]:
                 continue
-            found = None if target.like in self.vain else self._ask(f"{text} and not {below}", text)
-            if found is None:
+            above, below = (self._query(cast) for cast in reading)
+            found = () if target.like in self.vain else self._ask(both(above, negation(below)), kind)
+            if not found:
                 self.vain.add(target.like)
-                self.doubts.append(Doubt(one, other, tuple(sorted(self.open[one, other]))))
+                self._doubt(kind, target)
                 return
-            if len(vehicles_of(self.specification, one)) == len(self._query(f"{text} and {below}").vehicles):
-                self.pool.append(found)
-                self._use(kind, found)
-                self._share(kind, found)
+            if {*below.vehicles} <= {*above.vehicles} and above.vehicles == self._own(kind).vehicles:
+                self.pool.append(found[0])
+                self._use(kind, found[0])
+                self._share(kind, found[0])
             else:
-                self.drives.append(Refuting(one, (other,), found.data))
-                self.open[one, other].discard((text, below))
+                self.drives.append(Refuting(one, (other,), found[0]))
+                self.open[one, other].discard(reading)
 
-    def _share(self, kind: Kind, found: Shown) -> None:
+    def _share(self, kind: Kind, found: Judged) -> None:
         """Use a new drive for the kinds that differ from its own in the sector only."""
         for twin in self.family:
             if twin != kind:
-                others = [f"not {x}" for x in self._same_elsewhere(twin)]
-                alone = " and ".join([text_of(self.asked, twin.node), *others])
-                placed = show_elsewhere(found, alone, self.library)
-                if placed is not None:
-                    self._use(twin, placed)
+                here = placed(found.file, self._alone(twin), self.basis.library)
+                if here is not None:
+                    self._use(twin, here)

@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from roadproof.analysis.requests import Asked, applied
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.scenarios import Scenario, numbers_of, vehicles_of, without_sectors
+from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import Scenario, applied, numbers_of, without_sectors
 
 
 @dataclass(frozen=True)
@@ -22,32 +21,22 @@ class Kind:
         return self.nodes[0]
 
 
-def kinds_of(asked: Asked, numbers: Sequence[int] | None = None) -> tuple[Kind, ...]:
-    """The scenarios of all sets of ``asked`` in groups with one formula; ``numbers``: only these."""
-    _, specification = asked.load()
+def kinds_of(
+    specification: Specification, sets: Sequence[str], numbers: Sequence[int] | None = None
+) -> tuple[Kind, ...]:
+    """The scenarios of all ``sets`` in groups with one formula; ``numbers``: only these."""
     found: dict[Formula, list[Scenario]] = {}
     likes: dict[Formula, int] = {}
-    for set_name in asked.sets:
-        there = specification.in_set(set_name)
-        for number in numbers_of(there):
+    like_of: dict[Scenario, int] = {}
+    for set_name in sets:
+        for number in numbers_of(specification.in_set(set_name)):
             if numbers is not None and number not in numbers:
                 continue
             node = Scenario(number, set_name)
-            formula = read_claim(specification, text_of(asked, node)).formula
+            formula = applied(specification, node).formula
             found.setdefault(without_names(formula), []).append(node)
-            likes.setdefault(without_sectors(formula), len(likes))
-    return tuple(
-        Kind(
-            tuple(nodes),
-            likes[without_sectors(read_claim(specification, text_of(asked, nodes[0])).formula)],
-        )
-        for nodes in found.values()
-    )
-
-
-def text_of(asked: Asked, node: Scenario) -> str:
-    _, specification = asked.load()
-    return applied(node, specification, vehicles_of(specification, node))
+            like_of[node] = likes.setdefault(without_sectors(formula), len(likes))
+    return tuple(Kind(tuple(nodes), like_of[nodes[0]]) for nodes in found.values())
 
 
 def families_of(kinds: Sequence[Kind]) -> list[tuple[Kind, ...]]:

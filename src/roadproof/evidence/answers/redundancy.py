@@ -8,7 +8,7 @@ from roadproof.logic.formula import Formula
 from roadproof.spec.compose import both, equivalence, implication, negation
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, vehicles_of
+from roadproof.spec.scenarios import Scenario, applied, leaves_at_once, vehicles_of
 
 SCHEMA = "roadproof/redundancy/1"
 SAID = ("set", "options", "parameters", "specs")
@@ -72,10 +72,7 @@ def _expected(common: Common, scenario: Scenario, changed: str, assuming: str, s
 def _moving(common: Common, scenario: Scenario) -> Sequence[Query]:
     """That each vehicle that leaves L has a first moment outside it."""
     home = common.specification
-    return [
-        read_claim(home, f"(atLane({x},L) U not atLane({x},L)) or G atLane({x},L)")
-        for x in vehicles_of(home, scenario)
-    ]
+    return [leaves_at_once(home, vehicle) for vehicle in vehicles_of(home, scenario)]
 
 
 def _and(moving: Sequence[Query], query: Query) -> Query:

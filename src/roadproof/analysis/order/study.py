@@ -1,0 +1,217 @@
+"""Which scenarios imply which: every implication proved, every other one refuted by a drive."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import permutations
+from typing import Any
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.order.deciding import (
+    Decided,
+    Doubt,
+    Edge,
+    Refuting,
+    decide_family,
+    settle_doubts,
+)
+from roadproof.analysis.order.kinds import Kind, families_of
+from roadproof.analysis.order.relation import reachable, transitive_reduction
+from roadproof.evidence.judged import Judged
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.scenarios import Scenario
+from roadproof.study.shelf import Question, Shelf
+
+SCHEMA = "roadproof/order/1"
+
+
+@dataclass(frozen=True)
+class Family:
+    """Kinds that differ in their road sectors only: the implications from them are to be decided."""
+
+    kinds: tuple[Kind, ...]
+
+
+@dataclass(frozen=True)
+class Doubtful:
+    """A family with doubts, on which the drives of all families are to be tried."""
+
+    family: tuple[Kind, ...]
+    decided: Decided
+    drives: tuple[Judged, ...]
+
+
+@dataclass(frozen=True)
+class Order:
+    """All answers together.
+
+    ``edges``: those of the ``proved`` implications that do not follow from others; ``missing``: the pairs
+    without implication, with the places in ``drives`` of those that show it.
+    """
+
+    kinds: tuple[Kind, ...]
+    proved: tuple[Edge, ...]
+    edges: tuple[Edge, ...]
+    missing: tuple[tuple[Scenario, Scenario, tuple[int, ...]], ...]
+    drives: tuple[Refuting, ...]
+    doubts: tuple[Doubt, ...]
+
+
+@dataclass(frozen=True)
+class Ordering:
+    """The question which of ``kinds`` imply which, as a ``study.frame.Study``."""
+
+    basis: Basis
+    kinds: tuple[Kind, ...]
+
+    @property
+    def question(self) -> Question:
+        said = {"sets": list(self.basis.set_names), **self.basis.said()}
+        more = {"order": " ".join(str(kind.node) for kind in self.kinds)}
+        return Question(SCHEMA, said, more, self.basis.library)
+
+    @property
+    def families(self) -> dict[str, tuple[Kind, ...]]:
+        """The families by the names under which their answers are kept."""
+        return {name_of(family): family for family in families_of(self.kinds)}
+
+    def pieces(self, known: Mapping[str, Decided]) -> Sequence[Family | Doubtful]:
+        """Doubts are left to the end, when the drives of all families are there to settle them."""
+        left = [Family(family) for name, family in self.families.items() if name not in known]
+        if left:
+            return left
+        drives = tuple(x.drive for name in self.families for x in known[name].drives)
+        return [
+            Doubtful(family, known[name], drives)
+            for name, family in self.families.items()
+            if known[name].doubts and not known[name].again
+        ]
+
+    def settle(self, piece: Family | Doubtful) -> dict[str, Decided]:
+        match piece:
+            case Family(kinds):
+                return {name_of(kinds): decide_family(self.basis, self.kinds, kinds)}
+            case Doubtful(family, decided, drives):
+                return {name_of(family): settle_doubts(self.basis, decided, drives)}
+
+    def doubt(self, piece: Family | Doubtful, reason: str) -> dict[str, Decided]:
+        match piece:
+            case Family(kinds):
+                pairs = [(a.node, b.node) for a in kinds for b in self.kinds if a != b]
+                doubts = tuple(Doubt(above, below, (), reason) for above, below in pairs)
+                return {name_of(kinds): Decided(doubts=doubts, again=True)}
+            case Doubtful(family, decided, _):
+                return {name_of(family): Decided(decided.edges, decided.drives, decided.doubts, again=True)}
+
+    def is_sure(self, answer: Decided) -> bool:
+        return not answer.doubts
+
+    def record(self, name: str, answer: Decided, shelf: Shelf) -> dict[str, Any]:
+        proved = [
+            {
+                "from": str(edge.above),
+                "to": str(edge.below),
+                "claim": edge.claim.text,
+                "certificate": shelf.certificate(
+                    f"edge-{_file(edge.above)}-{_file(edge.below)}.json", edge.certificate
+                ),
+            }
+            for edge in answer.edges
+        ]
+        drives = [
+            {
+                "holds": str(x.node),
+                "fails": sorted({str(node) for node in x.others}),
+                "drive": shelf.drive(f"drive-{_file(x.node)}-{number}.json", x.drive),
+            }
+            for number, x in enumerate(answer.drives, 1)
+        ]
+        doubts = [{"from": str(x.above), "to": str(x.below), "reason": x.reason} for x in answer.doubts]
+        return {"family": name, "proved": proved, "drives": drives, "doubts": doubts}
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> Decided:
+        edges: list[Edge] = []
+        for said in record["proved"]:
+            certificate = shelf.read_certificate(said["certificate"])
+            assert certificate is not None
+            claim = read_claim(self.basis.specification, said["claim"])
+            edges.append(Edge(_scenario(said["from"]), _scenario(said["to"]), claim, certificate))
+        drives: list[Refuting] = []
+        for said in record["drives"]:
+            drive = shelf.read_drive(said["drive"])
+            assert drive is not None
+            drives.append(Refuting(_scenario(said["holds"]), tuple(map(_scenario, said["fails"])), drive))
+        return Decided(tuple(edges), tuple(drives))
+
+    def order(self, answers: Mapping[str, Decided]) -> Order:
+        """The edges of the Hasse diagram, and for the other pairs what refutes them."""
+        decided = [answers[name] for name in self.families]
+        proved = [edge for x in decided for edge in x.edges]
+        pairs = {(str(edge.above), str(edge.below)) for edge in proved}
+        reduced = transitive_reduction(pairs)
+        doubts = [x for each in decided for x in each.doubts]
+        doubts = [x for x in doubts if str(x.below) not in reachable(str(x.above), pairs)]
+        drives = tuple(drive for x in decided for drive in x.drives)
+        return Order(
+            self.kinds,
+            tuple(proved),
+            tuple(edge for edge in proved if (str(edge.above), str(edge.below)) in reduced),
+            self._missing(pairs, drives, {(x.above, x.below) for x in doubts}),
+            drives,
+            tuple(doubts),
+        )
+
+    def _missing(
+        self,
+        proved: set[tuple[str, str]],
+        drives: Sequence[Refuting],
+        doubtful: set[tuple[Scenario, Scenario]],
+    ) -> tuple[tuple[Scenario, Scenario, tuple[int, ...]], ...]:
+        refuting: dict[tuple[Scenario, Scenario], list[int]] = {}
+        for place, drive in enumerate(drives):
+            for other in dict.fromkeys(drive.others):
+                refuting.setdefault((drive.node, other), []).append(place)
+        nodes = [kind.node for kind in self.kinds]
+        implied = {(above, below) for above in map(str, nodes) for below in reachable(above, proved)}
+        return tuple(
+            (above, below, tuple(refuting[above, below]))
+            for above, below in permutations(nodes, 2)
+            if (str(above), str(below)) not in implied and (above, below) not in doubtful
+        )
+
+    def as_data(self, order: Order, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+        every = [records[name] for name in self.families]
+        proved = [edge for record in every for edge in record["proved"]]
+        reduced = {(str(edge.above), str(edge.below)) for edge in order.edges}
+        doubts = {(str(x.above), str(x.below)) for x in order.doubts}
+        return {
+            "schema": SCHEMA,
+            **self.question.said,
+            "view": "dense",
+            "kinds": [[str(node) for node in kind.nodes] for kind in order.kinds],
+            "proved": proved,
+            "edges": [edge for edge in proved if (edge["from"], edge["to"]) in reduced],
+            "missing": [
+                {"from": str(above), "to": str(below), "drives": [place + 1 for place in places]}
+                for above, below, places in order.missing
+            ],
+            "drives": [
+                {"number": number, **drive}
+                for number, drive in enumerate((x for record in every for x in record["drives"]), 1)
+            ],
+            "doubts": [x for record in every for x in record["doubts"] if (x["from"], x["to"]) in doubts],
+        }
+
+
+def name_of(family: Sequence[Kind]) -> str:
+    """Under which name the answer for a family is kept."""
+    return _file(family[0].node)
+
+
+def _file(node: Scenario) -> str:
+    return f"{node.set_name}-{node.number:02}"
+
+
+def _scenario(name: str) -> Scenario:
+    number, _, set_name = name.partition("@")
+    return Scenario(int(number), set_name)
