@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
 from roadproof.encode.facts import Quantity, facts_of
@@ -190,10 +190,15 @@ def fact_for_ever(fact: Fact[Quantity], layout: Layout) -> Circuit[ColumnFact]:
     def state(quantity: Quantity) -> Polynomial[int]:
         vehicle, signal = quantity
         now = layout.state(vehicle, signal, step)
-        if signal not in ("s", "d"):
-            return now
-        speed = layout.column(vehicle, {"s": "v_lon", "d": "v_lat"}[signal], step)
-        return now + variable(speed) * affine([(_LATER, Fraction(1))])
+        match signal:
+            case "s":
+                return now + layout.state(vehicle, "v_lon", step) * variable(_LATER)
+            case "d":
+                return now + layout.state(vehicle, "v_lat", step) * variable(_LATER)
+            case "v_lon" | "v_lat" | "a_lon" | "a_lat":
+                return now
+            case _:
+                assert_never(signal)
 
     powers: dict[int, dict[tuple[int, ...], Fraction]] = {0: {}}
     for monomial, factor in fact.polynomial.substitute(state).terms.items():

@@ -15,8 +15,8 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare
 from roadproof.logic.terms import Term
 
-# A vehicle and the name of a signal, such as ("SV", "v_lon").
-Quantity: TypeAlias = tuple[str, str]
+# A vehicle and one of its signals, such as ("SV", "v_lon").
+Quantity: TypeAlias = tuple[str, t.SignalName]
 Sizes: TypeAlias = Mapping[tuple[str, str], Fraction]
 Summands: TypeAlias = tuple[tuple[Fraction, Term], ...]
 
@@ -159,7 +159,7 @@ def polynomial_of(term: Term, sizes: Sizes) -> Polynomial[Quantity]:
         case t.Size(name, vehicle):
             return constant(sizes[vehicle, name])
         case t.Signal(name, vehicle):
-            return variable((vehicle, str(name)))
+            return variable((vehicle, name))
         case t.Sum(terms):
             total: Polynomial[Quantity] = constant(Fraction(0))
             for x in terms:

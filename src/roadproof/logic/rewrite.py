@@ -1,6 +1,6 @@
 """Formulas to formulas with the same meaning, or with names replaced by values."""
 
-from collections.abc import Callable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from fractions import Fraction
 
 from roadproof.logic.formula import (
@@ -31,6 +31,7 @@ from roadproof.logic.terms import (
     leaves,
     replace_leaves,
 )
+from roadproof.signals import SIGNALS, SignalName
 
 
 def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
@@ -102,6 +103,13 @@ def vehicles_of(formula: Formula) -> tuple[str, ...]:
         leaf.vehicle for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Signal | Size)
     }
     return tuple(sorted(found))
+
+
+def signals_of(formulas: Iterable[Formula]) -> tuple[SignalName, ...]:
+    """Names of the signals that occur, in the order of the list of signals."""
+    terms = (term for formula in formulas for term in terms_of(formula))
+    found = {leaf.name for term in terms for leaf in leaves(term) if isinstance(leaf, Signal)}
+    return tuple(name for name in SIGNALS if name in found)
 
 
 def rename(formula: Formula, old: str, new: str) -> Formula:

@@ -15,7 +15,7 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula, Named
-from roadproof.logic.rewrite import bounds_of, terms_of, without_names
+from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_names
 from roadproof.monitor.answers import (
     Answer,
     Convention,
@@ -39,6 +39,7 @@ from roadproof.monitor.robustness import (
     trace_blocks,
 )
 from roadproof.monitor.semantics import Evaluation
+from roadproof.signals import SignalName
 
 
 @dataclass(frozen=True)
@@ -59,12 +60,16 @@ class Observation:
 
 @dataclass(frozen=True)
 class Monitor:
-    """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees."""
+    """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
+
+    ``signals``: what they speak of, of any vehicle.
+    """
 
     formulas: Mapping[str, Formula]
     plain: Mapping[str, Formula]
     named: Mapping[Named, Formula]
     states: frozenset[Formula]
+    signals: tuple[SignalName, ...]
 
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
         """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
@@ -195,7 +200,7 @@ def compile(formulas: Mapping[str, Formula]) -> Monitor:
     )
     named = {node: f.transform(node, share) for node in nodes}
     states = frozenset(x for x in pool if f.is_state(x))
-    return Monitor(dict(formulas), plain, named, states)
+    return Monitor(dict(formulas), plain, named, states, signals_of(formulas.values()))
 
 
 def _check_closed(name: str, formula: Formula) -> None:

@@ -47,7 +47,7 @@ def find_disturbances(recording: Recording, questions: Questions) -> Disturbance
     for index in blocks(near.low, near.high, 400_000):
         block = near.choose(index)
         vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
-        batch = gather(recording, vehicles, block.low, block.high)
+        batch = gather(recording, vehicles, block.low, block.high, questions.danger.signals)
         answers = questions.danger.evaluate(batch, at="all").answers
         inside = np.arange(batch.samples)[:, None] < batch.lengths
         violating[index] = answers["violation"].true.any(axis=0)

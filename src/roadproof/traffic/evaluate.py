@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadproof.logic.terms import SignalName
 from roadproof.monitor.answers import Convention
 from roadproof.monitor.compiled import Monitor, Observation
 from roadproof.traffic.detectors import Detection, find_detections
@@ -21,9 +20,8 @@ from roadproof.traffic.pairs import triples_of
 from roadproof.traffic.questions import PAIR, TRIPLE, Questions
 from roadproof.traffic.recording import Bools, Integers, Recording
 from roadproof.traffic.repeats import Seen, see_pair
-from roadproof.traffic.traces import NEEDED, gather
+from roadproof.traffic.traces import gather
 
-SIGNALS: tuple[SignalName, ...] = (*NEEDED, "a_lon")
 OTHER: Mapping[Convention, Convention] = {"truncated": "clip", "clip": "truncated"}
 
 
@@ -189,7 +187,7 @@ def _candidates(recording: Recording, questions: Questions, found: Disturbances)
         dict(zip(TRIPLE, (cut.triples.sv, cut.triples.pov1, cut.triples.pov2), strict=True)),
         cut.start,
         cut.start,
-        SIGNALS,
+        questions.triple_start.signals,
         lanes,
         questions.lane_atoms,
     )
@@ -228,7 +226,8 @@ def _ask_all(
 ) -> Iterator[tuple[int, str, Integers]]:
     """For each minDanger and formula the traces that satisfy it, each cut at its own end."""
     last = np.max(ends, axis=0)
-    batch = gather(recording, vehicles, start, last, SIGNALS, lanes, questions.lane_atoms)
+    signals = [signal for monitor in monitors for signal in monitor.signals]
+    batch = gather(recording, vehicles, start, last, signals, lanes, questions.lane_atoms)
     seen: Observation | None = None
     for k, (monitor, end) in enumerate(zip(monitors, ends, strict=True)):
         seen = monitor.observe(batch, known=seen)

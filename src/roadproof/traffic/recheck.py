@@ -8,7 +8,7 @@ from roadproof.logic.formula import Formula, transform
 from roadproof.monitor.batch import Batch
 from roadproof.monitor.compiled import Monitor
 from roadproof.monitor.recursive import ReadAs, Reading, Trace
-from roadproof.traffic.evaluate import SIGNALS, Findings, Match
+from roadproof.traffic.evaluate import Findings, Match
 from roadproof.traffic.questions import PAIR, TRIPLE, Questions
 from roadproof.traffic.recording import Integers, Recording
 from roadproof.traffic.traces import gather
@@ -89,7 +89,7 @@ def _read(
         {name: one(k) for name, k in vehicles.items()},
         one(frames[0]),
         one(frames[1]),
-        SIGNALS,
+        [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals],
         {name: one(k) for name, k in lanes.items()},
         questions.lane_atoms,
     )
