@@ -4,21 +4,20 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from fractions import Fraction
 
 from roadproof.logic.formula import (
-    Always,
     Compare,
     Domain,
-    Eventually,
     Every,
     Formula,
     Interval,
     Named,
     Occupies,
     Some,
-    Until,
     children,
+    intervals,
     subformulas,
     transform,
     with_children,
+    with_intervals,
 )
 from roadproof.logic.terms import (
     Leaf,
@@ -41,17 +40,9 @@ def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
         return Interval(change(old.low), None if old.high is None else change(old.high))
 
     def visit(current: Formula) -> Formula:
-        match current:
-            case Compare(left, op, right):
-                return Compare(change(left), op, change(right))
-            case Until(left, bounds, right):
-                return Until(left, interval(bounds), right)
-            case Eventually(bounds, body):
-                return Eventually(interval(bounds), body)
-            case Always(bounds, body):
-                return Always(interval(bounds), body)
-            case _:
-                return current
+        if isinstance(current, Compare):
+            return Compare(change(current.left), current.op, change(current.right))
+        return with_intervals(current, interval)
 
     return transform(formula, visit)
 
@@ -78,16 +69,13 @@ def without_names(formula: Formula) -> Formula:
 def terms_of(formula: Formula) -> Iterator[Term]:
     """Both sides of every comparison and every interval bound."""
     for current in subformulas(formula):
-        match current:
-            case Compare(left, _, right):
-                yield left
-                yield right
-            case Until(_, interval, _) | Eventually(interval, _) | Always(interval, _):
-                yield interval.low
-                if interval.high is not None:
-                    yield interval.high
-            case _:
-                pass
+        if isinstance(current, Compare):
+            yield current.left
+            yield current.right
+        for interval in intervals(current):
+            yield interval.low
+            if interval.high is not None:
+                yield interval.high
 
 
 def parameters_of(formula: Formula) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula, Named
+from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_names
 from roadproof.monitor.answers import (
     Answer,
@@ -210,13 +211,11 @@ def _check_closed(name: str, formula: Formula) -> None:
                 raise InputError(
                     f"{name}: a monitor needs numbers, but {leaf.name} has no value; substitute one first"
                 )
-    for part in f.subformulas(formula):
-        if isinstance(part, f.Until | f.Eventually | f.Always):
-            low, high = bounds_of(part.interval)
-            if low < 0 or (high is not None and high < low):
-                raise InputError(
-                    f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
-                )
+    for low, high in map(bounds_of, intervals_of(formula)):
+        if low < 0 or (high is not None and high < low):
+            raise InputError(
+                f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
+            )
 
 
 def _given(batch: Batch) -> dict[Formula, Array]:
