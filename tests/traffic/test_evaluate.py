@@ -130,10 +130,7 @@ def _own_lane_for_scenario_7(questions: Questions, monkeypatch: pytest.MonkeyPat
 
 
 def _one_role(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
-    kept = [
-        replace(m, plain={k: v for k, v in m.plain.items() if questions.asked[k].sv == "first"})
-        for m in questions.pairs
-    ]
+    kept = [replace(m, plain={k: v for k, v in m.plain.items() if k.sv == "first"}) for m in questions.pairs]
     return replace(questions, pairs=tuple(kept))
 
 

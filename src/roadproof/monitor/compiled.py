@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Generic
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_nam
 from roadproof.monitor.answers import (
     Answer,
     Convention,
+    Key,
     Margins,
     Verdicts,
     When,
@@ -60,14 +62,14 @@ class Observation:
 
 
 @dataclass(frozen=True)
-class Monitor:
+class Monitor(Generic[Key]):
     """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
 
     ``signals``: what they speak of, of any vehicle.
     """
 
-    formulas: Mapping[str, Formula]
-    plain: Mapping[str, Formula]
+    formulas: Mapping[Key, Formula]
+    plain: Mapping[Key, Formula]
     named: Mapping[Named, Formula]
     states: frozenset[Formula]
     signals: tuple[SignalName, ...]
@@ -91,7 +93,7 @@ class Monitor:
         starts: Integers | None = None,
         named: bool = False,
         threads: int = 1,
-    ) -> Verdicts:
+    ) -> Verdicts[Key]:
         """The answer to every formula at the start of each trace, or ``at`` all samples.
 
         ``starts`` gives the sample at which each trace starts (0 if not given). With ``named``,
@@ -124,7 +126,7 @@ class Monitor:
         named: bool = False,
         threads: int = 1,
         samples_in_block: int = 24_000,
-    ) -> Margins:
+    ) -> Margins[Key]:
         """The margin of every formula; arguments and errors as in ``evaluate``."""
         check_starts(starts, batch.lengths)
         given = _given(batch)
@@ -181,8 +183,8 @@ class Monitor:
                     waiting.extend(f.children(current))
 
 
-def compile(formulas: Mapping[str, Formula]) -> Monitor:
-    """A monitor for some formulas, by names of the caller's choice.
+def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
+    """A monitor for some formulas, by names or values of the caller's choice; mistakes show them as text.
 
     Every parameter must have its value (``with_values``); lanes may be open where the batch gives
     the truth of the formulas that speak of them. Raises ``InputError``.
@@ -204,7 +206,7 @@ def compile(formulas: Mapping[str, Formula]) -> Monitor:
     return Monitor(dict(formulas), plain, named, states, signals_of(formulas.values()))
 
 
-def _check_closed(name: str, formula: Formula) -> None:
+def _check_closed(name: object, formula: Formula) -> None:
     for term in terms_of(formula):
         for leaf in t.leaves(term):
             if isinstance(leaf, t.Parameter | t.Variable):

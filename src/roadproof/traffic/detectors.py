@@ -51,9 +51,8 @@ def _detect(recording: Recording, questions: Questions, pairs: Pairs, lanes: Mas
         at = {"L": lane[index]}
         batch = gather(recording, vehicles, block.low, block.high, signals, at, questions.lane_atoms)
         answers = questions.detectors.evaluate(batch, questions.settings.convention).answers
-        for name, answer in answers.items():
-            detector, role = name.split("/")
+        for sought, answer in answers.items():
             for p in np.flatnonzero(answer.true):
                 who = int(ids[block.first[p]]), int(ids[block.second[p]])
-                sv, pov = who if role == "first" else who[::-1]
-                yield Detection(detector, sv, pov, recording.lanes[at["L"][p]].name)
+                sv, pov = who if sought.sv == "first" else who[::-1]
+                yield Detection(sought.detector, sv, pov, recording.lanes[at["L"][p]].name)
