@@ -121,10 +121,8 @@ def _bounds(
             return max(vehicle.v_lat[0], -bound), min(vehicle.v_lat[1], bound)
         case "v_lat":
             return vehicle.v_lat
-        case "a_lon" | "a_lat":
-            raise ValueError(f"signal={of.signal} has no columns")
         case _:
-            assert_never(of.signal)
+            raise ValueError(f"signal={of.signal}: the bounds of its columns are not known")
 
 
 def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool, inside: Fraction) -> Iterable[Row]:
