@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import assert_never
 
 from roadproof.encode.circuit import Leaf, nodes
-from roadproof.encode.facts import Quantity, facts_of
+from roadproof.encode.facts import Quantity, facts_of, sizes_of
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.unroll import Grid
 from roadproof.logic.formula import Compare, Formula, subformulas
@@ -85,8 +85,7 @@ def _places(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[Fract
 
 
 def _polynomials(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[Polynomial[Quantity]]:
-    sizes = {(name, "length"): v.length for name, v in vehicles.items()}
-    sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
+    sizes = sizes_of(vehicles)
     for part in subformulas(formula):
         if isinstance(part, Compare):
             for node in nodes(facts_of(part, sizes)):

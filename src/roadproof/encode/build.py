@@ -7,7 +7,7 @@ from itertools import combinations
 from typing import TypeAlias, assert_never
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
-from roadproof.encode.facts import Quantity, facts_of
+from roadproof.encode.facts import Quantity, facts_of, sizes_of
 from roadproof.encode.motion import Layout, Motions, encode_motions
 from roadproof.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.encode.polynomial import Fact, Polynomial, affine, variable
@@ -156,8 +156,7 @@ def ground(
 
     Where ``lasting``, one at the last sample is asked for from there on for ever.
     """
-    sizes = {(name, "length"): v.length for name, v in vehicles.items()}
-    sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
+    sizes = sizes_of(vehicles)
     known: dict[Compare, Circuit[Fact[Quantity]]] = {}
 
     def at(leaf: At) -> Circuit[ColumnFact]:

@@ -14,11 +14,18 @@ from roadproof.encode.polynomial import Fact, Polynomial, constant, variable
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare
 from roadproof.logic.terms import Term
+from roadproof.signals import SIZES
+from roadproof.world.vehicle import Vehicle
 
 # A vehicle and one of its signals, such as ("SV", "v_lon").
 Quantity: TypeAlias = tuple[str, t.SignalName]
-Sizes: TypeAlias = Mapping[tuple[str, str], Fraction]
+Sizes: TypeAlias = Mapping[tuple[str, t.SizeName], Fraction]
 Summands: TypeAlias = tuple[tuple[Fraction, Term], ...]
+
+
+def sizes_of(vehicles: Mapping[str, Vehicle]) -> Sizes:
+    """The boxes of ``vehicles``, in m."""
+    return {(name, size): getattr(vehicle, size) for name, vehicle in vehicles.items() for size in SIZES}
 
 
 def facts_of(atom: Compare, sizes: Sizes) -> Circuit[Fact[Quantity]]:

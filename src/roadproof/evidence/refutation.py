@@ -18,6 +18,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
+from roadproof.signals import SIZES
 from roadproof.spec.bind import bind
 from roadproof.world.models import check_lanelets, shared_boundaries
 from roadproof.world.road import Road
@@ -160,7 +161,7 @@ def _spread(times: Sequence[Fraction], values: Sequence[bool], held: Held) -> Tr
 
 
 def _sizes(instant: Instant) -> dict[str, Fraction]:
-    return {n: value for n, value in instant.values.items() if n.startswith(("length(", "width("))}
+    return {name: value for name, value in instant.values.items() if name.partition("(")[0] in SIZES}
 
 
 # --- plain data ----------------------------------------------------------------------------------
