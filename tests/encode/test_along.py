@@ -99,7 +99,11 @@ FAULTS = {
     "every road is endless": ("is_same_everywhere", "endless and", "True and"),
     "places are no matter": ("is_same_everywhere", "and not names_places(formula, vehicles)", ""),
     "each vehicle for itself": ("names_places", "any(", "all("),
-    "the first factor only": ("slope_along", 'if signal == "s":', 'if signal == "s" and k == 0 and 1 > 2:'),
+    "the first factor only": (
+        "slope_along",
+        "if _is_place_along(signal):",
+        "if _is_place_along(signal) and k == 0 and 1 > 2:",
+    ),
 }
 
 

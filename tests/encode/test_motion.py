@@ -54,6 +54,15 @@ accelerations = st.lists(
 )
 
 
+def test_a_column_stands_where_the_layout_says_and_knows_what_it_stands_for():
+    made = motions(natural=True)
+    told = [(column.of.vehicle, column.of.signal, column.of.step) for column in made.columns]
+    assert [made.layout.column(*what) for what in told] == list(range(len(told)))
+    assert len(set(told)) == len(told) == 2 * 4 * 5
+    with pytest.raises(ValueError, match="signal=a_lon has no columns"):
+        made.layout.column("A", "a_lon", 0)
+
+
 @settings(quiet, max_examples=200)
 @given(accelerations)
 def test_rows_hold_exactly_for_motions_within_the_limits(made):

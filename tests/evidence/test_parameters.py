@@ -12,7 +12,7 @@ from roadproof.evidence.judged import judge_file
 from roadproof.spec import bind
 from roadproof.spec.bind import default_values, values_with
 from roadproof.spec.library import Library, Source, build_library
-from roadproof.spec.quantity import UNITS
+from roadproof.units import UNITS
 
 # The declared values in other units than SI; 130 km/h are 36 1/9 m/s.
 MINE = """

@@ -6,7 +6,7 @@ from fractions import Fraction
 from roadproof.effort import Effort
 from roadproof.encode.circuit import Leaf, all_of, any_of, evaluate
 from roadproof.encode.polynomial import Fact, affine, variable
-from roadproof.encode.problem import Column, Problem, Row
+from roadproof.encode.problem import Column, Problem, Row, Unknown
 from roadproof.solve.bounds import approximate, value_of
 from roadproof.solve.exact import solve_exactly
 
@@ -20,7 +20,9 @@ def problems(count, quadratic=False, seed=1):
 
 
 def problem(dice, quadratic):
-    columns = tuple(Column(f"x{k}", Fraction(-4), Fraction(dice.randint(1, 6))) for k in range(COLUMNS))
+    columns = tuple(
+        Column(Unknown("x", "s", k), Fraction(-4), Fraction(dice.randint(1, 6))) for k in range(COLUMNS)
+    )
     terms = {0: Fraction(1), 1: Fraction(-2), 2: Fraction(1)}
     rows = (Row(terms, Fraction(-3), Fraction(dice.randint(0, 4))),)
     return Problem(columns, rows, circuit(dice, 3, quadratic))

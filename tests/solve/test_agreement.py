@@ -14,7 +14,7 @@ from encode import cases
 from roadproof.encode.build import NONE, ground
 from roadproof.encode.circuit import all_of, any_of
 from roadproof.encode.motion import Layout
-from roadproof.encode.problem import Column, Problem, Row
+from roadproof.encode.problem import Column, Problem, Row, Unknown
 from roadproof.encode.unroll import unroll
 from roadproof.judge import judge
 from roadproof.solve.exact import solve_exactly
@@ -55,7 +55,7 @@ def problem(trace, circuit):
             for k in range(cases.STEPS + 1):
                 value = getattr(state_at(drive.vehicles[name], k * cases.DT), signal)
                 column = LAYOUT.column(name, signal, k)
-                columns.append((column, Column(f"{name}.{signal}.{k}", Fraction(-200), Fraction(200))))
+                columns.append((column, Column(Unknown(name, signal, k), Fraction(-200), Fraction(200))))
                 rows.append(Row({column: Fraction(1)}, value, value))
     return Problem(tuple(c for _, c in sorted(columns, key=lambda x: x[0])), tuple(rows), circuit)
 

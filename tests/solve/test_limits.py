@@ -10,7 +10,7 @@ from roadproof import effort
 from roadproof.effort import Effort, Late
 from roadproof.encode.circuit import Leaf, all_of, any_of
 from roadproof.encode.polynomial import Fact, affine
-from roadproof.encode.problem import Column, Problem, Row
+from roadproof.encode.problem import Column, Problem, Row, Unknown
 from roadproof.solve import exact, milp, smt
 from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import Solution, box_of, solve_mixed
@@ -39,7 +39,7 @@ def either(column):
 def split(seed=7):
     """Which columns sum up to numbers that some of them are known to sum up to: there are, hard to find."""
     dice = random.Random(seed)
-    columns = tuple(Column(f"x{k}", Fraction(0), Fraction(1)) for k in range(COLUMNS))
+    columns = tuple(Column(Unknown("x", "s", k), Fraction(0), Fraction(1)) for k in range(COLUMNS))
     answer = [dice.randint(0, 1) for _ in range(COLUMNS)]
     rows = []
     for _ in range(ROWS):
@@ -154,7 +154,7 @@ def test_what_is_no_solution_is_not_handed_out(monkeypatch, status):
 
 def test_what_was_found_when_the_clock_ended_the_search_is_not_used(monkeypatch):
     """It would be there on one machine, and not on another."""
-    column = (Column("x", Fraction(0), Fraction(1)),)
+    column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     problem = Problem(column, (), either(0))
     now = [0.0]
     monkeypatch.setattr(effort.time, "monotonic", lambda: now[0])

@@ -8,7 +8,7 @@ import pytest
 from roadproof.effort import Effort
 from roadproof.encode.circuit import All, AnyOf, Leaf
 from roadproof.encode.polynomial import Fact, affine, variable
-from roadproof.encode.problem import Column, Problem
+from roadproof.encode.problem import Column, Problem, Unknown
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.solve import milp
 from roadproof.solve.bounds import TooNonlinearError, approximate, value_of
@@ -77,7 +77,10 @@ def test_more_pieces_are_nearer():
 
 
 def test_a_cost_is_made_small():
-    columns = (Column("x", Fraction(-5), Fraction(5)), Column("y", Fraction(-5), Fraction(5)))
+    columns = (
+        Column(Unknown("x", "s", 0), Fraction(-5), Fraction(5)),
+        Column(Unknown("y", "s", 0), Fraction(-5), Fraction(5)),
+    )
     far = AnyOf((Leaf(Fact(affine([(0, Fraction(1))], Fraction(-3)), False)), AnyOf(())))
     problem = Problem(columns, (), All((far,)))
     solution = solve_mixed(problem, box_of(problem), cost=Cost({0: 1.0}, {1: 1.0}), gap=0.0)
@@ -91,7 +94,7 @@ def test_another_solver_gives_the_same_answers():
 
 def test_degree_three_is_refused():
     cube = variable(0) * variable(0) * variable(0)
-    problem = Problem((Column("x", Fraction(0), Fraction(1)),), (), Leaf(Fact(cube, False)))
+    problem = Problem((Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),), (), Leaf(Fact(cube, False)))
     with pytest.raises(TooNonlinearError):
         solve_mixed(problem, box_of(problem))
     assert solve_exactly(problem).status == "found"
@@ -106,7 +109,7 @@ def test_unknown_and_missing_solvers_are_told_apart(monkeypatch):
 
 
 def test_nothing_and_everything():
-    column = (Column("x", Fraction(0), Fraction(1)),)
+    column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     assert solve_mixed(Problem(column, (), All(())), [(0.0, 1.0)]).status == "found"
     assert solve_mixed(Problem(column, (), AnyOf(())), [(0.0, 1.0)]).status == "infeasible"
     assert solve_exactly(Problem(column, (), AnyOf(()))).status == "infeasible"
@@ -115,6 +118,6 @@ def test_nothing_and_everything():
 
 def test_strictness_is_exact_for_z3():
     x = affine([(0, Fraction(1))], Fraction(-1))
-    column = (Column("x", Fraction(0), Fraction(1)),)
+    column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     assert solve_exactly(Problem(column, (), Leaf(Fact(x, False)))).values == (Fraction(1),)
     assert solve_exactly(Problem(column, (), Leaf(Fact(x, True)))).status == "infeasible"

@@ -8,7 +8,8 @@ from roadproof.errors import TextError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import FOREVER, Formula
-from roadproof.spec.elaborate import _Elaborator, apply_definition, read_claim, signature
+from roadproof.spec.elaborate import apply_definition, read_claim, signature
+from roadproof.spec.elaboration import Elaborator
 from roadproof.spec.library import Source, Specification, build_library, bundled_library
 from roadproof.spec.quantity import unit_name
 from roadproof.spec.query import Query
@@ -213,13 +214,13 @@ DOUBLED_TERMS = (
 def test_a_definition_is_elaborated_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Doubling at every level would take 2^14 steps."""
     read: list[object] = []
-    whole = _Elaborator._expression
+    whole = Elaborator._expression
 
-    def count(self: _Elaborator, expression: Any, scope: Any) -> Any:
+    def count(self: Elaborator, expression: Any, scope: Any) -> Any:
         read.append(expression)
         return whole(self, expression, scope)
 
-    monkeypatch.setattr(_Elaborator, "_expression", count)
+    monkeypatch.setattr(Elaborator, "_expression", count)
     assert formula("p_14(SV)", DOUBLING)
     assert len(read) < 100
 

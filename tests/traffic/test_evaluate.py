@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError, UsageError
+from roadproof.logic.formula import Compare
+from roadproof.logic.terms import Parameter, number
+from roadproof.monitor import compile
 from roadproof.spec.library import Source, build_library, bundled_library
 from roadproof.traffic import disturbances, evaluate
 from roadproof.traffic import questions as module
 from roadproof.traffic.evaluate import Findings, evaluate_recording
 from roadproof.traffic.plant import Place, plant
-from roadproof.traffic.questions import Questions, ask, default_settings
+from roadproof.traffic.questions import SAFE, VIOLATION, Asked, Condition, Questions, ask, default_settings
 from roadproof.traffic.recording import Recording, keep_vehicles
 from roadproof.traffic.simulate import Traffic
 from roadproof.traffic.synthetic import simulate
@@ -130,10 +133,7 @@ def _own_lane_for_scenario_7(questions: Questions, monkeypatch: pytest.MonkeyPat
 
 
 def _one_role(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
-    kept = [
-        replace(m, plain={k: v for k, v in m.plain.items() if questions.asked[k].sv == "first"})
-        for m in questions.pairs
-    ]
+    kept = [replace(m, plain={k: v for k, v in m.plain.items() if k.sv == "first"}) for m in questions.pairs]
     return replace(questions, pairs=tuple(kept))
 
 
@@ -274,3 +274,24 @@ def test_wrong_settings() -> None:
         ask(settings, 7)
     with pytest.raises(InputError, match="no spec set"):
         ask(replace(settings, sets=("bass",)), 25)
+
+
+def test_what_is_asked_is_a_value_and_mistakes_show_it_as_text(questions: Questions) -> None:
+    assert set(questions.danger.formulas) == {VIOLATION, SAFE, Condition("danger", 0), Condition("danger", 1)}
+    asked = {Asked("ext", 7, "first", "L1"), Asked("ext", 7, "second", "L"), Asked("base", 3, "first", "L")}
+    assert asked <= set(questions.pairs[0].formulas)
+    assert str(Asked("ext", 7, "first", "L1")) == "ext/7/first"
+    with pytest.raises(InputError, match=r"^danger 1: a monitor needs numbers, but x has no value"):
+        compile({Condition("danger", 1): Compare(Parameter("x"), "<", number(1))})
+
+
+def test_of_recordings_is_read_what_the_formulas_speak_of(questions: Questions) -> None:
+    assert questions.danger.signals == ("s", "d", "v_lon", "v_lat")
+    assert questions.pairs[0].signals == ("s", "d", "v_lon", "v_lat", "a_lon")
+    sways = "def decelerates(a: vehicle) := a_lon(a) < 0 or a_lat(a) > 0.1 m/s^2"
+    source = Source("mine.spec", f"set mine extends ext {{ {sways} }}")
+    library = build_library([source], bundled_library())
+    mine = ask(replace(default_settings(library), sets=("mine",)), 25)
+    assert mine.pairs[0].signals[-1] == "a_lat"
+    recording, _ = planted_traffic(1)
+    assert evaluate_recording(recording, mine).traces == evaluate_recording(recording, questions).traces != ()

@@ -50,7 +50,7 @@ def _parameter(text: str, name: str, low: str, high: str, query: "Query", librar
     from roadproof.analysis.explore.text import unit_text
     from roadproof.logic.rewrite import parameters_of
     from roadproof.spec.library import unknown
-    from roadproof.spec.quantity import UNITS
+    from roadproof.units import UNITS
 
     if name not in library.parameters:
         hint = "; a limit of a vehicle is written as POV.a_lon.min=-6:-1"

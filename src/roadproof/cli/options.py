@@ -129,7 +129,7 @@ def parameter_values(args: argparse.Namespace, library: "Library") -> dict[str, 
 def read_value(option: str, name: str, text: str, unit: str) -> Fraction:
     """A value in SI units; without unit it is in ``unit``. Raises ``InputError`` that names ``option``."""
     from roadproof.spec.library import unknown
-    from roadproof.spec.quantity import UNITS
+    from roadproof.units import UNITS
 
     read = _VALUE.fullmatch(text.strip())
     if read is None:

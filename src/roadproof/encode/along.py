@@ -7,12 +7,14 @@ ends, the moved drive is a drive of the same question: the first vehicle may sta
 
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
+from typing import assert_never
 
 from roadproof.encode.circuit import Leaf, nodes
-from roadproof.encode.facts import Quantity, facts_of
+from roadproof.encode.facts import Quantity, facts_of, sizes_of
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.unroll import Grid
 from roadproof.logic.formula import Compare, Formula, subformulas
+from roadproof.signals import SignalName
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -38,9 +40,20 @@ def slope_along(polynomial: Polynomial[Quantity]) -> Polynomial[Quantity]:
     total: Polynomial[Quantity] = Polynomial({})
     for monomial, factor in polynomial.terms.items():
         for k, (_, signal) in enumerate(monomial):
-            if signal == "s":
+            if _is_place_along(signal):
                 total = total + Polynomial({monomial[:k] + monomial[k + 1 :]: factor})
     return total
+
+
+def _is_place_along(signal: SignalName) -> bool:
+    """Whether a signal grows by a metre for each metre that its vehicle is moved along; else it stays."""
+    match signal:
+        case "s":
+            return True
+        case "d" | "v_lon" | "v_lat" | "a_lon" | "a_lat":
+            return False
+        case _:
+            assert_never(signal)
 
 
 def starting_range(
@@ -72,8 +85,7 @@ def _places(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[Fract
 
 
 def _polynomials(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[Polynomial[Quantity]]:
-    sizes = {(name, "length"): v.length for name, v in vehicles.items()}
-    sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
+    sizes = sizes_of(vehicles)
     for part in subformulas(formula):
         if isinstance(part, Compare):
             for node in nodes(facts_of(part, sizes)):

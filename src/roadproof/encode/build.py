@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
-from roadproof.encode.facts import Quantity, facts_of
+from roadproof.encode.facts import Quantity, facts_of, sizes_of
 from roadproof.encode.motion import Layout, Motions, encode_motions
 from roadproof.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.encode.polynomial import Fact, Polynomial, affine, variable
@@ -156,8 +156,7 @@ def ground(
 
     Where ``lasting``, one at the last sample is asked for from there on for ever.
     """
-    sizes = {(name, "length"): v.length for name, v in vehicles.items()}
-    sizes |= {(name, "width"): v.width for name, v in vehicles.items()}
+    sizes = sizes_of(vehicles)
     known: dict[Compare, Circuit[Fact[Quantity]]] = {}
 
     def at(leaf: At) -> Circuit[ColumnFact]:
@@ -190,10 +189,15 @@ def fact_for_ever(fact: Fact[Quantity], layout: Layout) -> Circuit[ColumnFact]:
     def state(quantity: Quantity) -> Polynomial[int]:
         vehicle, signal = quantity
         now = layout.state(vehicle, signal, step)
-        if signal not in ("s", "d"):
-            return now
-        speed = layout.column(vehicle, {"s": "v_lon", "d": "v_lat"}[signal], step)
-        return now + variable(speed) * affine([(_LATER, Fraction(1))])
+        match signal:
+            case "s":
+                return now + layout.state(vehicle, "v_lon", step) * variable(_LATER)
+            case "d":
+                return now + layout.state(vehicle, "v_lat", step) * variable(_LATER)
+            case "v_lon" | "v_lat" | "a_lon" | "a_lat":
+                return now
+            case _:
+                assert_never(signal)
 
     powers: dict[int, dict[tuple[int, ...], Fraction]] = {0: {}}
     for monomial, factor in fact.polynomial.substitute(state).terms.items():

@@ -14,11 +14,18 @@ from roadproof.encode.polynomial import Fact, Polynomial, constant, variable
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare
 from roadproof.logic.terms import Term
+from roadproof.signals import SIZES
+from roadproof.world.vehicle import Vehicle
 
-# A vehicle and the name of a signal, such as ("SV", "v_lon").
-Quantity: TypeAlias = tuple[str, str]
-Sizes: TypeAlias = Mapping[tuple[str, str], Fraction]
+# A vehicle and one of its signals, such as ("SV", "v_lon").
+Quantity: TypeAlias = tuple[str, t.SignalName]
+Sizes: TypeAlias = Mapping[tuple[str, t.SizeName], Fraction]
 Summands: TypeAlias = tuple[tuple[Fraction, Term], ...]
+
+
+def sizes_of(vehicles: Mapping[str, Vehicle]) -> Sizes:
+    """The boxes of ``vehicles``, in m."""
+    return {(name, size): getattr(vehicle, size) for name, vehicle in vehicles.items() for size in SIZES}
 
 
 def facts_of(atom: Compare, sizes: Sizes) -> Circuit[Fact[Quantity]]:
@@ -159,7 +166,7 @@ def polynomial_of(term: Term, sizes: Sizes) -> Polynomial[Quantity]:
         case t.Size(name, vehicle):
             return constant(sizes[vehicle, name])
         case t.Signal(name, vehicle):
-            return variable((vehicle, str(name)))
+            return variable((vehicle, name))
         case t.Sum(terms):
             total: Polynomial[Quantity] = constant(Fraction(0))
             for x in terms:

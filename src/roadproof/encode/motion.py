@@ -5,16 +5,20 @@ acceleration between two samples is constant, so it is the difference of speeds 
 positions follow the trapezoid rule exactly. After the last sample there is no acceleration.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import assert_never
 
 from roadproof.encode.polynomial import Polynomial, affine, constant, variable
-from roadproof.encode.problem import Column, Row, row_of
+from roadproof.encode.problem import Column, Row, Unknown, row_of
 from roadproof.encode.unroll import Grid
+from roadproof.signals import STARTING, SignalName
 from roadproof.world.vehicle import Range, Vehicle
 
-SIGNALS = ("s", "d", "v_lon", "v_lat")
+# A position and the speed that it grows by.
+_ALONG: tuple[SignalName, SignalName] = ("s", "v_lon")
+_ACROSS: tuple[SignalName, SignalName] = ("d", "v_lat")
 
 
 @dataclass(frozen=True)
@@ -24,17 +28,22 @@ class Layout:
     vehicles: tuple[str, ...]
     grid: Grid
 
-    def column(self, vehicle: str, signal: str, step: int) -> int:
-        per_vehicle = len(SIGNALS) * (self.grid.steps + 1)
-        return (
-            self.vehicles.index(vehicle) * per_vehicle + SIGNALS.index(signal) * (self.grid.steps + 1) + step
-        )
+    def column(self, vehicle: str, signal: SignalName, step: int) -> int:
+        """Raises ``ValueError`` for a signal that follows from others, and so has no columns."""
+        if signal not in STARTING:
+            raise ValueError(f"signal={signal} has no columns: those that have are {', '.join(STARTING)}")
+        samples = self.grid.steps + 1
+        row = self.vehicles.index(vehicle) * len(STARTING) + STARTING.index(signal)
+        return row * samples + step
 
-    def state(self, vehicle: str, signal: str, step: int) -> Polynomial[int]:
-        """A signal at a sample; an acceleration is that of the piece which begins there.
+    def unknowns(self, vehicle: str) -> Iterator[Unknown]:
+        """What the columns of a vehicle stand for, in their order."""
+        for signal in STARTING:
+            for step in range(self.grid.steps + 1):
+                yield Unknown(vehicle, signal, step)
 
-        Raises ``ValueError`` for a signal that a drive of samples does not have.
-        """
+    def state(self, vehicle: str, signal: SignalName, step: int) -> Polynomial[int]:
+        """A signal at a sample; an acceleration is that of the piece which begins there."""
         match signal:
             case "s" | "d" | "v_lon" | "v_lat":
                 return variable(self.column(vehicle, signal, step))
@@ -43,9 +52,9 @@ class Layout:
             case "a_lat":
                 return self._change("v_lat", vehicle, step)
             case _:
-                raise ValueError(f"signal={signal}: a vehicle has {', '.join(SIGNALS)}, a_lon, a_lat")
+                assert_never(signal)
 
-    def _change(self, speed: str, vehicle: str, step: int) -> Polynomial[int]:
+    def _change(self, speed: SignalName, vehicle: str, step: int) -> Polynomial[int]:
         """The acceleration from a sample to the next; after the last there is none."""
         if step == self.grid.steps:
             return constant(Fraction(0))
@@ -81,52 +90,55 @@ def encode_motions(
     ``straight`` never move across the road.
     """
     layout = Layout(tuple(vehicles), grid)
-    columns = [
-        column
+    columns = tuple(
+        Column(of, *_bounds(of, vehicle, grid, starts[name], across[name], natural, name in straight))
         for name, vehicle in vehicles.items()
-        for column in _columns(name, vehicle, grid, starts[name], across[name], natural, name in straight)
-    ]
+        for of in layout.unknowns(name)
+    )
     rows = [
         row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural, inside)
     ]
-    return Motions(layout, tuple(columns), tuple(rows))
+    return Motions(layout, columns, tuple(rows))
 
 
-def _columns(
-    name: str, vehicle: Vehicle, grid: Grid, start: Range, across: Range, natural: bool, straight: bool
-) -> Iterable[Column]:
+def _bounds(
+    of: Unknown, vehicle: Vehicle, grid: Grid, start: Range, across: Range, natural: bool, straight: bool
+) -> Range:
     slow, fast = vehicle.v_lon
-    for k in range(grid.steps + 1):
-        time = k * grid.dt
-        yield Column(f"{name}.s.{k}", start[0] + slow * time, start[1] + fast * time)
-    for k in range(grid.steps + 1):
-        yield Column(f"{name}.d.{k}", *across)
-    for k in range(grid.steps + 1):
-        yield Column(f"{name}.v_lon.{k}", *(vehicle.cruise if natural and k == 0 else (slow, fast)))
-    for k in range(grid.steps + 1):
-        low, high = vehicle.v_lat
-        if natural:
-            away = min(k, grid.steps - k) * grid.dt
+    match of.signal:
+        case "s":
+            time = of.step * grid.dt
+            return start[0] + slow * time, start[1] + fast * time
+        case "d":
+            return across
+        case "v_lon":
+            return vehicle.cruise if natural and of.step == 0 else vehicle.v_lon
+        case "v_lat" if straight:
+            return Fraction(0), Fraction(0)
+        case "v_lat" if natural:
+            away = min(of.step, grid.steps - of.step) * grid.dt
             bound = away * max(vehicle.a_lat[1], -vehicle.a_lat[0])
-            low, high = max(low, -bound), min(high, bound)
-        if straight:
-            low = high = Fraction(0)
-        yield Column(f"{name}.v_lat.{k}", low, high)
+            return max(vehicle.v_lat[0], -bound), min(vehicle.v_lat[1], bound)
+        case "v_lat":
+            return vehicle.v_lat
+        case _:
+            raise ValueError(f"signal={of.signal}: the bounds of its columns are not known")
 
 
 def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool, inside: Fraction) -> Iterable[Row]:
     grid = layout.grid
     half = grid.dt / 2
+    limits_of: Mapping[SignalName, Range] = {"a_lon": vehicle.a_lon, "a_lat": vehicle.a_lat}
 
-    def column(signal: str, k: int) -> int:
+    def column(signal: SignalName, k: int) -> int:
         return layout.column(name, signal, k)
 
     for k in range(grid.steps):
-        for place, speed in (("s", "v_lon"), ("d", "v_lat")):
+        for place, speed in (_ALONG, _ACROSS):
             moved = [(column(place, k + 1), Fraction(1)), (column(place, k), Fraction(-1))]
             driven = [(column(speed, k), -half), (column(speed, k + 1), -half)]
             yield row_of(affine(moved + driven), Fraction(0), Fraction(0))
-        for acceleration, limits in (("a_lon", vehicle.a_lon), ("a_lat", vehicle.a_lat)):
+        for acceleration, limits in limits_of.items():
             yield row_of(layout.state(name, acceleration, k), limits[0] + inside, limits[1] - inside)
     for k in range(grid.steps + 1):
         for sign in (1, -1):
@@ -137,7 +149,8 @@ def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool, inside: Fr
 
 
 def _jumps(name: str, vehicle: Vehicle, layout: Layout, inside: Fraction) -> Iterable[Row]:
-    for acceleration, jump in (("a_lon", vehicle.jump_lon), ("a_lat", vehicle.jump_lat)):
+    jumps: Mapping[SignalName, Fraction] = {"a_lon": vehicle.jump_lon, "a_lat": vehicle.jump_lat}
+    for acceleration, jump in jumps.items():
         for k in range(layout.grid.steps):
             later = layout.state(name, acceleration, k + 1)
             change = later + layout.state(name, acceleration, k).scaled(Fraction(-1))

@@ -8,6 +8,7 @@ from roadproof.encode.circuit import Circuit, Leaf, all_of, any_of
 from roadproof.encode.motion import Layout
 from roadproof.encode.polynomial import Fact, Polynomial, affine, constant
 from roadproof.encode.problem import ColumnFact
+from roadproof.signals import SignalName, SizeName
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -116,10 +117,12 @@ def stay_apart(
 
     ``gaps``: what a search keeps free along or across, in m.
     """
+    ends: tuple[tuple[SignalName, SizeName, Fraction], ...]
+    ends = (("s", "length", gaps[0]), ("d", "width", gaps[1]))
     conditions = []
     for step in _spells(layout.grid.steps, between):
         sides = []
-        for signal, size, gap in (("s", "length", gaps[0]), ("d", "width", gaps[1])):
+        for signal, size, gap in ends:
             for (low, _), (high, body) in ((first, second), (second, first)):
                 extent: Fraction = getattr(body, size)
                 sides.append(all_of(_beyond(layout, signal, low, high, extent, gap, e) for e in step))
@@ -128,7 +131,7 @@ def stay_apart(
 
 
 def _beyond(
-    layout: Layout, signal: str, low: str, high: str, extent: Fraction, gap: Fraction, step: int
+    layout: Layout, signal: SignalName, low: str, high: str, extent: Fraction, gap: Fraction, step: int
 ) -> Circuit[ColumnFact]:
     """``high`` less its own extent is not below ``low``."""
     ends = [

@@ -7,16 +7,29 @@ from typing import TypeAlias
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, nodes
 from roadproof.encode.polynomial import Fact, Polynomial
+from roadproof.signals import SignalName
 
 # A fact over column numbers.
 ColumnFact: TypeAlias = Fact[int]
 
 
 @dataclass(frozen=True)
+class Unknown:
+    """What a column stands for: a signal of a vehicle at a sample."""
+
+    vehicle: str
+    signal: SignalName
+    step: int
+
+    def __str__(self) -> str:
+        return f"{self.vehicle}.{self.signal}.{self.step}"
+
+
+@dataclass(frozen=True)
 class Column:
     """A real unknown between two bounds."""
 
-    name: str
+    of: Unknown
     low: Fraction
     high: Fraction
 

@@ -12,6 +12,7 @@ from typing import Any, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, is_rational, rational, read_json, text
+from roadproof.signals import SIZES, STARTING
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
@@ -21,7 +22,7 @@ _FIELDS = (
     *("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed"),
     *("parameters", "road", "vehicles", "verdict"),
 )
-_SIZES = ("length", "width", "s", "d", "v_lon", "v_lat")
+_NUMBERS = (*SIZES, *STARTING)
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,6 @@ def _lanelet_json(lanelet: Lanelet) -> dict[str, Any]:
 
 
 def _motion_json(motion: Motion) -> dict[str, Any]:
-    fields = ("length", "width", "s", "d", "v_lon", "v_lat")
     pieces = [
         {
             "duration": None if p.duration is None else str(p.duration),
@@ -89,7 +89,7 @@ def _motion_json(motion: Motion) -> dict[str, Any]:
         }
         for p in motion.pieces
     ]
-    return {field: str(getattr(motion, field)) for field in fields} | {"pieces": pieces}
+    return {str(name): str(getattr(motion, name)) for name in _NUMBERS} | {"pieces": pieces}
 
 
 def load_drive(path: Path) -> DriveFile:
@@ -192,15 +192,15 @@ def _lanelet(content: object, where: str) -> Lanelet:
 
 
 def _motion(content: object, where: str) -> Motion:
-    data = Fields(content, where, (*_SIZES, "pieces"))
+    data = Fields(content, where, (*_NUMBERS, "pieces"))
     _few(data.items("pieces"), "pieces", where)
     pieces = []
     for k, entry in enumerate(data.items("pieces")):
         piece = Fields(entry, f"{where}, piece {k + 1}", ("duration", "a_lon", "a_lat"))
         duration = None if piece.get("duration") is None else piece.rational("duration")
         pieces.append(Piece(duration, piece.rational("a_lon"), piece.rational("a_lat")))
-    length, width, s, d, v_lon, v_lat = (data.rational(name) for name in _SIZES)
+    numbers = {str(name): data.rational(name) for name in _NUMBERS}
     try:
-        return Motion(length, width, s, d, v_lon, v_lat, tuple(pieces))
+        return Motion(**numbers, pieces=tuple(pieces))
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None

@@ -7,7 +7,7 @@ instant, lanes and lanelets as for drives, and time by the exact judge.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Literal
+from typing import Any, Literal, assert_never
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import road_data
@@ -18,6 +18,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
+from roadproof.signals import SIZES
 from roadproof.spec.bind import bind
 from roadproof.world.models import check_lanelets, shared_boundaries
 from roadproof.world.road import Road
@@ -102,16 +103,29 @@ def without_empty_windows(formula: Formula) -> Formula:
     """
 
     def visit(current: Formula) -> Formula:
-        if isinstance(current, f.Until | f.Eventually | f.Always):
-            try:
-                low, high = bounds_of(current.interval)
-            except ValueError as error:
-                raise InputError(str(error)) from None
-            if high is not None and high < low:
-                return f.Truth(isinstance(current, f.Always))
-        return current
+        if not any(map(_is_empty, f.intervals(current))):
+            return current
+        match current:
+            case f.Always():
+                return f.TRUE
+            case f.Until() | f.Eventually():
+                return f.FALSE
+            case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
+                return current
+            case f.Named():
+                return current
+            case _:
+                assert_never(current)
 
     return f.transform(formula, visit)
+
+
+def _is_empty(interval: f.Interval) -> bool:
+    try:
+        low, high = bounds_of(interval)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return high is not None and high < low
 
 
 def _with_variables(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
@@ -147,7 +161,7 @@ def _spread(times: Sequence[Fraction], values: Sequence[bool], held: Held) -> Tr
 
 
 def _sizes(instant: Instant) -> dict[str, Fraction]:
-    return {n: value for n, value in instant.values.items() if n.startswith(("length(", "width("))}
+    return {name: value for name, value in instant.values.items() if name.partition("(")[0] in SIZES}
 
 
 # --- plain data ----------------------------------------------------------------------------------

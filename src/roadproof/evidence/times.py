@@ -12,6 +12,7 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
+from roadproof.logic.fragment import intervals_of
 from roadproof.logic.terms import Term
 
 # Words of SMT-LIB and its theories that are names in the language of claims.
@@ -144,9 +145,8 @@ def bound_parameters(formula: Formula) -> frozenset[str]:
     """The parameters in the interval bounds of ``formula``."""
     bounds = [
         bound
-        for part in f.subformulas(formula)
-        if isinstance(part, f.Until | f.Eventually | f.Always)
-        for bound in (part.interval.low, part.interval.high)
+        for interval in intervals_of(formula)
+        for bound in (interval.low, interval.high)
         if bound is not None
     ]
     return frozenset(x.name for bound in bounds for x in t.leaves(bound) if isinstance(x, t.Parameter))

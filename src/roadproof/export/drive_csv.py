@@ -5,9 +5,10 @@ import io
 from fractions import Fraction
 
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.signals import RECORDED, SIZES
 from roadproof.world.motion import state_at
 
-HEADER = ("time", "vehicle", "s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "length", "width")
+HEADER = ("time", "vehicle", *RECORDED, *SIZES)
 
 
 def csv_of(file: DriveFile, dt: Fraction = Fraction(1, 25)) -> str:
@@ -18,7 +19,7 @@ def csv_of(file: DriveFile, dt: Fraction = Fraction(1, 25)) -> str:
     for k in range(int(file.horizon / dt) + 1):
         for name, motion in file.drive.vehicles.items():
             state = state_at(motion, k * dt)
-            signals = (state.s, state.d, state.v_lon, state.v_lat, state.a_lon, state.a_lat)
-            sizes = (motion.length, motion.width)
+            signals = [getattr(state, signal) for signal in RECORDED]
+            sizes = [getattr(motion, size) for size in SIZES]
             writer.writerow([f"{float(k * dt):.3f}", name, *(f"{float(x):.6g}" for x in (*signals, *sizes))])
     return out.getvalue()

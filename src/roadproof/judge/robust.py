@@ -82,18 +82,15 @@ def steps(time: Fraction, dt: Fraction, what: str = "interval bound") -> int:
 def _reach(formula: Formula, dt: Fraction) -> int:
     """How many samples past an instant the margin there needs, unbounded windows at their start."""
     within = max((_reach(child, dt) for child in f.children(formula)), default=0)
-    if isinstance(formula, f.Eventually | f.Always | f.Until):
-        low, high = seconds(formula.interval)
+    for interval in f.intervals(formula):
+        low, high = seconds(interval)
         steps(low, dt)
-        return within + steps(low if high is None else high, dt)
+        within += steps(low if high is None else high, dt)
     return within
 
 
 def _has_endless_window(formula: Formula) -> bool:
-    return any(
-        isinstance(part, f.Eventually | f.Always | f.Until) and part.interval.high is None
-        for part in f.subformulas(formula)
-    )
+    return any(interval.high is None for part in f.subformulas(formula) for interval in f.intervals(part))
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,13 @@ class DriveSignals:
 
     def size(self, size: Size) -> Fraction:
         motion = self._motion(size.vehicle)
-        return motion.length if size.name == "length" else motion.width
+        match size.name:
+            case "length":
+                return motion.length
+            case "width":
+                return motion.width
+            case _:
+                assert_never(size.name)
 
     def _motion(self, vehicle: str) -> Motion:
         if vehicle not in self.drive.vehicles:

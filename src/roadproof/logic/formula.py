@@ -125,9 +125,8 @@ class Named:
 
 
 State: TypeAlias = Truth | Compare | Occupies
-Formula: TypeAlias = (
-    Truth | Compare | Occupies | Some | Every | Not | And | Or | Until | Eventually | Always | Named
-)
+Temporal: TypeAlias = Until | Eventually | Always
+Formula: TypeAlias = State | Some | Every | Not | And | Or | Temporal | Named
 
 TRUE = Truth(True)
 FALSE = Truth(False)
@@ -221,6 +220,32 @@ def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
             assert_never(formula)
 
 
+def intervals(formula: Formula) -> tuple[Interval, ...]:
+    """The intervals of ``formula`` itself, not of what is inside it; of a state formula none."""
+    match formula:
+        case Until(_, interval, _) | Eventually(interval, _) | Always(interval, _):
+            return (interval,)
+        case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Named():
+            return ()
+        case _:
+            assert_never(formula)
+
+
+def with_intervals(formula: Formula, change: Callable[[Interval], Interval]) -> Formula:
+    """``formula`` with ``change`` applied to each of its ``intervals``."""
+    match formula:
+        case Until(left, interval, right):
+            return Until(left, change(interval), right)
+        case Eventually(interval, body):
+            return Eventually(change(interval), body)
+        case Always(interval, body):
+            return Always(change(interval), body)
+        case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Named():
+            return formula
+        case _:
+            assert_never(formula)
+
+
 def subformulas(formula: Formula) -> Iterator[Formula]:
     """Every distinct sub-formula once, parents before children."""
     seen: set[Formula] = set()
@@ -236,7 +261,7 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
 
 def is_state(formula: Formula) -> bool:
     """Whether ``formula`` speaks about one instant only: no temporal operator inside."""
-    return not any(isinstance(f, Until | Eventually | Always) for f in subformulas(formula))
+    return not any(isinstance(f, Temporal) for f in subformulas(formula))
 
 
 def transform(formula: Formula, change: Callable[[Formula], Formula]) -> Formula:

@@ -34,8 +34,12 @@ def _reach(formula: Formula, below: list[Seconds | None]) -> Seconds | None:
         case f.Until(_, interval, _) | f.Eventually(interval, _) | f.Always(interval, _):
             high = bounds_of(interval)[1]
             return None if high is None or farthest is None else high + farthest
-        case _:
+        case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
             return farthest
+        case f.Named():
+            return farthest
+        case _:
+            assert_never(formula)
 
 
 def _latest(times: list[Seconds | None]) -> Seconds | None:
@@ -54,11 +58,7 @@ def is_bounded(formula: Formula) -> bool:
 
 def intervals_of(formula: Formula) -> list[Interval]:
     """The intervals of its temporal operators."""
-    return [
-        current.interval
-        for current in f.subformulas(formula)
-        if isinstance(current, f.Until | f.Eventually | f.Always)
-    ]
+    return [interval for current in f.subformulas(formula) for interval in f.intervals(current)]
 
 
 def is_affine(formula: Formula) -> bool:

@@ -35,13 +35,9 @@ _RELATION = {
     "+": "+",
     "-": "-",
 }
-_UNIT = {
-    "m/s": r"\mathrm{m}/\mathrm{s}",
-    "m/s^2": r"\mathrm{m}/\mathrm{s}^2",
-    "km/h": r"\mathrm{km}/\mathrm{h}",
-}
 _GREEK = {"rho", "alpha", "beta", "gamma", "delta", "epsilon", "theta", "lambda", "mu", "tau"}
 _EXTREME = ("min", "max")
+_WORDS = re.compile("([a-z]+)")
 
 
 def latex(tree: Expression | Claim | Definition) -> str:
@@ -76,7 +72,8 @@ def _operator(expression: Expression) -> str:
         case syntax.Literal_(bool(), _, _):
             return r"\top" if expression.value else r"\bot"
         case syntax.Literal_(value, unit, _):
-            return _number(Fraction(value)) + (rf"\,{_UNIT.get(unit, _roman(unit))}" if unit else "")
+            shown = "".join(_roman(part) if part.isalpha() else part for part in _WORDS.split(unit))
+            return _number(Fraction(value)) + (rf"\,{shown}" if unit else "")
         case syntax.Name(name, _):
             return symbol(name)
         case syntax.Call():

@@ -21,6 +21,7 @@ from roadproof.errors import Position, TextError
 from roadproof.logic import syntax
 from roadproof.logic.foreign import find_foreign
 from roadproof.logic.syntax import Expression, Statement
+from roadproof.units import UNITS
 
 DEEPEST_NESTING = 100
 LONGEST_NUMBER = 200
@@ -94,6 +95,8 @@ def _check_depth(body: Expression, at: Position, source: str, text: str) -> None
 @cache
 def _parser(start: str) -> Lark:
     grammar = resources.files("roadproof.logic").joinpath("grammar.lark").read_text("utf-8")
+    longest_first = sorted(UNITS, key=len, reverse=True)
+    grammar = grammar.replace("%UNITS%", "|".join(re.escape(x).replace("/", r"\/") for x in longest_first))
     return Lark(
         grammar,
         start=start,
@@ -122,7 +125,7 @@ _READABLE = {
     "INDEXED": "a name",
     "QUALIFIED": "a name",
     "NUMBER": "a number",
-    "UNIT": "a unit (s, ms, m, m/s, km/h, m/s^2, unitless)",
+    "UNIT": f"a unit ({', '.join(UNITS)})",
     "STRING": 'a "text"',
     "LPAR": "(",
     "RPAR": ")",

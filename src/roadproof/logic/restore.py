@@ -16,8 +16,8 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.syntax import Binary, Bounds, Call, Expression, Literal_, Name, Prefix
 from roadproof.logic.terms import Dimension, Term
+from roadproof.units import SI
 
-_UNITS: dict[Dimension, str] = {(0, 0): "", (0, 1): "s", (1, 0): "m", (1, -1): "m/s", (1, -2): "m/s^2"}
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -141,8 +141,8 @@ def _product(factors: Sequence[Expression]) -> Expression:
 
 
 def _number(value: Fraction, dimension: Dimension = (0, 0)) -> Expression:
-    if dimension in _UNITS:
-        written: Expression = Literal_(abs(value), _UNITS[dimension])
+    if dimension in SI:
+        written: Expression = Literal_(abs(value), SI[dimension] if dimension != (0, 0) else "")
     else:
         written = Binary("*", Literal_(abs(value)), _unit(dimension))
     return Prefix("-", written) if value < 0 else written

@@ -1,24 +1,23 @@
 """Formulas to formulas with the same meaning, or with names replaced by values."""
 
-from collections.abc import Callable, Iterator, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from fractions import Fraction
 
 from roadproof.logic.formula import (
-    Always,
     Compare,
     Domain,
-    Eventually,
     Every,
     Formula,
     Interval,
     Named,
     Occupies,
     Some,
-    Until,
     children,
+    intervals,
     subformulas,
     transform,
     with_children,
+    with_intervals,
 )
 from roadproof.logic.terms import (
     Leaf,
@@ -31,6 +30,7 @@ from roadproof.logic.terms import (
     leaves,
     replace_leaves,
 )
+from roadproof.signals import SIGNALS, SignalName
 
 
 def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
@@ -40,17 +40,9 @@ def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
         return Interval(change(old.low), None if old.high is None else change(old.high))
 
     def visit(current: Formula) -> Formula:
-        match current:
-            case Compare(left, op, right):
-                return Compare(change(left), op, change(right))
-            case Until(left, bounds, right):
-                return Until(left, interval(bounds), right)
-            case Eventually(bounds, body):
-                return Eventually(interval(bounds), body)
-            case Always(bounds, body):
-                return Always(interval(bounds), body)
-            case _:
-                return current
+        if isinstance(current, Compare):
+            return Compare(change(current.left), current.op, change(current.right))
+        return with_intervals(current, interval)
 
     return transform(formula, visit)
 
@@ -77,16 +69,13 @@ def without_names(formula: Formula) -> Formula:
 def terms_of(formula: Formula) -> Iterator[Term]:
     """Both sides of every comparison and every interval bound."""
     for current in subformulas(formula):
-        match current:
-            case Compare(left, _, right):
-                yield left
-                yield right
-            case Until(_, interval, _) | Eventually(interval, _) | Always(interval, _):
-                yield interval.low
-                if interval.high is not None:
-                    yield interval.high
-            case _:
-                pass
+        if isinstance(current, Compare):
+            yield current.left
+            yield current.right
+        for interval in intervals(current):
+            yield interval.low
+            if interval.high is not None:
+                yield interval.high
 
 
 def parameters_of(formula: Formula) -> tuple[str, ...]:
@@ -102,6 +91,13 @@ def vehicles_of(formula: Formula) -> tuple[str, ...]:
         leaf.vehicle for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Signal | Size)
     }
     return tuple(sorted(found))
+
+
+def signals_of(formulas: Iterable[Formula]) -> tuple[SignalName, ...]:
+    """Names of the signals that occur, in the order of the list of signals."""
+    terms = (term for formula in formulas for term in terms_of(formula))
+    found = {leaf.name for term in terms for leaf in leaves(term) if isinstance(leaf, Signal)}
+    return tuple(name for name in SIGNALS if name in found)
 
 
 def rename(formula: Formula, old: str, new: str) -> Formula:

@@ -5,26 +5,16 @@ Semantics*) and stands only alone on one side of a comparison; every other node 
 A ``Quotient`` divides by a term without signals, so each term is a piecewise polynomial of signals.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Literal, TypeAlias, assert_never
+from typing import TypeAlias, assert_never
 
 from roadproof.logic.node import node
-
-# Exponents of metre and second: (1, -2) is an acceleration.
-Dimension: TypeAlias = tuple[int, int]
-SignalName: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "a_lat"]
-SizeName: TypeAlias = Literal["length", "width"]
-
-SIGNAL_DIMENSIONS: Mapping[SignalName, Dimension] = {
-    "s": (1, 0),
-    "d": (1, 0),
-    "v_lon": (1, -1),
-    "v_lat": (1, -1),
-    "a_lon": (1, -2),
-    "a_lat": (1, -2),
-}
-SIZE_DIMENSIONS: Mapping[SizeName, Dimension] = {"length": (1, 0), "width": (1, 0)}
+from roadproof.signals import SIGNAL_DIMENSIONS as SIGNAL_DIMENSIONS
+from roadproof.signals import SIZE_DIMENSIONS as SIZE_DIMENSIONS
+from roadproof.signals import SignalName as SignalName
+from roadproof.signals import SizeName as SizeName
+from roadproof.units import Dimension as Dimension
 
 
 @node

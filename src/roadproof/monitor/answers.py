@@ -1,8 +1,8 @@
 """What a monitor answers, and how answers are read off the values of a formula."""
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Generic, Literal, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from roadproof.monitor.semantics import Evaluation, View
 
 Convention: TypeAlias = Literal["truncated", "clip"]
 When: TypeAlias = Literal["start", "all"]
+# What the caller calls a question: a text, or a value that says what is asked.
+Key = TypeVar("Key", bound=Hashable)
 
 
 @dataclass(frozen=True)
@@ -33,11 +35,11 @@ class Answer:
 
 
 @dataclass(frozen=True)
-class Verdicts:
-    """Answers by the name of the formula, and of named sub-formulas at all samples if asked for."""
+class Verdicts(Generic[Key]):
+    """Answers by what was asked, and of named sub-formulas at all samples if asked for."""
 
     convention: Convention
-    answers: Mapping[str, Answer]
+    answers: Mapping[Key, Answer]
     named: Mapping[Named, Answer]
 
 
@@ -53,9 +55,9 @@ class Margin:
 
 
 @dataclass(frozen=True)
-class Margins:
+class Margins(Generic[Key]):
     convention: Convention
-    margins: Mapping[str, Margin]
+    margins: Mapping[Key, Margin]
     named: Mapping[Named, Margin]
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Generic
 
 import numpy as np
 
@@ -15,10 +16,12 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula, Named
-from roadproof.logic.rewrite import bounds_of, terms_of, without_names
+from roadproof.logic.fragment import intervals_of
+from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_names
 from roadproof.monitor.answers import (
     Answer,
     Convention,
+    Key,
     Margins,
     Verdicts,
     When,
@@ -39,6 +42,7 @@ from roadproof.monitor.robustness import (
     trace_blocks,
 )
 from roadproof.monitor.semantics import Evaluation
+from roadproof.signals import SignalName
 
 
 @dataclass(frozen=True)
@@ -58,13 +62,17 @@ class Observation:
 
 
 @dataclass(frozen=True)
-class Monitor:
-    """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees."""
+class Monitor(Generic[Key]):
+    """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
 
-    formulas: Mapping[str, Formula]
-    plain: Mapping[str, Formula]
+    ``signals``: what they speak of, of any vehicle.
+    """
+
+    formulas: Mapping[Key, Formula]
+    plain: Mapping[Key, Formula]
     named: Mapping[Named, Formula]
     states: frozenset[Formula]
+    signals: tuple[SignalName, ...]
 
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
         """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
@@ -85,7 +93,7 @@ class Monitor:
         starts: Integers | None = None,
         named: bool = False,
         threads: int = 1,
-    ) -> Verdicts:
+    ) -> Verdicts[Key]:
         """The answer to every formula at the start of each trace, or ``at`` all samples.
 
         ``starts`` gives the sample at which each trace starts (0 if not given). With ``named``,
@@ -118,7 +126,7 @@ class Monitor:
         named: bool = False,
         threads: int = 1,
         samples_in_block: int = 24_000,
-    ) -> Margins:
+    ) -> Margins[Key]:
         """The margin of every formula; arguments and errors as in ``evaluate``."""
         check_starts(starts, batch.lengths)
         given = _given(batch)
@@ -175,8 +183,8 @@ class Monitor:
                     waiting.extend(f.children(current))
 
 
-def compile(formulas: Mapping[str, Formula]) -> Monitor:
-    """A monitor for some formulas, by names of the caller's choice.
+def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
+    """A monitor for some formulas, by names or values of the caller's choice; mistakes show them as text.
 
     Every parameter must have its value (``with_values``); lanes may be open where the batch gives
     the truth of the formulas that speak of them. Raises ``InputError``.
@@ -195,23 +203,21 @@ def compile(formulas: Mapping[str, Formula]) -> Monitor:
     )
     named = {node: f.transform(node, share) for node in nodes}
     states = frozenset(x for x in pool if f.is_state(x))
-    return Monitor(dict(formulas), plain, named, states)
+    return Monitor(dict(formulas), plain, named, states, signals_of(formulas.values()))
 
 
-def _check_closed(name: str, formula: Formula) -> None:
+def _check_closed(name: object, formula: Formula) -> None:
     for term in terms_of(formula):
         for leaf in t.leaves(term):
             if isinstance(leaf, t.Parameter | t.Variable):
                 raise InputError(
                     f"{name}: a monitor needs numbers, but {leaf.name} has no value; substitute one first"
                 )
-    for part in f.subformulas(formula):
-        if isinstance(part, f.Until | f.Eventually | f.Always):
-            low, high = bounds_of(part.interval)
-            if low < 0 or (high is not None and high < low):
-                raise InputError(
-                    f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
-                )
+    for low, high in map(bounds_of, intervals_of(formula)):
+        if low < 0 or (high is not None and high < low):
+            raise InputError(
+                f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
+            )
 
 
 def _given(batch: Batch) -> dict[Formula, Array]:

@@ -21,6 +21,7 @@ from roadproof.prove.roads import lay_road
 from roadproof.prove.search import Model
 from roadproof.prove.states import TYPICAL_SIZE
 from roadproof.prove.wishes import layout_of
+from roadproof.signals import SIZES
 from roadproof.spec.query import Query
 
 HELD: tuple[Held, ...] = ("before", "after")
@@ -94,4 +95,4 @@ def _fixed_values(query: Query, model: Model, defaults: Mapping[str, Fraction]) 
 
 
 def _is_size(symbol: str) -> bool:
-    return symbol.startswith(("|length(", "|width("))
+    return symbol.strip("|").partition("(")[0] in SIZES

@@ -9,6 +9,7 @@ grounding code with it.
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import TypeAlias, assert_never
 
 from roadproof.evidence.atoms import ZONES, Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.derivation import Lemma, Site, prefix_form
@@ -18,6 +19,9 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
 from roadproof.prove.roster import Roster
 from roadproof.solve.smt import Session
+
+# What speaks of other moments, or of elements of a road.
+Timed: TypeAlias = f.Temporal | f.Some | f.Every
 
 
 @dataclass(frozen=True)
@@ -119,8 +123,12 @@ class Grounding:
             case f.And(parts) | f.Or(parts):
                 word = "and" if isinstance(formula, f.And) == positive else "or"
                 return f"({word} {' '.join(self.truth(p, positive, moment) for p in parts)})"
-            case _:
+            case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
                 return self._obligation(formula, positive, moment)
+            case f.Compare() | f.Occupies():
+                raise ValueError(f"no atom: {type(formula).__name__}; atomise the formula first")
+            case _:
+                assert_never(formula)
 
     def atom(self, name: str, moment: Moment) -> str:
         times = compared_times(self.atoms.meaning(name), self.timing)
@@ -147,7 +155,7 @@ class Grounding:
             self._declared.add(name)
             self.session.tell(command)
 
-    def _obligation(self, formula: Formula, positive: bool, moment: Moment) -> str:
+    def _obligation(self, formula: Timed, positive: bool, moment: Moment) -> str:
         key = (formula, positive, moment)
         if key not in self._known:
             switch = f"q${len(self._known) + 1}"
@@ -156,7 +164,7 @@ class Grounding:
             self._unfold(formula, positive, moment, switch)
         return self._known[key]
 
-    def _unfold(self, formula: Formula, positive: bool, moment: Moment, switch: str) -> None:
+    def _unfold(self, formula: Timed, positive: bool, moment: Moment, switch: str) -> None:
         site = Site(prefix_form(formula), positive, str(moment))
         match formula:
             case f.Eventually(interval, body) | f.Always(interval, body):
@@ -192,7 +200,7 @@ class Grounding:
                 else:
                     self.road_universals.append(RoadUniversal(site, switch, domain, at_element))
             case _:
-                raise ValueError(f"no quantifier: {site.formula}")
+                assert_never(formula)
 
     def _over_roster(
         self,

@@ -17,6 +17,7 @@ from roadproof.evidence.derivation import Lemma, Site, free_prefix
 from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import road_names
 from roadproof.prove.grounding import Grounding, Universal
 from roadproof.prove.roster import Roster, open_quantifiers
@@ -303,9 +304,8 @@ def _missing(
 def _bounds_of(formula: Formula) -> list[Moment]:
     """The distinct interval bounds of a formula, but for zero."""
     found: dict[Moment, None] = {}
-    for part in f.subformulas(formula):
-        if isinstance(part, f.Until | f.Eventually | f.Always):
-            for bound in (part.interval.low, part.interval.high):
-                if bound is not None:
-                    found[moment_of(bound)] = None
+    for interval in intervals_of(formula):
+        for bound in (interval.low, interval.high):
+            if bound is not None:
+                found[moment_of(bound)] = None
     return [moment for moment in found if moment != ZERO]

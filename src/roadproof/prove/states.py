@@ -8,7 +8,7 @@ combination comes back as a clause that holds at every instant.
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, assert_never
 
 from roadproof.effort import Meter
 from roadproof.evidence import state
@@ -28,14 +28,6 @@ Clause: TypeAlias = tuple[tuple[str, bool], ...]
 QUICK = 0.3
 CASE = 5.0
 SHRINK = 0.1
-PLAUSIBLE: Mapping[t.SignalName, tuple[Fraction, Fraction]] = {
-    "s": (Fraction(0), Fraction(500)),
-    "d": (Fraction(0), Fraction(11)),
-    "v_lon": (Fraction(5), Fraction(40)),
-    "v_lat": (Fraction(-2), Fraction(2)),
-    "a_lon": (Fraction(-8), Fraction(5)),
-    "a_lat": (Fraction(-3), Fraction(3)),
-}
 TYPICAL_SIZE: Mapping[t.SizeName, Fraction] = {"length": Fraction(9, 2), "width": Fraction(9, 5)}
 
 
@@ -197,10 +189,10 @@ def _leaves(formulas: Iterable[Formula]) -> list[t.Parameter | t.Variable | t.Si
 
 
 def _plausible(leaf: t.Parameter | t.Variable | t.Signal | t.Size, defaults: Mapping[str, Fraction]) -> str:
-    """What a reader expects of a signal on a motorway, or of a parameter; only to look there first."""
+    """What a reader expects of a signal, or of a parameter; only to look there first."""
     match leaf:
         case t.Signal(name, _):
-            low, high = PLAUSIBLE[name]
+            low, high = map(Fraction, _on_a_motorway(name))
         case t.Parameter(name, _) if name in defaults:
             low, high = sorted((defaults[name] / 3, defaults[name] * 3))
         case t.Size(size, _):
@@ -208,3 +200,21 @@ def _plausible(leaf: t.Parameter | t.Variable | t.Signal | t.Size, defaults: Map
         case _:
             return ""
     return f"(assert (<= {rational(low)} {state.symbol(leaf)} {rational(high)}))"
+
+
+def _on_a_motorway(signal: t.SignalName) -> tuple[int, int]:
+    match signal:
+        case "s":
+            return 0, 500
+        case "d":
+            return 0, 11
+        case "v_lon":
+            return 5, 40
+        case "v_lat":
+            return -2, 2
+        case "a_lon":
+            return -8, 5
+        case "a_lat":
+            return -3, 3
+        case _:
+            assert_never(signal)

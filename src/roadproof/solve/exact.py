@@ -50,7 +50,7 @@ def solve_exactly(problem: Problem, meter: Meter | None = None) -> ExactSolution
 def script(problem: Problem) -> Iterator[str]:
     """The problem as SMT-LIB 2 commands, column k being the constant ``ck``."""
     for k, column in enumerate(problem.columns):
-        yield f"(declare-const c{k} Real) ; {column.name}"
+        yield f"(declare-const c{k} Real) ; {column.of}"
         yield f"(assert (<= {_number(column.low)} c{k} {_number(column.high)}))"
     for row in problem.rows:
         yield from _row(row)

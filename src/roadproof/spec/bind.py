@@ -9,7 +9,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import terms_of, with_values
 from roadproof.spec.library import Library, is_within, source_of, unknown
-from roadproof.spec.quantity import UNITS
+from roadproof.units import UNITS
 from roadproof.world.road import Lanelet, Road
 
 

@@ -29,6 +29,7 @@ from roadproof.logic.syntax import (
     Statement,
     WhenBlock,
 )
+from roadproof.signals import SIGNALS, SIZES
 
 LARGEST_FILE = 1_000_000
 _MENTION = re.compile(r"\[(\w+)\]")
@@ -259,8 +260,7 @@ class _Building:
 
 # Names that mean something without a definition; spec.elaborate gives their meaning.
 BUILT_IN = frozenset(
-    {"s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "length", "width", "occ"}
-    | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
+    {*SIGNALS, *SIZES, "occ"} | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
 )
 
 

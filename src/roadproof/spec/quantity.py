@@ -1,22 +1,11 @@
-"""Terms with their dimensions, and the units that dimensions are written in."""
+"""Terms with their dimensions."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 
 from roadproof.errors import Position, TextError
 from roadproof.logic import terms as t
-from roadproof.logic.terms import Dimension
+from roadproof.units import SI, Dimension
 
-UNITS: Mapping[str, tuple[Fraction, Dimension]] = {
-    "s": (Fraction(1), (0, 1)),
-    "ms": (Fraction(1, 1000), (0, 1)),
-    "m": (Fraction(1), (1, 0)),
-    "m/s": (Fraction(1), (1, -1)),
-    "km/h": (Fraction(5, 18), (1, -1)),
-    "m/s^2": (Fraction(1), (1, -2)),
-    "unitless": (Fraction(1), (0, 0)),
-}
 SECONDS: Dimension = (0, 1)
 
 
@@ -46,10 +35,7 @@ def unit_name(dimension: Dimension | None) -> str:
     """A dimension as a unit: (1, -2) is m/s^2."""
     if dimension is None or dimension == (0, 0):
         return "no unit"
-    for unit, (factor, known) in UNITS.items():
-        if known == dimension and factor == 1:
-            return unit
-    return f"m^{dimension[0]}*s^{dimension[1]}"
+    return SI.get(dimension) or f"m^{dimension[0]}*s^{dimension[1]}"
 
 
 def product_dimension(left: Quantity, right: Quantity, sign: int) -> Dimension | None:

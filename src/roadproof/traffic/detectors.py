@@ -5,13 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadproof.logic.terms import SignalName
 from roadproof.traffic.pairs import Pairs, pairs_in_sight
 from roadproof.traffic.questions import PAIR, Questions
 from roadproof.traffic.recording import Masks, Recording
-from roadproof.traffic.traces import NEEDED, blocks, gather
-
-SIGNALS: tuple[SignalName, ...] = (*NEEDED, "a_lon")
+from roadproof.traffic.traces import blocks, gather
 
 
 @dataclass(frozen=True)
@@ -44,6 +41,7 @@ def find_detections(recording: Recording, questions: Questions, meeting: Pairs) 
 def _detect(recording: Recording, questions: Questions, pairs: Pairs, lanes: Masks) -> Iterator[Detection]:
     """``lanes`` holds, for each pair, the lanes to ask for, as bits."""
     assert questions.detectors is not None
+    signals = questions.detectors.signals
     bits = np.arange(len(recording.lanes))
     pair, lane = np.nonzero((lanes[:, None] >> bits) & 1)
     asked, ids = pairs.choose(pair), recording.vehicle_id
@@ -51,11 +49,10 @@ def _detect(recording: Recording, questions: Questions, pairs: Pairs, lanes: Mas
         block = asked.choose(index)
         vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
         at = {"L": lane[index]}
-        batch = gather(recording, vehicles, block.low, block.high, SIGNALS, at, questions.lane_atoms)
+        batch = gather(recording, vehicles, block.low, block.high, signals, at, questions.lane_atoms)
         answers = questions.detectors.evaluate(batch, questions.settings.convention).answers
-        for name, answer in answers.items():
-            detector, role = name.split("/")
+        for sought, answer in answers.items():
             for p in np.flatnonzero(answer.true):
                 who = int(ids[block.first[p]]), int(ids[block.second[p]])
-                sv, pov = who if role == "first" else who[::-1]
-                yield Detection(detector, sv, pov, recording.lanes[at["L"][p]].name)
+                sv, pov = who if sought.sv == "first" else who[::-1]
+                yield Detection(sought.detector, sv, pov, recording.lanes[at["L"][p]].name)

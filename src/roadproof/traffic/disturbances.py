@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from roadproof.traffic.pairs import Pairs, Triples, common_pairs, near_pairs
-from roadproof.traffic.questions import PAIR, Questions
+from roadproof.traffic.questions import PAIR, SAFE, VIOLATION, Condition, Questions
 from roadproof.traffic.recording import Bools, Integers, Recording, offsets
 from roadproof.traffic.traces import blocks, gather
 
@@ -47,15 +47,15 @@ def find_disturbances(recording: Recording, questions: Questions) -> Disturbance
     for index in blocks(near.low, near.high, 400_000):
         block = near.choose(index)
         vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
-        batch = gather(recording, vehicles, block.low, block.high)
+        batch = gather(recording, vehicles, block.low, block.high, questions.danger.signals)
         answers = questions.danger.evaluate(batch, at="all").answers
         inside = np.arange(batch.samples)[:, None] < batch.lengths
-        violating[index] = answers["violation"].true.any(axis=0)
+        violating[index] = answers[VIOLATION].true.any(axis=0)
         frames = np.arange(batch.samples)[:, None] + block.low
         place = (np.arange(batch.samples)[:, None] + offset[:-1][index])[inside]
-        next_safe[place] = _next(answers["safe"].true, frames)[inside]
+        next_safe[place] = _next(answers[SAFE].true, frames)[inside]
         for k, last in enumerate(last_danger):
-            last[place] = _last(answers[f"danger {k}"].true, frames)[inside]
+            last[place] = _last(answers[Condition("danger", k)].true, frames)[inside]
     return _cut(questions, meeting, near, violating, offset, next_safe, last_danger)
 
 

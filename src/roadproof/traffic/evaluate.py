@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadproof.logic.terms import SignalName
 from roadproof.monitor.answers import Convention
 from roadproof.monitor.compiled import Monitor, Observation
 from roadproof.traffic.detectors import Detection, find_detections
@@ -18,12 +17,11 @@ from roadproof.traffic.disturbances import (
 )
 from roadproof.traffic.overlaps import describe_overlaps
 from roadproof.traffic.pairs import triples_of
-from roadproof.traffic.questions import PAIR, TRIPLE, Questions
+from roadproof.traffic.questions import PAIR, START, TRIPLE, Asked, Questions
 from roadproof.traffic.recording import Bools, Integers, Recording
 from roadproof.traffic.repeats import Seen, see_pair
-from roadproof.traffic.traces import NEEDED, gather
+from roadproof.traffic.traces import gather
 
-SIGNALS: tuple[SignalName, ...] = (*NEEDED, "a_lon")
 OTHER: Mapping[Convention, Convention] = {"truncated": "clip", "clip": "truncated"}
 
 
@@ -139,17 +137,17 @@ class _Tally:
     undecided: int = 0
     differing: int = 0
 
-    def ask(self, monitor: Monitor, seen: Observation, arises: Bools) -> Mapping[str, Bools]:
-        """For each formula which traces, of those where danger ``arises``, satisfy it."""
+    def ask(self, monitor: Monitor[Asked], seen: Observation, arises: Bools) -> Mapping[Asked, Bools]:
+        """For each question which traces, of those where danger ``arises``, satisfy it."""
         convention = self.questions.settings.convention
         answers = monitor.evaluate(seen, convention).answers
         others = monitor.evaluate(seen, OTHER[convention]).answers
         true = {}
-        for name, answer in answers.items():
-            true[name] = answer.true & arises
+        for asked, answer in answers.items():
+            true[asked] = answer.true & arises
             self.asked += int(np.count_nonzero(arises))
             self.undecided += int(np.count_nonzero(answer.undecided & arises))
-            self.differing += int(np.count_nonzero((answer.true != others[name].true) & arises))
+            self.differing += int(np.count_nonzero((answer.true != others[asked].true) & arises))
         return true
 
 
@@ -168,8 +166,9 @@ def _match_pairs(
     vehicles = dict(zip(PAIR, (pairs.first, pairs.second), strict=True))
     ends = tuple(x[chosen] for x in found.end)
     ids = recording.vehicle_id
-    for k, name, hits in _ask_all(recording, questions, questions.pairs, vehicles, start, ends, lanes, tally):
-        asked = questions.asked[name]
+    for k, asked, hits in _ask_all(
+        recording, questions, questions.pairs, vehicles, start, ends, lanes, tally
+    ):
         for p in hits:
             pair = int(ids[pairs.first[p]]), int(ids[pairs.second[p]])
             sv, pov = pair if asked.sv == "first" else pair[::-1]
@@ -189,11 +188,11 @@ def _candidates(recording: Recording, questions: Questions, found: Disturbances)
         dict(zip(TRIPLE, (cut.triples.sv, cut.triples.pov1, cut.triples.pov2), strict=True)),
         cut.start,
         cut.start,
-        SIGNALS,
+        questions.triple_start.signals,
         lanes,
         questions.lane_atoms,
     )
-    return cut.choose(questions.triple_start.evaluate(batch).answers["start"].true)
+    return cut.choose(questions.triple_start.evaluate(batch).answers[START].true)
 
 
 def _match_triples(
@@ -206,8 +205,7 @@ def _match_triples(
     vehicles = dict(zip(TRIPLE, (triples.sv, triples.pov1, triples.pov2), strict=True))
     ids = recording.vehicle_id
     hits = _ask_all(recording, questions, questions.triples, vehicles, start, cut.end, lanes, tally)
-    for k, name, places in hits:
-        asked = questions.asked[name]
+    for k, asked, places in hits:
         for p in places:
             sv, pov, pov2 = (int(ids[x[p]]) for x in (triples.sv, triples.pov1, triples.pov2))
             lane = _lane_name(recording, lanes["L"][p])
@@ -219,23 +217,24 @@ def _match_triples(
 def _ask_all(
     recording: Recording,
     questions: Questions,
-    monitors: tuple[Monitor, ...],
+    monitors: tuple[Monitor[Asked], ...],
     vehicles: Mapping[str, Integers],
     start: Integers,
     ends: tuple[Integers, ...],
     lanes: Mapping[str, Integers],
     tally: _Tally,
-) -> Iterator[tuple[int, str, Integers]]:
-    """For each minDanger and formula the traces that satisfy it, each cut at its own end."""
+) -> Iterator[tuple[int, Asked, Integers]]:
+    """For each minDanger and question the traces that satisfy it, each cut at its own end."""
     last = np.max(ends, axis=0)
-    batch = gather(recording, vehicles, start, last, SIGNALS, lanes, questions.lane_atoms)
+    signals = [signal for monitor in monitors for signal in monitor.signals]
+    batch = gather(recording, vehicles, start, last, signals, lanes, questions.lane_atoms)
     seen: Observation | None = None
     for k, (monitor, end) in enumerate(zip(monitors, ends, strict=True)):
         seen = monitor.observe(batch, known=seen)
         arises = end >= 0
         lengths = np.where(arises, end - start + 1, batch.lengths)
-        for name, true in tally.ask(monitor, seen.cut(lengths), arises).items():
-            yield k, name, np.flatnonzero(true)
+        for asked, true in tally.ask(monitor, seen.cut(lengths), arises).items():
+            yield k, asked, np.flatnonzero(true)
 
 
 def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.signals import SignalName, SizeName
 from roadproof.traffic.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
@@ -65,22 +66,31 @@ def check_sight(meta: Table, tracks: Table, header: Sequence[str], upper: int) -
     return (f"{tracks.path.name}, {told}",)
 
 
-_COLUMNS = {
-    "s": "x",
-    "d": "y",
-    "v_lon": "xVelocity",
-    "v_lat": "yVelocity",
-    "a_lon": "xAcceleration",
-    "length": "width",
-    "width": "height",
-}
+def _column_of(name: SignalName | SizeName) -> str:
+    match name:
+        case "s":
+            return "x"
+        case "d":
+            return "y"
+        case "v_lon":
+            return "xVelocity"
+        case "v_lat":
+            return "yVelocity"
+        case "a_lon":
+            return "xAcceleration"
+        case "length":
+            return "width"
+        case "width":
+            return "height"
+        case _:
+            raise ValueError(f"no rule of traffic.plausible is about {name}")
 
 
 def check_plausible(recording: Recording, tracks: Table) -> tuple[str, ...]:
     """Notes on what the recording contradicts itself in. Raises ``InputError`` where that is too much."""
     notes = []
     for doubt in find_doubts(recording):
-        cell = f"{tracks.cell(doubt.row, _COLUMNS[doubt.signal])} of vehicle {tracks['id'][doubt.row]}"
+        cell = f"{tracks.cell(doubt.row, _column_of(doubt.signal))} of vehicle {tracks['id'][doubt.row]}"
         if doubt.refused:
             raise InputError(f"{tracks.path}, {cell}: {doubt.told}")
         notes.append(f"{tracks.path.name}, {cell}: {doubt.told}")

@@ -17,8 +17,8 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.logic.terms import SignalName, SizeName
 from roadproof.monitor.batch import Array, Batch
+from roadproof.signals import RECORDED, SIGNALS, SIZES
 from roadproof.spec.bind import occupies
 from roadproof.traffic.formats import other_table
 from roadproof.traffic.highd import read_highd
@@ -29,9 +29,7 @@ from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 from roadproof.world.road import Lanelet, Road
 
-SIGNALS: tuple[SignalName, ...] = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
-SIZES: tuple[SizeName, ...] = ("length", "width")
-HEADER = ("time", "vehicle", *SIGNALS, *SIZES)
+HEADER = ("time", "vehicle", *RECORDED, *SIZES)
 LARGEST_FILE = 100_000_000
 _PAIR = re.compile(r"(?P<path>.*)_tracks\.csv:(?P<ids>\d{1,9}(?:,\d{1,9}){0,2})")
 _TIME = re.compile(r"-?\d{1,12}(\.\d{1,12})?")
@@ -107,7 +105,7 @@ def cut_trace(
     way = int(recording.direction[next(iter(vehicles.values()))])
     road = _road_of(recording, way)
     made = gather(
-        recording, {n: one(v) for n, v in vehicles.items()}, one(frames[0]), one(frames[1]), SIGNALS
+        recording, {n: one(v) for n, v in vehicles.items()}, one(frames[0]), one(frames[1]), RECORDED
     )
     given: dict[Formula, Array] = {}
     lanes = {}
@@ -172,10 +170,10 @@ def read_samples(path: Path, road: Road) -> OneTrace:
             f"{path}: {len(found)} rows for {len(times)} times and {len(names)} vehicles: every vehicle "
             "needs exactly one row at every time"
         )
-    columns: dict[tuple[str, str], list[float]] = {(x, n): [] for x in (*SIGNALS, *SIZES) for n in names}
+    columns: dict[tuple[str, str], list[float]] = {(x, n): [] for x in (*RECORDED, *SIZES) for n in names}
     order = {time: k for k, time in enumerate(times)}
     for number, row in sorted(enumerate(rows, start=2), key=lambda x: order[x[1]["time"]]):
-        for x in (*SIGNALS, *SIZES):
+        for x in (*RECORDED, *SIZES):
             columns[x, row["vehicle"]].append(_number(path, number, x, row[x]))
     sizes: dict[tuple[str, str], float] = {}
     for name in names:

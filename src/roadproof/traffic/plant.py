@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from roadproof.errors import UsageError
+from roadproof.signals import RECORDED
 from roadproof.traffic.recording import (
-    SIGNALS,
     Bools,
     Floats,
     Recording,
@@ -62,7 +62,7 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
     names = sorted(drive.vehicles)
     samples = [_sample(drive, name, frames, place, recording.rate) for name in names]
     columns: dict[str, Any] = {
-        x: np.concatenate([sampled[k] for sampled in samples]) for k, x in enumerate(SIGNALS)
+        x: np.concatenate([sampled[k] for sampled in samples]) for k, x in enumerate(RECORDED)
     }
     length, width = (
         np.array([round(float(getattr(drive.vehicles[n], x)), 2) for n in names]) for x in ("length", "width")
@@ -103,7 +103,7 @@ def _sample(drive: Drive, name: str, frames: int, place: Place, rate: int) -> li
     shifts = {"s": place.s, "d": place.d}
     return [
         np.round([float(getattr(x, signal)) + shifts.get(signal, 0.0) for x in states], 2) + 0.0
-        for signal in SIGNALS
+        for signal in RECORDED
     ]
 
 

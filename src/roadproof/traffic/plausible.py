@@ -6,10 +6,10 @@ refused, below it the rule is a note. The constants are argued for in docs/highd
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
 
 import numpy as np
 
+from roadproof.signals import SignalName, SizeName
 from roadproof.traffic.recording import Bools, Floats, Integers, Recording
 
 LARGEST_SPEED = 250.0
@@ -31,8 +31,6 @@ OFF_CENTRE = (0.3, 0.5)
 SIZES = {"Car": ((2.0, 8.0), (1.0, 3.0)), "Truck": ((4.0, 30.0), (1.4, 3.5))}
 """Usual lengths and widths of the classes (m)."""
 
-Named: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "length", "width", "kind"]
-
 
 @dataclass(frozen=True)
 class Doubt:
@@ -42,7 +40,7 @@ class Doubt:
     """
 
     rule: str
-    signal: Named
+    signal: SignalName | SizeName
     row: int
     broken: int
     asked: int
@@ -70,8 +68,8 @@ class _Rate:
     The two may differ by ``share`` of the greater and ``slack``.
     """
 
-    signal: Named
-    rate: Named
+    signal: SignalName
+    rate: SignalName
     least: float
     share: float
     slack: float

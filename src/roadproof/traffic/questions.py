@@ -70,39 +70,66 @@ def default_settings(library: Library | None = None) -> Settings:
 
 
 @dataclass(frozen=True)
+class Condition:
+    """What danger is cut by: an rssViolation, initSafe, or danger under the ``min_danger``-th minDanger.
+
+    ``start``: what every scenario of three cars needs at its start.
+    """
+
+    what: Literal["violation", "safe", "danger", "start"]
+    min_danger: int | None = None
+
+    def __str__(self) -> str:
+        return self.what if self.min_danger is None else f"{self.what} {self.min_danger}"
+
+
+@dataclass(frozen=True)
 class Asked:
-    """A formula of a monitor: scenario ``number`` of a set; in a pair, ``sv`` says who is SV."""
+    """Scenario ``number`` of a set, of the lane called ``lane``; in a pair, ``sv`` says who is SV."""
 
     set_name: str
     number: int
     sv: Role
     lane: str
 
+    def __str__(self) -> str:
+        return f"{self.set_name}/{self.number}/{self.sv}"
+
+
+@dataclass(frozen=True)
+class Sought:
+    """A detector asked of a pair of which ``sv`` is SV."""
+
+    detector: str
+    sv: Role
+
+    def __str__(self) -> str:
+        return f"{self.detector}/{self.sv}"
+
+
+VIOLATION, SAFE, START = Condition("violation"), Condition("safe"), Condition("start")
+
 
 @dataclass(frozen=True)
 class Questions:
     """Monitors for each stage of the evaluation, and the lane predicates that the data must give.
 
-    ``danger`` answers ``violation``, ``safe`` (initSafe) and ``danger k`` for the k-th minDanger;
-    ``safe_steps`` and ``danger_steps`` are how far these look ahead. ``pairs`` and ``triples`` hold
-    one monitor a minDanger, whose formulas ``asked`` explains; ``triple_start`` answers ``start``,
-    a condition at the start that every scenario of three cars needs. ``reach`` is None where the
-    specification's rssViolation is not the library's, so that no pair may be left out; ``sight`` is
-    its like for ``detectors``, whose formulas are named after the detector and the role of SV.
+    ``safe_steps`` and ``danger_steps`` are how far initSafe and each danger look ahead. ``pairs`` and
+    ``triples`` hold one monitor a minDanger. ``reach`` is None where the specification's rssViolation is
+    not the library's, so that no pair may be left out; ``sight`` is its like for ``detectors``.
     """
 
     settings: Settings
     rate: int
-    danger: Monitor
+    danger: Monitor[Condition]
     safe_steps: int
     danger_steps: tuple[int, ...]
-    pairs: tuple[Monitor, ...]
-    triple_start: Monitor | None
-    triples: tuple[Monitor, ...]
-    asked: Mapping[str, Asked]
+    pairs: tuple[Monitor[Asked], ...]
+    triple_start: Monitor[Condition] | None
+    triples: tuple[Monitor[Asked], ...]
     lane_atoms: Mapping[Formula, "LaneAtom"]
     reach: Reach | None
-    detectors: Monitor | None
+    detectors: Monitor[Sought] | None
     sight: Sight | None
 
 
@@ -128,10 +155,9 @@ def ask(settings: Settings, rate: int) -> Questions:
     for name in settings.sets[1:]:
         _check_same_danger(settings, first, first.in_set(name))
     danger = compile(
-        {"violation": _state(settings, first, "rssViolation(SV, POV)"), "safe": safe}
-        | {f"danger {k}": formula for k, formula in dangers.items()}
+        {VIOLATION: _state(settings, first, "rssViolation(SV, POV)"), SAFE: safe}
+        | {Condition("danger", k): formula for k, formula in dangers.items()}
     )
-    asked: dict[str, Asked] = {}
     two = [i for i in settings.scenarios if i not in THREE_CARS]
     three = [i for i in settings.scenarios if i in THREE_CARS]
     return Questions(
@@ -140,12 +166,9 @@ def ask(settings: Settings, rate: int) -> Questions:
         danger=danger,
         safe_steps=_steps(safe, dt, "initSafe"),
         danger_steps=tuple(_steps(formula, dt, "danger") for formula in dangers.values()),
-        pairs=tuple(compile(_of_pairs(settings, two, m, asked)) for m in settings.min_danger) if two else (),
+        pairs=tuple(compile(_of_pairs(settings, two, m)) for m in settings.min_danger) if two else (),
         triple_start=_start_of_triples(settings, three) if three else None,
-        triples=tuple(compile(_of_triples(settings, three, m, asked)) for m in settings.min_danger)
-        if three
-        else (),
-        asked=asked,
+        triples=tuple(compile(_of_triples(settings, three, m)) for m in settings.min_danger) if three else (),
         lane_atoms=dict(lane_atoms(first)),
         reach=_reach(settings, first),
         detectors=compile(_of_detectors(settings, first)) if settings.detectors else None,
@@ -157,9 +180,7 @@ def _state(settings: Settings, spec: Specification, text: str, min_danger: Fract
     return with_values(read_claim(spec, text).formula, {**settings.values, "minDanger": min_danger})
 
 
-def _of_pairs(
-    settings: Settings, numbers: Iterable[int], min_danger: Fraction, asked: dict[str, Asked]
-) -> dict[str, Formula]:
+def _of_pairs(settings: Settings, numbers: Iterable[int], min_danger: Fraction) -> dict[Asked, Formula]:
     """Scenarios of two cars in both roles."""
     formulas = {}
     roles: tuple[tuple[Role, str, str, str, str], ...] = (
@@ -171,26 +192,29 @@ def _of_pairs(
         for number in numbers:
             for role, sv, pov, own, other in roles:
                 lane = other if number in POV_LANE else own
-                name = f"{set_name}/{number}/{role}"
-                asked[name] = Asked(set_name, number, role, lane)
-                formulas[name] = _state(settings, spec, f"scenario_{number}({sv}, {pov}, {lane})", min_danger)
+                asked = Asked(set_name, number, role, lane)
+                formulas[asked] = _state(
+                    settings, spec, f"scenario_{number}({sv}, {pov}, {lane})", min_danger
+                )
     return formulas
 
 
-def _of_triples(
-    settings: Settings, numbers: Iterable[int], min_danger: Fraction, asked: dict[str, Asked]
-) -> dict[str, Formula]:
+def _of_triples(settings: Settings, numbers: Iterable[int], min_danger: Fraction) -> dict[Asked, Formula]:
     formulas = {}
     for set_name in settings.sets:
         spec = settings.library.select(set_name, settings.options)
         for number in numbers:
-            name = f"{set_name}/{number}/first"
-            asked[name] = Asked(set_name, number, "first", "L")
-            formulas[name] = _state(settings, spec, f"scenario_{number}({', '.join(TRIPLE)}, L)", min_danger)
+            text = f"scenario_{number}({', '.join(TRIPLE)}, L)"
+            formulas[of_three(set_name, number)] = _state(settings, spec, text, min_danger)
     return formulas
 
 
-def _start_of_triples(settings: Settings, numbers: Iterable[int]) -> Monitor:
+def of_three(set_name: str, number: int) -> Asked:
+    """The question for a scenario of three cars."""
+    return Asked(set_name, number, "first", "L")
+
+
+def _start_of_triples(settings: Settings, numbers: Iterable[int]) -> Monitor[Condition]:
     """initialCondition is a conjunct of the template (paper, eq. disturbFormat), so no match is without."""
     conditions = []
     for set_name in settings.sets:
@@ -198,7 +222,7 @@ def _start_of_triples(settings: Settings, numbers: Iterable[int]) -> Monitor:
         for number in numbers:
             text = f"initialCondition_{number}({', '.join(TRIPLE)}, L)"
             conditions.append(_state(settings, spec, text))
-    return compile({"start": disjunction(*conditions)})
+    return compile({START: disjunction(*conditions)})
 
 
 def _steps(formula: Formula, dt: Fraction, name: str) -> int:
@@ -235,10 +259,10 @@ def lane_atoms(spec: Specification) -> Iterable[tuple[Formula, LaneAtom]]:
             )
 
 
-def _of_detectors(settings: Settings, spec: Specification) -> dict[str, Formula]:
-    roles = {"first": "SV, POV", "second": "POV, SV"}
+def _of_detectors(settings: Settings, spec: Specification) -> dict[Sought, Formula]:
+    roles: dict[Role, str] = {"first": "SV, POV", "second": "POV, SV"}
     return {
-        f"{name}/{role}": _state(settings, spec, f"{name}({vehicles}, L)")
+        Sought(name, role): _state(settings, spec, f"{name}({vehicles}, L)")
         for name in settings.detectors
         for role, vehicles in roles.items()
     }

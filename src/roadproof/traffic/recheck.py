@@ -8,8 +8,8 @@ from roadproof.logic.formula import Formula, transform
 from roadproof.monitor.batch import Batch
 from roadproof.monitor.compiled import Monitor
 from roadproof.monitor.recursive import ReadAs, Reading, Trace
-from roadproof.traffic.evaluate import SIGNALS, Findings, Match
-from roadproof.traffic.questions import PAIR, TRIPLE, Questions
+from roadproof.traffic.evaluate import Findings, Match
+from roadproof.traffic.questions import PAIR, TRIPLE, Asked, Questions, of_three
 from roadproof.traffic.recording import Integers, Recording
 from roadproof.traffic.traces import gather
 
@@ -34,8 +34,7 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
             {name: names.index(lane) if lane else -1 for name, lane in lanes.items()},
             (t.start_frame, t.end_frame),
         )
-        for name, formula in pairs[t.min_danger].items():
-            asked = questions.asked[name]
+        for asked, formula in pairs[t.min_danger].items():
             sv, pov = (t.first, t.second) if asked.sv == "first" else (t.second, t.first)
             lane = lanes[asked.lane]
             match = Match(
@@ -45,16 +44,16 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
                 yield _line(recording, match, match in matched)
     for match in findings.matches:
         if match.pov2 is not None:
-            formula = triples[match.min_danger][f"{match.set_name}/{match.scenario}/first"]
+            formula = triples[match.min_danger][of_three(match.set_name, match.scenario)]
             if not _holds_for_three(recording, questions, match, formula, place, names):
                 yield _line(recording, match, True)
 
 
-def _shared(monitors: Iterable[Monitor]) -> list[dict[str, Formula]]:
+def _shared(monitors: Iterable[Monitor[Asked]]) -> list[dict[Asked, Formula]]:
     """The formulas as they were given, equal parts being one object: they are then found quickly."""
     known: dict[Formula, Formula] = {}
     return [
-        {name: transform(x, lambda part: known.setdefault(part, part)) for name, x in m.formulas.items()}
+        {asked: transform(x, lambda part: known.setdefault(part, part)) for asked, x in m.formulas.items()}
         for m in monitors
     ]
 
@@ -89,7 +88,7 @@ def _read(
         {name: one(k) for name, k in vehicles.items()},
         one(frames[0]),
         one(frames[1]),
-        SIGNALS,
+        [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals],
         {name: one(k) for name, k in lanes.items()},
         questions.lane_atoms,
     )

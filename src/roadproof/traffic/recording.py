@@ -14,12 +14,13 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from roadproof.signals import RECORDED
+
 Floats: TypeAlias = npt.NDArray[np.float64]
 Integers: TypeAlias = npt.NDArray[np.int64]
 Masks: TypeAlias = npt.NDArray[np.uint32]
 Bools: TypeAlias = npt.NDArray[np.bool_]
 
-SIGNALS = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
 ZONES = ("main", "merge", "depart")
 
 
@@ -38,7 +39,7 @@ class Recording:
 
     Per vehicle, in order of ``vehicle_id``: ``vehicle_id``, ``direction``, ``kind`` (a class such as
     Car or Truck), ``length``, ``width``, ``first_frame``, and ``start`` (one entry more than vehicles).
-    Per sample: the six SIGNALS, ``occupancy`` (bit k: the box overlaps ``lanes[k]`` with positive
+    Per sample: the RECORDED signals, ``occupancy`` (bit k: the box overlaps ``lanes[k]`` with positive
     area, SPEC §4), ``lane`` (index of the lane that holds the centre of the box, -1 for none) and
     ``zones`` (bit k: the box occupies a lanelet of zone ZONES[k]).
     ``beside`` holds unordered pairs of names of adjacent lanes. ``notes`` says what is odd but usable.
@@ -104,7 +105,7 @@ def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
         name: getattr(recording, name)[wanted]
         for name in ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
     }
-    changed |= {name: getattr(recording, name)[rows] for name in (*SIGNALS, "occupancy", "lane", "zones")}
+    changed |= {name: getattr(recording, name)[rows] for name in (*RECORDED, "occupancy", "lane", "zones")}
     if len(recording.moments):
         changed["moments"] = recording.moments[rows]
     return _replace(recording, changed | {"start": offsets(counts)})
@@ -124,7 +125,7 @@ def join_vehicles(recording: Recording, guests: Recording) -> Recording:
     per_vehicle = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
     changed: dict[str, Any] = {
         name: np.concatenate((getattr(recording, name), getattr(guests, name)))
-        for name in (*per_vehicle, *SIGNALS, "occupancy", "lane", "zones")
+        for name in (*per_vehicle, *RECORDED, "occupancy", "lane", "zones")
     }
     changed["start"] = np.concatenate((recording.start, recording.start[-1] + guests.start[1:]))
     return _replace(recording, changed)

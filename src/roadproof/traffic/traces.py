@@ -1,19 +1,17 @@
 """Vehicles of a recording as traces for the monitor: time-major arrays, lane predicates decided."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 import numpy as np
 
+from roadproof.errors import InputError
 from roadproof.logic.formula import Formula
-from roadproof.logic.terms import SignalName, SizeName
 from roadproof.monitor.batch import Array, Batch
+from roadproof.signals import RECORDED, SIZES, SignalName
 from roadproof.traffic.pairs import row_of
 from roadproof.traffic.questions import LaneAtom
 from roadproof.traffic.recording import ZONES, Bools, Integers, Recording
-
-NEEDED: tuple[SignalName, ...] = ("s", "d", "v_lon", "v_lat")
-"""Signals that danger depends on; scenarios need a_lon too."""
 
 
 def gather(
@@ -21,7 +19,7 @@ def gather(
     vehicles: Mapping[str, Integers],
     low: Integers,
     high: Integers,
-    signals: tuple[SignalName, ...] = NEEDED,
+    signals: Iterable[SignalName],
     lanes: Mapping[str, Integers] | None = None,
     atoms: Mapping[Formula, LaneAtom] | None = None,
 ) -> Batch:
@@ -29,17 +27,18 @@ def gather(
 
     ``vehicles`` gives vehicle indices by name. ``lanes`` gives, by name, the index of a lane (-1:
     none, which nobody occupies) for each trace; ``atoms`` are decided for the vehicles and lanes
-    that are there.
+    that are there. Raises ``InputError`` for signals that recordings do not have.
     """
+    wanted = tuple(dict.fromkeys(signals))
+    for signal in wanted:
+        if signal not in RECORDED:
+            raise InputError(f"no recording has the signal {signal}, which a formula needs")
     rows = {name: _rows(recording, index, low, high) for name, index in vehicles.items()}
-    sizes: dict[tuple[SizeName, str], Array] = {}
-    for name, index in vehicles.items():
-        sizes["length", name], sizes["width", name] = recording.length[index], recording.width[index]
     return Batch(
         dt=Fraction(1, recording.rate),
         lengths=high - low + 1,
-        signals={(x, name): getattr(recording, x)[at] for name, at in rows.items() for x in signals},
-        sizes=sizes,
+        signals={(x, name): getattr(recording, x)[at] for name, at in rows.items() for x in wanted},
+        sizes={(x, name): getattr(recording, x)[index] for name, index in vehicles.items() for x in SIZES},
         given=dict(_decide(recording, rows, lanes or {}, atoms or {})),
     )
 

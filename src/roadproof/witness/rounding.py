@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from roadproof.encode.motion import Layout
+from roadproof.signals import SignalName
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.vehicle import Vehicle
 
@@ -23,24 +24,24 @@ def round_drive(
     def rounded(value: float | Fraction, step: Fraction | None) -> Fraction:
         return Fraction(value) if step is None else round(Fraction(value) / step) * step
 
-    place = None if grain is None else grain * 10
+    def start(name: str, signal: SignalName) -> Fraction:
+        return rounded(values[layout.column(name, signal, 0)], None if grain is None else grain * 10)
+
+    def speeds(name: str, signal: SignalName) -> list[Fraction]:
+        columns = [layout.column(name, signal, k) for k in range(layout.grid.steps + 1)]
+        return [rounded(values[column], grain) for column in columns]
+
     motions = {}
     for name in layout.vehicles:
-        starts = {signal: rounded(values[layout.column(name, signal, 0)], place) for signal in ("s", "d")}
-        speeds = {
-            signal: [
-                rounded(values[layout.column(name, signal, k)], grain) for k in range(layout.grid.steps + 1)
-            ]
-            for signal in ("v_lon", "v_lat")
-        }
+        along, across = speeds(name, "v_lon"), speeds(name, "v_lat")
         motions[name] = Motion(
             vehicles[name].length,
             vehicles[name].width,
-            starts["s"],
-            starts["d"],
-            speeds["v_lon"][0],
-            speeds["v_lat"][0],
-            _pieces(speeds["v_lon"], speeds["v_lat"], layout.grid.dt),
+            start(name, "s"),
+            start(name, "d"),
+            along[0],
+            across[0],
+            _pieces(along, across, layout.grid.dt),
         )
     return Drive(motions)
 

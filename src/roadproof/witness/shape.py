@@ -9,15 +9,13 @@ from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import ColumnFact, Problem
 from roadproof.encode.unroll import unroll_at
 from roadproof.logic.formula import Formula, Named, subformulas
+from roadproof.signals import SignalName
 from roadproof.solve.bounds import Affine, Bound, TooNonlinearError, value_of
 from roadproof.solve.milp import box_of
 from roadproof.solve.smooth import Square, minimise, narrow, near
 from roadproof.witness.question import Objective
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
-
-# How far a signal may move in one round, so that squares are nearly straight.
-_TRUST = {"s": 400.0, "d": 10.0, "v_lon": 4.0, "v_lat": 0.6}
 
 
 def reshape(
@@ -36,7 +34,7 @@ def reshape(
     """
     choices = implicant(problem.circuit, lambda fact: value_of(fact, found))
     squares = list(comfort(layout, road, vehicles, found))
-    widths = [_TRUST[column.name.split(".")[1]] for column in problem.columns]
+    widths = [_trust(column.of.signal) for column in problem.columns]
     best = tuple(found)
     for _ in range(rounds):
         box = narrow(box_of(problem), best, widths)
@@ -56,16 +54,32 @@ def reshape(
     return best
 
 
+def _trust(signal: SignalName) -> float:
+    """How far a signal may move in one round, so that squares are nearly straight."""
+    match signal:
+        case "s":
+            return 400.0
+        case "d":
+            return 10.0
+        case "v_lon":
+            return 4.0
+        case "v_lat":
+            return 0.6
+        case _:
+            raise ValueError(f"signal={signal}: it is not known how far it may move in one round")
+
+
 def comfort(
     layout: Layout, road: Road, vehicles: Mapping[str, Vehicle], found: Sequence[float]
 ) -> Iterator[Square]:
     """Little jerk and acceleration, near the middle of the lane that ``found`` is nearest to."""
     steps = layout.grid.steps
+    weights: Mapping[SignalName, tuple[float, float]] = {"a_lon": (1.0, 0.1), "a_lat": (1.0, 0.5)}
     for name, vehicle in vehicles.items():
         middles = sorted({float(x.d[0] + x.d[1] + vehicle.width) / 2 for x in road.lanelets})
         pace = float(sum(vehicle.cruise)) / 2
         for k in range(steps):
-            for signal, jerk, effort in (("a_lon", 1.0, 0.1), ("a_lat", 1.0, 0.5)):
+            for signal, (jerk, effort) in weights.items():
                 now, later = _affine(layout, name, signal, k), _affine(layout, name, signal, k + 1)
                 yield Square(jerk, later + now.scaled(-1.0))
                 yield Square(effort, now)
@@ -76,7 +90,7 @@ def comfort(
             yield Square(0.002, _affine(layout, name, "v_lon", k) + Affine((), -pace))
 
 
-def _affine(layout: Layout, name: str, signal: str, step: int) -> Affine:
+def _affine(layout: Layout, name: str, signal: SignalName, step: int) -> Affine:
     polynomial: Polynomial[int] = layout.state(name, signal, step)
     terms = tuple((m[0], float(c)) for m, c in polynomial.terms.items() if m)
     return Affine(terms, float(polynomial.constant))

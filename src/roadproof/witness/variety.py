@@ -1,16 +1,18 @@
 """What makes one drive clearly different from another, as a condition for the next search."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 
 from roadproof.encode.circuit import Circuit, Leaf, any_of
 from roadproof.encode.motion import Layout
 from roadproof.encode.polynomial import Fact, constant
 from roadproof.encode.problem import ColumnFact
+from roadproof.signals import SignalName
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 
 # How far a signal at the start or the end has to be from that of another drive, in m and m/s.
-CLEARLY = {"s": Fraction(15), "d": Fraction(5, 2), "v_lon": Fraction(4)}
+CLEARLY: Mapping[SignalName, Fraction] = {"s": Fraction(15), "d": Fraction(5, 2), "v_lon": Fraction(4)}
 
 
 def differ(layout: Layout, other: Drive) -> Circuit[ColumnFact]:

@@ -5,6 +5,7 @@ road: ``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, `
 ``d = [right, left]``. Lanes that share a boundary are adjacent (SPEC §4).
 """
 
+import dataclasses
 import tomllib
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
@@ -14,6 +15,7 @@ from typing import Any, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.shipped import shipped
+from roadproof.signals import LIMITED
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -43,18 +45,7 @@ def load_road(name_or_path: str | Path) -> Road:
 def load_vehicle(name_or_path: str | Path) -> Vehicle:
     """A bundled vehicle by name, or a user's by path. Raises ``InputError``."""
     path, content = _read("vehicles", name_or_path)
-    fields = (
-        "length",
-        "width",
-        "v_lon",
-        "v_lat",
-        "a_lon",
-        "a_lat",
-        "lateral_share",
-        "cruise",
-        "jump_lon",
-        "jump_lat",
-    )
+    fields = [field.name for field in dataclasses.fields(Vehicle) if field.name != "name"]
     _only(content, {*fields, "name"}, str(path))
     for field in fields:
         if field not in content:
@@ -62,7 +53,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     one = {k: _number(content[k], f"{path}, {k}") for k in fields if not isinstance(content[k], list)}
     two = {k: _range(content[k], f"{path}, {k}") for k in fields if isinstance(content[k], list)}
     for field in fields:
-        wanted = two if field in ("v_lon", "v_lat", "a_lon", "a_lat", "cruise") else one
+        wanted = two if field in (*LIMITED, "cruise") else one
         if field not in wanted:
             raise InputError(f"{path}: {field} must be {'[low, high]' if wanted is two else 'one number'}")
     for field, value in one.items():
@@ -74,7 +65,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         )
     if two["cruise"][0] < two["v_lon"][0] or two["cruise"][1] > two["v_lon"][1]:
         raise InputError(f"{path}: cruise={content['cruise']} is not inside v_lon={content['v_lon']}")
-    for field in ("a_lon", "a_lat", "v_lat"):
+    for field in [name for name in LIMITED if name != "v_lon"]:
         low, high = two[field]
         if not low <= 0 <= high:
             raise InputError(

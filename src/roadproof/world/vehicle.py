@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.errors import UsageError
+from roadproof.signals import LIMITED, SIGNALS
 
 Range = tuple[Fraction, Fraction]
 
@@ -33,7 +34,7 @@ class Vehicle:
 
 
 # Ranges whose ends can be moved, and their units.
-LIMITS: Mapping[str, str] = {"v_lon": "m/s", "v_lat": "m/s", "a_lon": "m/s^2", "a_lat": "m/s^2"}
+LIMITS: Mapping[str, str] = {name: SIGNALS[name].unit for name in LIMITED}
 
 
 def with_limits(vehicle: Vehicle, limits: Mapping[str, Fraction]) -> Vehicle:

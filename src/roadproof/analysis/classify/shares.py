@@ -19,7 +19,7 @@ from roadproof.monitor.compiled import compile
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
 from roadproof.traffic.evaluate import Findings, evaluate_recording
-from roadproof.traffic.questions import PAIR, TRIPLE, Asked, Questions, Role, Settings, ask
+from roadproof.traffic.questions import PAIR, START, TRIPLE, Asked, Questions, Role, Settings, ask, of_three
 from roadproof.traffic.recording import Recording
 
 Situation: TypeAlias = tuple[str, int, int, int | None, str]
@@ -77,9 +77,8 @@ def count_shares(
 
 def questions_of(classes: Classes, specification: Specification, settings: Settings, rate: int) -> Questions:
     """Every scenario and class, asked in both roles and for the lanes of both vehicles."""
-    asked: dict[str, Asked] = {}
-    pairs: dict[str, Formula] = {}
-    triples: dict[str, Formula] = {}
+    pairs: dict[Asked, Formula] = {}
+    triples: dict[Asked, Formula] = {}
     starts: list[Formula] = []
 
     def read(text: str) -> Formula:
@@ -91,19 +90,16 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
             for name in names:
                 for role, vehicles, _ in PAIRS_OF_ROLES:
                     for lane in ("L", "L1"):
-                        asked[f"{name}/{role}/{lane}"] = Asked(name, 0, role, lane)
-                        pairs[f"{name}/{role}/{lane}"] = read(f"{name}({vehicles}, {lane})")
+                        pairs[Asked(name, 0, role, lane)] = read(f"{name}({vehicles}, {lane})")
         elif group.vehicles == TRIPLE:
             starts += [read(f"disturb_{number}{group.arguments}") for number in group.disturbances]
             for name in names:
-                asked[name] = Asked(name, 0, "first", "L")
-                triples[name] = read(f"{name}{group.arguments}")
+                triples[of_three(name, 0)] = read(f"{name}{group.arguments}")
     return replace(
         ask(settings, rate),
         pairs=(compile(pairs),) if pairs else (),
-        triple_start=compile({"start": f.disjunction(*map(_at_start, starts))}) if triples else None,
+        triple_start=compile({START: f.disjunction(*map(_at_start, starts))}) if triples else None,
         triples=(compile(triples),) if triples else (),
-        asked=asked,
     )
 
 

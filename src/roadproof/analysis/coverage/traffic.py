@@ -24,8 +24,14 @@ from roadproof.traffic.recording import Recording
 from roadproof.traffic.sources import find_sources
 from roadproof.world.road import Road
 
-GAP = "gap"
 TAIL = 3.0  # seconds, more than the windows of a scenario reach together
+
+
+@dataclass(frozen=True)
+class Missed:
+    """Whether a trace is a gap; with the key of a part, whether it would be none without that part."""
+
+    without: str | None = None
 
 
 @dataclass(frozen=True)
@@ -60,19 +66,20 @@ def disturbances_in(asked: Asked, folder: Path) -> Iterator[Trace]:
     for source in find_sources(folder):
         recording = source.read()
         place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
-        monitors: dict[Road, Monitor] = {}
+        monitors: dict[Road, Monitor[Missed]] = {}
         for trace in evaluate_recording(recording, ask(settings, recording.rate)).traces:
             pair = {"SV": place[trace.first], "POV": place[trace.second]}
             cut = _cut(recording, pair, (trace.start_frame, trace.end_frame))
             if cut.road not in monitors:
                 query = read_claim(specification, missed(numbers_on(specification, cut.road)))
                 gap = bind(query.formula, cut.road, {}, classes.values)
-                monitors[cut.road] = compile({GAP: gap, **classes.bind(cut.road)})
+                near = {Missed(key): formula for key, formula in classes.bind(cut.road).items()}
+                monitors[cut.road] = compile({Missed(): gap, **near})
             answers = monitors[cut.road].evaluate(cut.batch, "clip").answers
-            true = [name for name, answer in answers.items() if answer.true[0]]
+            true = [missed.without for missed, answer in answers.items() if answer.true[0]]
             frames = (trace.start_frame, trace.end_frame)
-            keys = tuple(name for name in true if name != GAP)
-            yield Trace(recording.name, trace.first, trace.second, frames, GAP in true, keys)
+            keys = tuple(key for key in true if key is not None)
+            yield Trace(recording.name, trace.first, trace.second, frames, None in true, keys)
 
 
 def _cut(recording: Recording, pair: dict[str, int], frames: tuple[int, int]) -> OneTrace:

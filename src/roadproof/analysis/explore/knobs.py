@@ -8,7 +8,7 @@ from typing import TypeAlias
 from roadproof.analysis.explore.text import always, compared, expression
 from roadproof.analysis.requests import Request
 from roadproof.logic.syntax import Expression
-from roadproof.spec.quantity import UNITS
+from roadproof.units import UNITS
 
 # A value for each knob, in order, in SI units.
 Point: TypeAlias = tuple[Fraction, ...]

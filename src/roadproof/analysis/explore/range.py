@@ -8,6 +8,7 @@ from typing import TypeAlias, assert_never
 from roadproof.encode.place import span
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Term
+from roadproof.signals import LIMITED
 from roadproof.witness.question import Question
 
 Range: TypeAlias = tuple[Fraction, Fraction]
@@ -26,7 +27,7 @@ def starting_ranges(question: Question) -> dict[tuple[str, str], Range]:
     for k, (name, vehicle) in enumerate(question.vehicles.items()):
         ranges[name, "s"] = (-reach, reach) if k else (Fraction(0), Fraction(0))
         ranges[name, "d"] = (right + vehicle.width, left)
-        for signal in ("v_lon", "v_lat", "a_lon", "a_lat"):
+        for signal in LIMITED:
             ranges[name, signal] = getattr(vehicle, signal)
         ranges[name, "length"] = (vehicle.length, vehicle.length)
         ranges[name, "width"] = (vehicle.width, vehicle.width)

@@ -8,9 +8,7 @@ from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text
 from roadproof.logic.syntax import BinaryOperator, Expression
 from roadproof.logic.terms import Dimension
-from roadproof.spec.quantity import UNITS
-
-_UNIT_OF = {dimension: unit for unit, (factor, dimension) in UNITS.items() if factor == 1}
+from roadproof.units import SI
 
 
 def conjoin(claim: str, parts: Iterable[Expression]) -> str:
@@ -41,7 +39,7 @@ def compared(left: Expression, op: BinaryOperator, value: Fraction, dimension: D
 
 def quantity(value: Fraction, dimension: Dimension) -> Expression:
     """A number with its unit; where no unit has that dimension, a product of metres and seconds."""
-    unit = _UNIT_OF.get(dimension)
+    unit = SI.get(dimension)
     number: Expression = syntax.Literal_(abs(value), "" if unit in (None, "unitless") else unit or "")
     if unit is None:
         for power, base in zip(dimension, ("m", "s"), strict=True):
@@ -55,7 +53,7 @@ def unit_text(dimension: Dimension) -> str:
     if dimension == (0, 0):
         return ""
     metres, seconds = dimension
-    return _UNIT_OF.get(dimension) or f"m^{metres} s^{seconds}"
+    return SI.get(dimension) or f"m^{metres} s^{seconds}"
 
 
 def eventually(parts: Iterable[Expression]) -> Expression:

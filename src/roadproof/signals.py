@@ -1,0 +1,49 @@
+"""The one list of signals: what changes with time about a vehicle. All other lists of them are made from it.
+
+Readers that know the physics of a signal match on its name and end in ``assert_never``, so mypy names
+each of them when a signal is added here (CONTRIBUTING.md shows how).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from roadproof.units import UNITS, Dimension
+
+SignalName: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "a_lat"]
+SizeName: TypeAlias = Literal["length", "width"]
+
+
+@dataclass(frozen=True)
+class About:
+    """What is known of a signal, in ``unit``.
+
+    ``kept``: what a drive keeps of it. Of ``start`` its value at time 0, and a grid has an unknown for
+    each sample; of ``piece`` its value on each piece of the motion; ``nothing`` where it follows from
+    the others. ``rate_of``: what it is the rate of change of. ``recorded``: whether recordings and CSV
+    files of samples have it. ``limited``: whether models of vehicles bound it.
+    """
+
+    unit: str
+    kept: Literal["start", "piece", "nothing"]
+    rate_of: SignalName | None = None
+    recorded: bool = True
+    limited: bool = False
+
+
+SIGNALS: Mapping[SignalName, About] = {
+    "s": About("m", "start"),
+    "d": About("m", "start"),
+    "v_lon": About("m/s", "start", rate_of="s", limited=True),
+    "v_lat": About("m/s", "start", rate_of="d", limited=True),
+    "a_lon": About("m/s^2", "piece", rate_of="v_lon", limited=True),
+    "a_lat": About("m/s^2", "piece", rate_of="v_lat", limited=True),
+}
+SIZES: Mapping[SizeName, str] = {"length": "m", "width": "m"}
+"""What never changes about a vehicle, and its unit."""
+
+STARTING = tuple(name for name, about in SIGNALS.items() if about.kept == "start")
+RECORDED = tuple(name for name, about in SIGNALS.items() if about.recorded)
+LIMITED = tuple(name for name, about in SIGNALS.items() if about.limited)
+SIGNAL_DIMENSIONS: Mapping[SignalName, Dimension] = {n: UNITS[x.unit][1] for n, x in SIGNALS.items()}
+SIZE_DIMENSIONS: Mapping[SizeName, Dimension] = {name: UNITS[unit][1] for name, unit in SIZES.items()}

@@ -1,0 +1,261 @@
+"""One walk over one claim, from syntax to formula; ``spec.elaborate`` has the doors to it.
+
+Applying a definition puts its body in place of the call, wrapped in ``Named``; vehicles and lanes
+are names from the start, so what comes out speaks of SV, POV and L and nothing else.
+"""
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from roadproof.errors import Position, TextError
+from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic import terms as t
+from roadproof.logic.foreign import instead_of
+from roadproof.logic.formula import Formula
+from roadproof.logic.syntax import Bounds, Definition, Expression
+from roadproof.spec import arithmetic, scopes
+from roadproof.spec.library import BUILT_IN, Specification, source_of, unknown
+from roadproof.spec.quantity import Quantity
+from roadproof.spec.scopes import SORTS, Free, Ref, Scope, Value, Vehicles
+from roadproof.spec.size import Sizes
+from roadproof.units import UNITS
+
+DEEPEST_FORMULA = 100
+
+
+@dataclass
+class Elaborator:
+    """One walk over one claim; ``home`` is set inside ``name@set(…)``, and is the walk that met it."""
+
+    specification: Specification
+    home: "Elaborator | None" = None
+    free: Free = field(default_factory=lambda: {"vehicle": set(), "lane": set()})
+    stack: list[str] = field(default_factory=list)
+    depth: int = 0
+    known: dict[tuple[str, str, tuple[Value, ...]], Formula | Quantity] = field(default_factory=dict)
+    sizes: Sizes = field(default_factory=Sizes)
+
+    # --- names ---------------------------------------------------------------------------------
+
+    @property
+    def _open(self) -> Free | None:
+        """Names that need no declaration: those of a claim, none in the body of a definition."""
+        return None if self.stack else self.free
+
+    def given(self, claim: syntax.Claim) -> Scope:
+        return scopes.scope_of(claim.given, self.specification.library.parameters, self.free)
+
+    def reference(self, expression: Expression | Ref, sort: str, scope: Scope) -> Ref:
+        return scopes.reference(expression, sort, scope, self._open)
+
+    # --- calls ---------------------------------------------------------------------------------
+
+    def call(self, call: syntax.Call, scope: Scope) -> Formula | Quantity:
+        name, _, qualifier = call.name.partition("@")
+        if qualifier and qualifier != self.specification.set_name:
+            return self._in_other_set(call, name, qualifier, scope)
+        if name in BUILT_IN:
+            return self._built_in(call, name, scope)
+        definition = self.specification.definitions.get(name)
+        if definition is None:
+            everything = [*self.specification.definitions, *BUILT_IN]
+            raise TextError(unknown("definition", name, everything), call.at, instead_of(name))
+        bound = self._bind(definition, call, scope)
+        return self.apply(definition, bound, call.at)
+
+    def _in_other_set(self, call: syntax.Call, name: str, qualifier: str, scope: Scope) -> Formula | Quantity:
+        if qualifier not in self.specification.library.sets:
+            raise TextError(unknown("spec set", qualifier, self.specification.library.sets), call.at)
+        inner = Elaborator(
+            self.specification.in_set(qualifier), self, self.free, depth=self.depth, sizes=self.sizes
+        )
+        return inner.call(syntax.Call(name, call.arguments, call.at), scope)
+
+    def apply(self, definition: Definition, bound: Scope, at: Position) -> Formula | Quantity:
+        key = (definition.name, self.specification.set_name, tuple(bound.values()))
+        if key not in self.known:
+            if definition.name in self.stack:
+                cycle = " -> ".join([*self.stack[self.stack.index(definition.name) :], definition.name])
+                raise TextError(f"'{definition.name}' is defined by itself: {cycle}", at)
+            self.known[key] = self.body_of(definition.name, bound)
+        made = self.known[key]
+        if isinstance(made, Quantity):
+            return made
+        if self.home is not None:
+            here = self.home.apply(self.home.specification.definitions[definition.name], bound, at)
+            if isinstance(here, f.Named) and here.body == made:
+                return here
+            return f.Named(f"{definition.name}@{self.specification.set_name}", scopes.names_in(bound), made)
+        return f.Named(definition.name, scopes.names_in(bound), made)
+
+    def body_of(self, name: str, scope: Scope) -> Formula | Quantity:
+        """The body of a definition, with mistakes in it located in its own text."""
+        definition = self.specification.definitions[name]
+        self.stack.append(name)
+        try:
+            for binding in definition.parameters:
+                scopes.check_sort(binding)
+            return self.expression(definition.body, scope)
+        except TextError as error:
+            source = source_of(self.specification.library, definition)
+            raise error.locate(source.name, source.text) from None
+        finally:
+            self.stack.pop()
+
+    def _bind(self, definition: Definition, call: syntax.Call, scope: Scope) -> dict[str, Value]:
+        """What each parameter of a definition stands for in a call."""
+        bound: dict[str, Value] = {}
+        for binding, given in scopes.deal_out(definition, call, scope):
+            if binding.sort == "vehicles":
+                refs = [self.reference(argument, "vehicle", scope) for argument in given]
+                bound[binding.name] = Vehicles(tuple(ref.name for ref in refs))
+            elif binding.sort in SORTS:
+                bound[binding.name] = self.reference(given[0], binding.sort, scope)
+            elif isinstance(given[0], Ref):
+                raise TextError(f"'{given[0].name}' is a vehicle; a number is expected here", call.at)
+            else:
+                scopes.check_sort(binding)
+                number = self.term(given[0], scope)
+                bound[binding.name] = arithmetic.argument(number, binding, definition, given[0].at)
+        return bound
+
+    # --- expressions ---------------------------------------------------------------------------
+
+    def formula(self, expression: Expression, scope: Scope) -> Formula:
+        made = self.expression(expression, scope)
+        if isinstance(made, Quantity):
+            raise TextError(
+                "a formula is expected here, but this is a number",
+                expression.at,
+                "Compare it with something.",
+            )
+        return made
+
+    def term(self, expression: Expression, scope: Scope) -> Quantity:
+        made = self.expression(expression, scope)
+        if not isinstance(made, Quantity):
+            raise TextError("a number is expected here, but this is a formula", expression.at)
+        return made
+
+    def expression(self, expression: Expression, scope: Scope) -> Formula | Quantity:
+        self.depth += 1
+        try:
+            if self.depth > DEEPEST_FORMULA:
+                raise TextError(
+                    f"definitions and formula together are nested deeper than {DEEPEST_FORMULA}",
+                    expression.at,
+                    "Look for a chain of definitions that only call each other.",
+                )
+            self.sizes.count_reading(expression.at)
+            made = self._expression(expression, scope)
+            self.sizes.check(made.term if isinstance(made, Quantity) else made, expression.at)
+            return made
+        finally:
+            self.depth -= 1
+
+    def _expression(self, expression: Expression, scope: Scope) -> Formula | Quantity:
+        match expression:
+            case syntax.Literal_(bool(), _, _):
+                return f.Truth(bool(expression.value))
+            case syntax.Literal_(value, unit, _):
+                return arithmetic.literal(Fraction(value), unit)
+            case syntax.Name(name, at):
+                return self._name(name, at, scope)
+            case syntax.Call():
+                return self.call(expression, scope)
+            case syntax.Prefix("not", body, _):
+                return f.negation(self.formula(body, scope))
+            case syntax.Prefix(_, body, at):
+                return arithmetic.negative(self.term(body, scope), at)
+            case syntax.Chain(op, parts, _):
+                made = [self.formula(p, scope) for p in parts]
+                return f.conjunction(*made) if op == "and" else f.disjunction(*made)
+            case syntax.Binary():
+                return self._binary(expression, scope)
+            case syntax.Temporal(op, bounds, left, right, _):
+                interval = self.interval(bounds, scope)
+                goal = self.formula(right, scope)
+                if left is not None:
+                    return f.Until(self.formula(left, scope), interval, goal)
+                return f.Eventually(interval, goal) if op == "F" else f.Always(interval, goal)
+            case syntax.Quantified():
+                return self._quantified(expression, scope)
+
+    def _name(self, name: str, at: Position, scope: Scope) -> Formula | Quantity:
+        value = scope.get(name)
+        if isinstance(value, Quantity):
+            return value
+        if value is not None:
+            raise TextError(
+                f"'{name}' is a {scopes.sort_of(value)}; a formula or number is expected here", at
+            )
+        declared = self.specification.library.parameters.get(name)
+        if declared is not None:
+            dimension = UNITS[declared.unit][1]
+            return Quantity(t.Parameter(name, dimension), dimension)
+        if name in self.specification.definitions:
+            raise TextError(f"'{name}' needs its arguments", at, f"Write {name}(…).")
+        numbers = [n for n, v in scope.items() if isinstance(v, Quantity)]
+        known = [*self.specification.library.parameters, *self.specification.definitions, *numbers]
+        raise TextError(unknown("parameter or definition", name, known), at, instead_of(name))
+
+    def _binary(self, expression: syntax.Binary, scope: Scope) -> Formula | Quantity:
+        op, at = expression.op, expression.at
+        if op == "->" or op == "<->":
+            join = f.implication if op == "->" else f.equivalence
+            return join(self.formula(expression.left, scope), self.formula(expression.right, scope))
+        left, right = self.term(expression.left, scope), self.term(expression.right, scope)
+        if op in arithmetic.COMPARISONS:
+            return arithmetic.compare(op, left, right, at)
+        return arithmetic.combine(op, left, right, self.specification.library.parameters, at)
+
+    def interval(self, bounds: Bounds | None, scope: Scope) -> f.Interval:
+        if bounds is None:
+            return f.FOREVER
+        low = self._bound(bounds.low, scope)
+        high = None if bounds.high is None else self._bound(bounds.high, scope)
+        return arithmetic.interval(low, high, bounds.at)
+
+    def _bound(self, expression: Expression, scope: Scope) -> t.Term:
+        quantity = self.term(expression, scope)
+        return arithmetic.bound(quantity, self.specification.library.parameters, expression.at)
+
+    # --- quantifiers and built-in names ----------------------------------------------------------
+
+    def _quantified(self, expression: syntax.Quantified, scope: Scope) -> Formula:
+        variable = expression.variable
+        vehicles = scopes.vehicles_in(expression.domain, scope, self._open)
+        if vehicles is not None:
+            made = [self.formula(expression.body, {**scope, variable: v}) for v in vehicles]
+            return f.conjunction(*made) if expression.kind == "every" else f.disjunction(*made)
+        domain = scopes.domain_of(expression.domain, scope, self._open)
+        sort = "lane" if domain.kind in ("lanes", "adjacent") else "lanelet"
+        taken = {v.name for v in scope.values() if isinstance(v, Ref)} | set().union(*self.free.values())
+        unique = variable
+        while unique in taken:
+            unique += "_"
+        body = self.formula(expression.body, {**scope, variable: Ref(sort, unique)})
+        return (f.Every if expression.kind == "every" else f.Some)(unique, domain, body)
+
+    def _built_in(self, call: syntax.Call, name: str, scope: Scope) -> Formula | Quantity:
+        count = len(call.arguments)
+        if name in ("lanes", "lanelets", "zone", "adjacentLanes"):
+            raise TextError(f"'{name}' is a domain: write some x in {name}…", call.at)
+        if name in ("max", "min"):
+            if not call.arguments:
+                raise TextError(f"'{name}' needs at least one argument", call.at)
+            return arithmetic.extremum(name, [self.term(a, scope) for a in call.arguments], call.at)
+        wanted = 2 if name == "occ" else 1
+        if count != wanted:
+            raise TextError(
+                f"'{name}' takes {wanted} argument{'s' if wanted > 1 else ''} but got {count}", call.at
+            )
+        first = call.arguments[0]
+        if name == "occ":
+            vehicle = self.reference(first, "vehicle", scope)
+            return f.Occupies(vehicle.name, self.reference(call.arguments[1], "lanelet", scope).name)
+        if name in ("abs", "inverse"):
+            make = arithmetic.absolute if name == "abs" else arithmetic.inverse
+            return make(self.term(first, scope), call.at)
+        return arithmetic.of_vehicle(name, self.reference(first, "vehicle", scope).name)

@@ -1,0 +1,20 @@
+"""The one table of units: what numbers are written in, by specifications, claims, models and answers."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TypeAlias
+
+# Exponents of metre and second: (1, -2) is an acceleration.
+Dimension: TypeAlias = tuple[int, int]
+
+# Each by its name: how many of the SI unit of its dimension it is, and the dimension.
+UNITS: Mapping[str, tuple[Fraction, Dimension]] = {
+    "s": (Fraction(1), (0, 1)),
+    "ms": (Fraction(1, 1000), (0, 1)),
+    "m": (Fraction(1), (1, 0)),
+    "m/s": (Fraction(1), (1, -1)),
+    "km/h": (Fraction(5, 18), (1, -1)),
+    "m/s^2": (Fraction(1), (1, -2)),
+    "unitless": (Fraction(1), (0, 0)),
+}
+SI: Mapping[Dimension, str] = {dimension: unit for unit, (factor, dimension) in UNITS.items() if factor == 1}
