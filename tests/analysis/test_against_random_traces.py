@@ -42,7 +42,7 @@ def implications(home: Specification) -> Iterator[tuple[str, bool]]:
 def redundancies(home: Specification) -> Iterator[tuple[str, bool]]:
     """Of the condition on lanes in scenario 4, nothing is needed; of safety and the road, all."""
     whole = applied(home, Scenario(4, home.set_name))
-    for change in changes_of(whole):
+    for change in changes_of(home, whole):
         if (
             change.part.startswith(("sameLane", "inAdjLanes", "initSafe", "roadSector", "laneKeep"))
             and change.value

@@ -45,7 +45,7 @@ def test_implications_are_chains_of_edges() -> None:
     assert reachable("d", pairs) == {"d"}
     assert transitive_reduction(pairs) == {("a", "b"), ("b", "c"), ("c", "d")}
     one, other = node(1), node(1, "ext")
-    (certificate,) = {prove(BASE, "true").certificate}
+    certificate = prove(BASE, "true").certificate
     assert certificate is not None
     edge = Edge(one, other, read_claim(BASE, "true"), certificate)
     order = Order((Kind((one,), 0), Kind((other,), 0)), (edge,), (edge,), (), (), ())

@@ -19,7 +19,7 @@ from roadproof.judge.exact import judge
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.spec.library import Specification, bundled_library
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, without_sectors
 from roadproof.verdict import Verdict
@@ -33,7 +33,7 @@ BASIS = Basis(BASE, effort=Effort(30))
 
 
 def changes(text: str, whole: bool = False) -> list[Change]:
-    return list(changes_of(read_claim(BASE, text), whole))
+    return list(changes_of(BASE, read_claim(BASE, text), whole))
 
 
 def test_every_occurrence_is_changed_to_both_values() -> None:
@@ -66,7 +66,7 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
 def decide(number: int, part: str, value: bool) -> Finding:
     """The finding on the first change of ``part`` in a scenario of base."""
     examining = _Examining(BASIS, Scenario(number, "base"))
-    found = changes_of(examining.query)
+    found = changes_of(BASE, examining.query)
     change = next(x for x in found if x.part == part and x.value is value)
     return examining._decide(change)
 
@@ -95,8 +95,8 @@ def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
 def few_changes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only the changes of one part of scenarios 3 and 11, so that a run takes seconds."""
 
-    def few(query: Query, whole: bool = False) -> Iterator[Change]:
-        yield from (x for x in changes_of(query, whole) if x.part.startswith(("sameLane", "aheadOf")))
+    def few(home: Specification, query: Query, whole: bool = False) -> Iterator[Change]:
+        yield from (x for x in changes_of(home, query, whole) if x.part.startswith(("sameLane", "aheadOf")))
 
     monkeypatch.setattr(redundancy, "changes_of", few)
 

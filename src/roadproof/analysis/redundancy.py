@@ -22,9 +22,11 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
+from roadproof.logic.syntax import Claim
 from roadproof.spec.bind import bind
-from roadproof.spec.compose import both, equivalence, implication, negation, of_parts
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.compose import both, equivalence, implication, negation
+from roadproof.spec.elaborate import elaborate, read_claim
+from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import (
     Scenario,
@@ -87,7 +89,7 @@ class Finding:
 Findings = tuple[Finding, ...]
 
 
-def changes_of(query: Query, whole: bool = False) -> Iterator[Change]:
+def changes_of(specification: Specification, query: Query, whole: bool = False) -> Iterator[Change]:
     """Every occurrence of a part of ``query``, but itself, by true and by false, from the outside in.
 
     A definition of one instant that compares numbers, or uses no other one, is one part unless
@@ -110,8 +112,8 @@ def changes_of(query: Query, whole: bool = False) -> Iterator[Change]:
         if not root:
             shown = text(as_syntax(current))
             for value in (True, False):
-                changed = of_parts(query, [rebuild(f.Truth(value))])
-                yield Change(where, shown, value, changed, value == positive)
+                changed = Claim(query.claim.given, as_syntax(rebuild(f.Truth(value))))
+                yield Change(where, shown, value, elaborate(specification, changed), value == positive)
         parts = () if isinstance(current, f.Named) else f.children(current)
         for place, part in enumerate(parts):
             inside = _inside(current, parts, place, rebuild)
@@ -212,7 +214,7 @@ class Redundancy:
 
     def doubt(self, piece: Examined, reason: str) -> dict[str, Findings]:
         examining = _Examining(self.basis, piece.scenario)
-        changes = changes_of(examining.query, self.whole)
+        changes = changes_of(self.basis.specification, examining.query, self.whole)
         return {name_of(piece.scenario.number): tuple(examining.doubt(x, reason) for x in changes)}
 
     def is_sure(self, answer: Findings) -> bool:
@@ -243,7 +245,7 @@ class Redundancy:
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> Findings:
         examining = _Examining(self.basis, self._scenario(record["scenario"]))
-        changes = changes_of(examining.query, self.whole)
+        changes = changes_of(self.basis.specification, examining.query, self.whole)
         return tuple(
             self._recalled(change, said, shelf)
             for change, said in zip(changes, record["verdicts"], strict=True)
@@ -279,7 +281,7 @@ class _Examining:
 
     def run(self, whole: bool) -> Iterator[Finding]:
         """The findings on every change, in the order of ``changes_of``."""
-        changes = list(changes_of(self.query, whole))
+        changes = list(changes_of(self.basis.specification, self.query, whole))
         known: dict[Formula, Finding] = {}
         try:
             self._collect()
