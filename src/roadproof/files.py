@@ -104,6 +104,16 @@ def hold_folder(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
+@contextmanager
+def hold_if_any(folder: Path | None) -> Iterator[None]:
+    """As ``hold_folder``; nothing is held where there is no folder."""
+    if folder is None:
+        yield
+    else:
+        with hold_folder(folder):
+            yield
+
+
 def write_whole(path: Path, content: bytes) -> None:
     """Write a file, and make its folder where there is none. Raises ``InputError``."""
     make_folder(path.parent)

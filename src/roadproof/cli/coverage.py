@@ -23,6 +23,7 @@ from roadproof.cli.options import (
 )
 from roadproof.cli.working import add_working_options, work, work_in_order
 from roadproof.errors import UsageError
+from roadproof.files import hold_if_any
 from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
@@ -108,6 +109,11 @@ class GroupJob:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     asked, survey = _asked(args)
+    with hold_if_any(args.out):
+        return _answer(args, asked, survey, begun)
+
+
+def _answer(args: argparse.Namespace, asked: "Asked", survey: "Survey", begun: float) -> int:
     evidence = Evidence(args.out, survey)
     covered = _prove(asked, args.jobs)
     proved = all(x.verdict is Verdict.PROVED for x in covered)

@@ -23,6 +23,7 @@ from roadproof.cli.prove_answers import Answered, as_data, details, line, table
 from roadproof.cli.prove_files import ProofFolder
 from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import UsageError
+from roadproof.files import hold_if_any
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:
@@ -86,6 +87,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     tasks, how = _asked(args)
+    with hold_if_any(args.out):
+        return _settle_all(args, tasks, how, begun)
+
+
+def _settle_all(args: argparse.Namespace, tasks: "list[Task]", how: "How", begun: float) -> int:
     own = not tasks[0].title
     folder = None if args.out is None else ProofFolder(args.out, chosen_options(args), args.specs)
     found: list[Answered] = []

@@ -1,7 +1,7 @@
 """A search for drives of values, and its typed outcome."""
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -93,11 +93,7 @@ def ask(search: Search) -> Outcome:
     begun = time.perf_counter()
     library = search.specification.library
     question = pose(library, search.query, search.setting)
-    answers = [find_witness(question, search.means)]
-    drives: list[Drive] = []
-    while answers[-1].found is not None and len(drives) + 1 < search.count:
-        drives.append(answers[-1].found.drive)
-        answers.append(find_witness(question, search.means, tuple(drives)))
+    answers = list(_clearly_different(question, search))
     first = answers[0]
     judged = tuple(judge_found(search, question, a.found) for a in answers if a.found is not None)
     impossibility = None
@@ -119,6 +115,26 @@ def ask(search: Search) -> Outcome:
         impossibility,
         None if impossibility else first.limits,
     )
+
+
+def _clearly_different(question: Question, search: Search) -> Iterator[Answer]:
+    """The answers to one search after the other, each for a drive unlike those found before it.
+
+    Where the clock cuts a later one off, the drives that were found still stand.
+    """
+    drives: list[Drive] = []
+    while len(drives) < search.count:
+        try:
+            answer = find_witness(question, search.means, tuple(drives))
+        except Late as late:
+            if not drives:
+                raise
+            yield Answer(Verdict.UNKNOWN, None, str(late))
+            return
+        yield answer
+        if answer.found is None:
+            return
+        drives.append(answer.found.drive)
 
 
 def _reason(answers: list[Answer], count: int) -> str:

@@ -68,9 +68,10 @@ def read_gaps(common: Common, records: Sequence[object], where: str) -> Iterator
         ]
         files += [(None, evidence_name(placed, road), road) for road in placed.content]
         for claim, file, road in files:
+            told = unchecked if claim else (*unchecked, "that its formula is that of the gap elsewhere")
             yield Entry(
                 common, line.where, ("gap", file), "WITNESSED", f"gap on {road}", "drive", claim, file,
-                unchecked=unchecked,
+                unchecked=told,
             )  # fmt: skip
 
 

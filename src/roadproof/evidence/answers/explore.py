@@ -60,7 +60,7 @@ def _entry(
         line.text("formula"),
         one_of(line, shows),
         values=_values(common, dict(zip(knobs, at, strict=False)), where) if knobs else None,
-        unchecked=unchecked_of(verdict),
+        unchecked=(*unchecked_of(verdict), *(() if knobs else ("that its formula says the value at=",))),
         fault="" if not knobs or len(at) == len(knobs) else f"{where}: {len(at)} values of {len(knobs)}",
     )
 
