@@ -13,7 +13,6 @@ from fractions import Fraction
 
 from roadproof.effort import Effort
 from roadproof.encode.build import NONE, build_problem
-from roadproof.encode.unroll import Grid
 from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import prepare
 from roadproof.spec.library import bundled_library
@@ -69,7 +68,7 @@ def plainly(search: Search, lanes: dict[str, str], limit: float) -> tuple[float,
     """Seconds and answer of z3 on the exact encoding of the same question, on the same grid."""
     question = pose(search.specification.library, search.query, search.setting)
     manners = replace(question.manners.plain(), margin=NONE, inside=Fraction(0))
-    grid = Grid(search.setting.dt, int(search.setting.horizon / search.setting.dt))
+    grid = question.grid
     begun = time.perf_counter()
     problem, _ = build_problem(question.bound(lanes), question.road, question.vehicles, grid, manners)
     status = solve_exactly(problem, Effort(limit).meter()).status

@@ -21,8 +21,6 @@ from roadproof.analysis.explore.search import (
     Claim,
     Reply,
     Task,
-    common_step,
-    durations,
     fit_grid,
     look,
     made_for,
@@ -38,6 +36,7 @@ from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
+from roadproof.witness.grid import common_step, durations
 from roadproof.witness.question import Means
 
 LIBRARY = bundled_library()

@@ -59,17 +59,15 @@ def test_results_go_to_stdout_and_complaints_to_stderr(capsys: pytest.CaptureFix
 def test_every_subcommand_keeps_the_contract() -> None:
     from importlib import import_module
 
-    found = dict(command_line._available())
-    assert {"list", "show"} <= set(found) <= set(COMMANDS)
-    for name in found:
-        module = import_module(COMMANDS[name])
-        assert command_line._summary(found[name]) == module.SUMMARY
+    for name in COMMANDS.values():
+        module = import_module(name)
+        assert command_line._summary(Path(module.__file__ or "")) == module.SUMMARY
         assert callable(module.add_arguments)
         assert callable(module.run)
 
 
 def test_every_subcommand_helps_by_example(capsys: pytest.CaptureFixture[str]) -> None:
-    for name in ["", *dict(command_line._available())]:
+    for name in ["", *COMMANDS]:
         with pytest.raises(SystemExit) as raised:
             main([name, "--help"] if name else ["--help"])
         assert raised.value.code == 0

@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import pytest
 
-from asking import search_for
+from asking import posed, search_for
 from roadproof.effort import Effort
+from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
 from roadproof.judge.replay import first_breach, first_overlap
@@ -179,17 +180,32 @@ def test_what_fails_between_the_samples_is_looked_at_more_closely():
     ("changes", "message"),
     [
         ({"dt": Fraction(1, 7)}, "no multiple of dt"),
-        ({"horizon": Fraction(7)}, "no multiple of dt"),
+        ({"horizon": Fraction(7), "dt": Fraction(3, 5)}, "no multiple of dt"),
         ({"horizon": Fraction(6000)}, "at most"),
         ({"lanes": {"L": "main-9"}}, "has the lanes main-1, main-2"),
         ({"lanes": {"M": "main-1"}}, "speaks of L"),
         ({"vehicles": {"POV7": "car"}}, "speaks of"),
-        ({"values": {"minDanger": Fraction(1, 2)}}, "no multiple of dt"),
+        ({"values": {"minDanger": Fraction(1, 2)}, "dt": Fraction(3, 5)}, "no multiple of dt"),
     ],
 )
 def test_requests_that_make_no_sense(changes, message):
     with pytest.raises(UsageError, match=message):
         ask_for("4", **changes)
+
+
+@pytest.mark.parametrize(
+    ("what", "horizon", "dt", "steps"),
+    [
+        ("v_lon(SV) > 20 m/s", 6, Fraction(3, 5), 10),
+        ("F[0, 1 s] v_lon(SV) > 20 m/s", 6, Fraction(1, 2), 12),
+        ("F[0, 0.5 s] G[0, 0.6 s] v_lon(SV) > 20 m/s", 6, Fraction(1, 10), 60),
+        ("scenario_4(SV, POV, L)", 6, Fraction(3, 5), 10),
+        ("scenario_4(SV, POV, L)", 5, Fraction(1, 5), 25),
+        ("F[0, 0.6 s] v_lon(SV) > 20 m/s", Fraction(501, 100), Fraction(3, 5), 9),
+    ],
+)
+def test_the_step_is_the_coarsest_that_fits(what, horizon, dt, steps):
+    assert posed(search_for(what, horizon=Fraction(horizon))).grid == Grid(dt, steps)
 
 
 def test_a_formula_without_vehicles_shows_nothing():

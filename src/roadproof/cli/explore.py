@@ -196,7 +196,7 @@ def read_request(args: argparse.Namespace, library: "Library") -> "Request":
         lanes=dict(named(args.lanes, "L")),
         vehicles=dict(named(args.vehicles, "")),
         horizon=read_seconds("--horizon", args.horizon),
-        dt=read_seconds("--dt", args.dt),
+        dt=read_seconds("--dt", args.dt or "3/5"),
         reach=read_seconds("--reach", args.reach),
         collisions=args.allow_collisions,
         means=read_means(args),

@@ -9,9 +9,8 @@ import ast
 import contextlib
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import NoReturn
 
@@ -105,15 +104,14 @@ def _run(arguments: list[str]) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="store_true", help="print the version and exit")
-    available = dict(_available())
     asked = next((a for a in arguments if not a.startswith("-")), None)
-    if asked is not None and asked not in available:
+    if asked is not None and asked not in COMMANDS:
         from roadproof.spec.library import unknown
 
-        raise UsageError(f"{unknown('sub-command', asked, available)}\nSee roadproof --help.")
+        raise UsageError(f"{unknown('sub-command', asked, COMMANDS)}\nSee roadproof --help.")
     commands = parser.add_subparsers(dest="command", metavar="SUBCOMMAND", parser_class=_Parser)
-    for name, file in available.items():
-        summary = _summary(file)
+    for name, module in COMMANDS.items():
+        summary = _summary(Path(__file__).with_name(f"{module.rpartition('.')[2]}.py"))
         command = commands.add_parser(
             name,
             help=summary,
@@ -130,14 +128,6 @@ def _run(arguments: list[str]) -> int:
     be_quiet(getattr(parsed, "quiet", False))
     code: int = import_module(COMMANDS[parsed.command]).run(parsed)
     return code
-
-
-def _available() -> Iterator[tuple[str, Path]]:
-    """The sub-commands whose module is installed, with its file."""
-    for name, module in COMMANDS.items():
-        found = find_spec(module)
-        if found is not None and found.origin is not None:
-            yield name, Path(found.origin)
 
 
 def _summary(file: Path) -> str:

@@ -72,7 +72,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--horizon", metavar="S", default="6", help="with smt, milp: seconds (default: 6)")
     parser.add_argument(
-        "--dt", metavar="S", default="3/5", help="with smt, milp: seconds a sample (default: 3/5)"
+        "--dt", metavar="S", help="with smt, milp: seconds a sample (default: the coarsest that fits)"
     )
     parser.add_argument("--road", metavar="R", help="with smt, milp: a reference road or a .toml file")
     add_working_options(parser)
@@ -192,6 +192,7 @@ def _within(args: argparse.Namespace, own: bool) -> "tuple[Setting, Means] | Non
     if not own:
         raise UsageError(f"--engine {args.engine} is for claims of your own: the list is about all time")
     road = None if args.road is None else load_road(args.road)
-    horizon, dt = read_seconds("--horizon", args.horizon), read_seconds("--dt", args.dt)
+    horizon = read_seconds("--horizon", args.horizon)
+    dt = None if args.dt is None else read_seconds("--dt", args.dt)
     setting = Setting(road=road, horizon=horizon, dt=dt)
     return setting, Means("any", args.engine, effort=read_effort(args))

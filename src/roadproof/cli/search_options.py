@@ -41,7 +41,9 @@ def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> 
         help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
     )
     parser.add_argument("--horizon", metavar="S", default="6", help="seconds that are searched (default: 6)")
-    parser.add_argument("--dt", metavar="S", default="3/5", help="seconds between samples (default: 3/5)")
+    parser.add_argument(
+        "--dt", metavar="S", help="seconds between samples (default: the coarsest that fits, at most 3/5)"
+    )
     parser.add_argument(
         "--reach", metavar="M", default="80", help="how far apart vehicles may start (default: 80)"
     )
@@ -62,7 +64,7 @@ def read_setting(args: argparse.Namespace, library: "Library") -> "Setting":
         vehicles={name: load_vehicle(model) for name, model in named(args.vehicles, "")},
         values=parameter_values(args, library),
         horizon=read_seconds("--horizon", args.horizon),
-        dt=read_seconds("--dt", args.dt),
+        dt=None if args.dt is None else read_seconds("--dt", args.dt),
         reach=read_seconds("--reach", args.reach),
         collisions=args.allow_collisions,
     )

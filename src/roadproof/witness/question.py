@@ -18,6 +18,7 @@ from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.bind import bind, values_with
 from roadproof.spec.library import Library
 from roadproof.spec.query import Query
+from roadproof.witness.grid import fitting_grid, make_grid
 from roadproof.witness.limits import Limits
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle
@@ -26,7 +27,6 @@ from roadproof.world.vehicle import Range, Vehicle, with_limits
 
 Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
 Engine: TypeAlias = Literal["milp", "smt"]
-MOST_STEPS = 400
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,8 @@ class Setting:
     ``road`` None is the usual road of the formula; ``lanes`` are free lanes that stand for one lane.
     ``vehicles`` by name, "" for all others (a car where nothing is said), and ``limits`` other limits than
     theirs, such as ``{"POV": {"a_lon.min": -2}}`` (``world.vehicle.with_limits``). ``values``: parameters
-    with another value than the declared one (SI). ``horizon``, ``dt``: seconds; ``reach``: how far apart
+    with another value than the declared one (SI). ``horizon``, ``dt``: seconds; ``dt`` None is the coarsest
+    that fits (``grid.fitting_grid``). ``reach``: how far apart
     vehicles may start (m). ``collisions``: boxes may overlap. ``natural``: whether natural drives are tried
     first.
     """
@@ -47,7 +48,7 @@ class Setting:
     limits: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
     values: Mapping[str, Fraction] = field(default_factory=dict)
     horizon: Fraction = Fraction(6)
-    dt: Fraction = Fraction(3, 5)
+    dt: Fraction | None = None
     reach: Fraction = Fraction(80)
     collisions: bool = False
     natural: bool = True
@@ -137,24 +138,11 @@ def pose(library: Library, query: Query, setting: Setting) -> Question:
     lanes = assignments(query, road, setting.lanes)
     manners = Manners(reach=setting.reach, collisions=setting.collisions)
     manners = manners if setting.natural else manners.plain()
-    return Question(query, road, vehicles, values, lanes, make_grid(setting.horizon, setting.dt), manners)
-
-
-def make_grid(horizon: Fraction, dt: Fraction) -> Grid:
-    """Raises ``UsageError`` unless the horizon is a sensible multiple of dt."""
-    if dt <= 0 or horizon <= 0:
-        raise UsageError(f"horizon={horizon} s and dt={dt} s must be greater than 0")
-    steps = horizon / dt
-    if steps.denominator != 1:
-        raise UsageError(
-            f"horizon={horizon} s is no multiple of dt={dt} s: choose a horizon "
-            f"such as {dt * (int(steps) + 1)} s, or another dt"
-        )
-    if steps > MOST_STEPS:
-        raise UsageError(
-            f"horizon={horizon} s with dt={dt} s is {steps} steps; at most {MOST_STEPS} are allowed"
-        )
-    return Grid(dt, int(steps))
+    if setting.dt is None:
+        grid = fitting_grid(setting.horizon, query.formula, values)
+    else:
+        grid = make_grid(setting.horizon, setting.dt)
+    return Question(query, road, vehicles, values, lanes, grid, manners)
 
 
 def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[dict[str, str], ...]:

@@ -90,12 +90,6 @@ def prove_claim(asked: Asked, claim: str) -> Covered:
     return Covered(claim, result.verdict, certificate, result.reason)
 
 
-def prove_coverage(asked: Asked) -> list[Covered]:
-    """Try to prove every claim of ``claims_of`` for the first set of ``asked``."""
-    _, specification = asked.load()
-    return [prove_claim(asked, claim) for claim in claims_of(specification)]
-
-
 def some_scenario(numbers: Sequence[int], lane: str = "L", set_name: str = "") -> str:
     """That one of the scenarios holds, in either role; ``set_name``: those of another set."""
     at = f"@{set_name}" if set_name else ""

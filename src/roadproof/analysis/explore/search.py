@@ -8,7 +8,7 @@ exact ones.
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil, floor, gcd
+from math import ceil, floor
 from typing import Any, Literal, TypeAlias
 
 from roadproof.analysis.placing import as_data
@@ -20,12 +20,12 @@ from roadproof.evidence.judged import judge_file
 from roadproof.judge.replay import first_overlap
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
-from roadproof.logic.rewrite import bounds_of, with_values
 from roadproof.logic.terms import Parameter, leaves
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification, load_library
 from roadproof.verdict import Verdict
 from roadproof.witness.ask import judge_found, telling_values
+from roadproof.witness.grid import coarsest, common_step, durations
 from roadproof.witness.question import Question
 from roadproof.witness.search import Answer, find_witness, show_none
 
@@ -138,7 +138,7 @@ def fit_grid(request: Request, formula: Formula) -> Request | None:
     step = Fraction(0)
     for duration in durations(formula, request.values):
         step = common_step(step, duration)
-    dt = step / ceil(step / request.dt) if step else request.dt
+    dt = coarsest(step, request.dt)
     if dt < _finest(request):
         return None
     return replace(request, dt=dt, horizon=ceil(request.horizon / dt) * dt)
@@ -169,23 +169,10 @@ def _finest(request: Request) -> Fraction:
     return min(request.dt, request.horizon / MOST_STEPS)
 
 
-def durations(formula: Formula, values: Mapping[str, Fraction]) -> set[Fraction]:
-    """The finite bounds of all intervals, in s, with parameters at ``values``."""
-    bounds = (bounds_of(interval) for interval in intervals_of(with_values(formula, values)))
-    return {bound for pair in bounds for bound in pair if bound is not None}
-
-
 def duration_parameters(formula: Formula) -> tuple[str, ...]:
     """The parameters that bounds of intervals are made of, sorted."""
     terms = [t for x in intervals_of(formula) for t in (x.low, x.high) if t is not None]
     return tuple(sorted({leaf.name for t in terms for leaf in leaves(t) if isinstance(leaf, Parameter)}))
-
-
-def common_step(a: Fraction, b: Fraction) -> Fraction:
-    """The greatest number of which both are multiples; of 0 and b it is b."""
-    return Fraction(
-        gcd(a.numerator * b.denominator, b.numerator * a.denominator), a.denominator * b.denominator
-    )
 
 
 @dataclass(frozen=True)
