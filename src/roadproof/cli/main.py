@@ -7,6 +7,7 @@ Only the module that is asked for is imported. Each module has ``SUMMARY: str`` 
 import argparse
 import ast
 import contextlib
+import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -126,8 +127,29 @@ def _run(arguments: list[str]) -> int:
     if parsed.command is None:
         raise UsageError("name a sub-command; see roadproof --help")
     be_quiet(getattr(parsed, "quiet", False))
+    _try_paths(getattr(parsed, "json", None), getattr(parsed, "out", None))
     code: int = import_module(COMMANDS[parsed.command]).run(parsed)
     return code
+
+
+def _try_paths(target: str | None, out: Path | None) -> None:
+    """Fail before the work where the answer could not be written. Raises ``InputError``."""
+    if target in (None, "-"):
+        return
+    path = Path(str(target))
+    if out is not None and path.parent.absolute().is_relative_to(Path(out).absolute()):
+        return  # a folder that is made
+    error = None
+    if not path.parent.is_dir():
+        error = errno.ENOENT
+    elif path.is_dir():
+        error = errno.EISDIR
+    elif not os.access(path if path.exists() else path.parent, os.W_OK):
+        error = errno.EACCES
+    if error is not None:
+        from roadproof.files import cannot_write
+
+        raise cannot_write(path, OSError(error, os.strerror(error)))
 
 
 def _summary(file: Path) -> str:

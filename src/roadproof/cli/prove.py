@@ -35,11 +35,13 @@ if TYPE_CHECKING:
 SUMMARY = "prove claims for all time, or refute them; without a claim, the template properties"
 SCHEMA = "roadproof/verdicts/1"
 _PROPERTY = re.compile(r"[A-Z]\d+")
+_SCENARIOS = re.compile(r"(scenario_)?\d[\d,\s-]*")
 
 _EXAMPLES = """\
 examples:
   roadproof prove                                     all template properties and negative controls
   roadproof prove P1 P4 --set base                    some of them
+  roadproof prove 4                                   what the list says of scenario 4; also 1-3 or scenario_4
   roadproof prove 'scenario_8(SV,POV,L) -> F danger(SV,POV)' --set ext
   roadproof prove 'scenario_4(SV,POV,L) -> scenario_4@ext(SV,POV,L)'
   roadproof prove 'given A, B: vehicle: danger(A,B) -> danger(B,A)' --out proofs
@@ -54,7 +56,9 @@ With --engine smt or milp a claim is about drives on one road, up to a horizon: 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    parser.add_argument("claims", metavar="CLAIM", nargs="*", help="a formula, or a property such as P1")
+    parser.add_argument(
+        "claims", metavar="CLAIM", nargs="*", help="a formula, a property such as P1, or a scenario such as 4"
+    )
     parser.add_argument("--claims", dest="file", type=Path, metavar="FILE", help="claims from a file")
     add_specification_options(parser, None)
     parser.add_argument(
@@ -153,16 +157,21 @@ def undecided(how: How, task: "Task", reason: str) -> Answered:
 def _asked(args: argparse.Namespace) -> "tuple[list[Task], How]":
     from roadproof.prove.properties import choose, template_properties
     from roadproof.spec.elaborate import read_claim
+    from roadproof.spec.scenarios import read_numbers
 
     library = load_library_of(args)
     options = chosen_options(args)
     named = [claim for claim in args.claims if _PROPERTY.fullmatch(claim)]
-    own = _own_claims(args, [claim for claim in args.claims if claim not in named])
-    if named and own:
+    about = [claim for claim in args.claims if _SCENARIOS.fullmatch(claim)]
+    own = _own_claims(args, [claim for claim in args.claims if claim not in (*named, *about)])
+    if (named or about) and own:
         raise UsageError("ask for properties or for claims of your own, not for both at once")
-    tasks = own or choose(template_properties(), named, args.set_name)
+    home = library.select(args.set_name or "base", options)
+    numbers = sorted({number for text in about for number in read_numbers(home, text)})
+    tasks = own or choose(template_properties(), named, args.set_name, numbers)
     if not tasks:
-        raise UsageError(f"none of {', '.join(named)} is stated for set={args.set_name}: leave out --set")
+        asked = ", ".join([*named, *about])
+        raise UsageError(f"no claim of {asked} is stated for set={args.set_name or 'any'}: ask for others")
     specifications = {name: library.select(name, options) for name in {task.set_name for task in tasks}}
     for task in own:
         read_claim(specifications[task.set_name], task.claim)

@@ -90,16 +90,24 @@ def _at(claim: str, scenario: int | None) -> str:
     return _INDEX.sub(lambda found: str((scenario or 0) + int(found[1] or 0)), claim)
 
 
-def choose(tasks: Sequence[Task], names: Sequence[str], set_name: str | None) -> list[Task]:
+def choose(
+    tasks: Sequence[Task], names: Sequence[str], set_name: str | None, numbers: Sequence[int] = ()
+) -> list[Task]:
     """The tasks of the named properties (all where none is named) in a set (in all where None).
 
-    Raises ``UsageError`` for a property that does not exist.
+    ``numbers``: only those about these scenarios. Raises ``UsageError`` for a property that does not exist.
     """
     known = {task.id for task in tasks}
     for name in names:
         if name not in known:
             raise UsageError(unknown("property", name, known))
-    return [task for task in tasks if (not names or task.id in names) and set_name in (None, task.set_name)]
+    return [
+        task
+        for task in tasks
+        if (not names or task.id in names)
+        and set_name in (None, task.set_name)
+        and (not numbers or task.scenario in numbers)
+    ]
 
 
 def read_claims(path: Path) -> list[str]:
