@@ -160,12 +160,13 @@ class Overlap:
         }
         return {"verdict": verdict}
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> PairVerdict:
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, PairVerdict]:
         said = record["verdict"]
+        a, b = Scenario(said["a"], said["set_a"]), Scenario(said["b"], said["set_b"])
         cores = [Core(self._read(x["formula"]), self._parts(x["parts"])) for x in said["cores"]]
-        return PairVerdict(
-            Scenario(said["a"], said["set_a"]),
-            Scenario(said["b"], said["set_b"]),
+        return name_of(a, b), PairVerdict(
+            a,
+            b,
             Verdict(said["verdict"]),
             self._read(said["formula"]),
             said["reason"],

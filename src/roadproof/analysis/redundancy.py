@@ -13,6 +13,7 @@ from typing import Any
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import judged_as, placed
 from roadproof.effort import Late
+from roadproof.errors import InputError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel, trace_data
@@ -243,16 +244,21 @@ class Redundancy:
         ]
         return {"scenario": number, "verdicts": verdicts}
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> Findings:
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Findings]:
         examining = _Examining(self.basis, self._scenario(record["scenario"]))
-        changes = changes_of(self.basis.specification, examining.query, self.whole)
-        return tuple(
-            self._recalled(change, said, shelf)
-            for change, said in zip(changes, record["verdicts"], strict=True)
-        )
+        changes = list(changes_of(self.basis.specification, examining.query, self.whole))
+        verdicts = record["verdicts"]
+        if len(changes) != len(verdicts):
+            raise InputError(
+                f"{len(verdicts)} findings on the {len(changes)} changes of {examining.scenario}"
+            )
+        findings = (self._recalled(x, y, shelf) for x, y in zip(changes, verdicts, strict=True))
+        return name_of(record["scenario"]), tuple(findings)
 
     def _recalled(self, change: Change, said: Mapping[str, Any], shelf: Shelf) -> Finding:
         specification = self.basis.specification
+        if said["changed"] != change.changed.text:
+            raise InputError(f"a finding on {said['changed']}, where one on {change.changed.text} was kept")
         return Finding(
             change,
             Verdict(said["verdict"]),

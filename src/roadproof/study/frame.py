@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
+from roadproof.errors import InputError
 from roadproof.study.pool import Progress, work
 from roadproof.study.shelf import Question, Shelf
 
@@ -43,8 +44,11 @@ class Study(Protocol[Piece, Answer]):
     def record(self, name: str, answer: Answer, shelf: Shelf) -> dict[str, Any]:
         """An answer as plain data; its evidence goes to the shelf."""
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> Answer:
-        """The inverse of ``record``."""
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answer]:
+        """The inverse of ``record``, with the name that is told from what it says.
+
+        Raises ``InputError`` where it is no whole answer.
+        """
 
 
 @dataclass(frozen=True)
@@ -70,13 +74,23 @@ def conduct(
     ``study.settle`` raises.
     """
     shelf = Shelf(folder, study.question)
-    records = {name: dict(record) for name, record in shelf.answers(say)}
-    known = {name: study.recall(record, shelf) for name, record in records.items()}
+    records: dict[str, dict[str, Any]] = {}
+    known: dict[str, Answer] = {}
+    for file, record in shelf.answers(say):
+        try:
+            name, answer = study.recall(record, shelf)
+            if name != file:
+                raise InputError(f"the answer '{file}' is that of '{name}'")
+        except InputError as error:
+            if say is not None:
+                say(f"asked again, since a kept answer does not count: {error}")
+            continue
+        records[name], known[name] = dict(record), answer
     while pieces := study.pieces(known):
         with closing(work(study.settle, pieces, processes, study.doubt, progress, what)) as answered:
             for _, answers in answered:
                 for name, answer in answers.items():
-                    record = study.record(name, answer, shelf)
-                    records[name] = shelf.keep(name, record, study.is_sure(answer))
+                    made = study.record(name, answer, shelf)
+                    records[name] = shelf.keep(name, made, study.is_sure(answer))
                     known[name] = answer
     return Conducted(known, {name: shelf.with_paths(record) for name, record in records.items()})

@@ -16,6 +16,7 @@ from roadproof.analysis.order.deciding import (
 )
 from roadproof.analysis.order.kinds import Kind, families_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
+from roadproof.errors import InputError
 from roadproof.evidence.judged import Judged
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.scenarios import Scenario
@@ -128,7 +129,7 @@ class Ordering:
         doubts = [{"from": str(x.above), "to": str(x.below), "reason": x.reason} for x in answer.doubts]
         return {"family": name, "proved": proved, "drives": drives, "doubts": doubts}
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> Decided:
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Decided]:
         edges: list[Edge] = []
         for said in record["proved"]:
             certificate = shelf.read_certificate(said["certificate"])
@@ -140,7 +141,13 @@ class Ordering:
             drive = shelf.read_drive(said["drive"])
             assert drive is not None
             drives.append(Refuting(_scenario(said["holds"]), tuple(map(_scenario, said["fails"])), drive))
-        return Decided(tuple(edges), tuple(drives))
+        name: str = record["family"]
+        settled = {(x.above, x.below) for x in edges} | {(x.node, y) for x in drives for y in x.others}
+        for kind in self.families.get(name, ()):
+            for other in self.kinds:
+                if other != kind and (kind.node, other.node) not in settled:
+                    raise InputError(f"nothing is kept of {kind.node} -> {other.node}")
+        return name, Decided(tuple(edges), tuple(drives))
 
     def order(self, answers: Mapping[str, Decided]) -> Order:
         """The edges of the Hasse diagram, and for the other pairs what refutes them."""
