@@ -151,7 +151,7 @@ def test_a_pair_is_answered_as_in_an_evaluation(folder: Path, capsys: pytest.Cap
         code, told = asked([str(match.scenario), *trace, *options], capsys)
         assert (code, told["verdict"], told["lane L"]) == (0, "true", match.lane)
         if match.pov2 is None and match.scenario in (1, 4):
-            other = 5 - match.scenario  # 1 and 4 exclude each other with one L and one start (SPEC §6)
+            other = 5 - match.scenario  # 1 and 4 exclude each other with one L and one start (semantics §6)
             code, told = asked([str(other), *trace, *options], capsys)
             assert code != 0
 

@@ -64,7 +64,7 @@ def value_at(trace, signal, vehicle, sample):
 
 
 def holds(formula, trace, k=0):
-    """Truth at sample k by definition (SPEC §1); the last sample stands for every later one."""
+    """Truth at sample k by definition (semantics §1); the last sample stands for every later one."""
 
     def samples(window):
         low = window.low.value / DT

@@ -1,4 +1,4 @@
-"""The monitor says what the recursive reading of SPEC §1 says, sample by sample."""
+"""The monitor says what the recursive reading of semantics §1 says, sample by sample."""
 
 from dataclasses import replace
 from fractions import Fraction

@@ -230,7 +230,7 @@ def elements(domain, road: Road, names: Mapping[str, str]) -> list[str]:
 
 
 def neighbours(road: Road) -> set[frozenset[str]]:
-    """Lanes with lanelets that share a piece of their left and right boundaries (SPEC §4)."""
+    """Lanes with lanelets that share a piece of their left and right boundaries (semantics §4)."""
     found = set()
     for a, b in product(road.lanelets, road.lanelets):
         low = max(a.s[0], b.s[0])

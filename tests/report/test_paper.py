@@ -1,4 +1,4 @@
-"""The paper's figures are consistent in themselves and with the facts that must hold (SPEC §6)."""
+"""The paper's figures are consistent in themselves and with the facts that must hold (semantics §6)."""
 
 from fractions import Fraction
 

@@ -46,7 +46,7 @@ def v(a: str) -> Term:
 
 
 def to_the_right(a: str) -> Term:
-    """Lateral velocity as RSS counts it; our d grows to the left (SPEC §3)."""
+    """Lateral velocity as RSS counts it; our d grows to the left (semantics §3)."""
     return t.negate(t.Signal("v_lat", a))
 
 
@@ -77,7 +77,7 @@ def d_rss_lon(rear: str, front: str) -> Term:
 
 
 def d_rss_lat(left: str, right: str) -> Term:
-    """Eq. lat_RSS with the arguments of SPEC §3."""
+    """Eq. lat_RSS with the arguments of semantics §3."""
     one, two, gain = to_the_right(left), to_the_right(right), times(RHO, A_LAT)
     distance = plus(
         times(t.subtract(one, two), RHO),

@@ -1,4 +1,4 @@
-"""SPEC §7 read out slowly: every pair, every triple, every sample, with the recursive evaluator.
+"""semantics §7 read out slowly: every pair, every triple, every sample, with the recursive evaluator.
 
 Shares with the program only the recording, the formulas and nothing of how traces are found or cut.
 """

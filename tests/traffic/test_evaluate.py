@@ -180,7 +180,7 @@ def test_sets_grow_and_matches_are_disturbances(questions: Questions) -> None:
         if m.pov2 is None:
             assert (m.start_frame, m.end_frame) == (trace.start_frame, trace.end_frame)
     assert by_set["base"] < by_set["extA"] < by_set["ext"]
-    # s3 = s4 in base, up to pairs that begin in different lanes (SPEC §6).
+    # s3 = s4 in base, up to pairs that begin in different lanes (semantics §6).
     straddling = {key[:2] for key, t in traces.items() if t.first_lane != t.second_lane}
     for k in (0, 1):
         three, four = (

@@ -114,7 +114,7 @@ def test_simulated_traffic_loses_none() -> None:
 @pytest.mark.parametrize("swap", [False, True])
 def test_filter_is_sharp_at_constant_speeds(swap: bool) -> None:
     gap = 4.5 + distance(30.0, 24.0, REACH)
-    assert gap == pytest.approx(4.5 + 73.65)  # SPEC §3
+    assert gap == pytest.approx(4.5 + 73.65)  # semantics §3
     for extra, kept in ((0.0, True), (-0.1, True), (0.1, False)):
         tracks = [Track(2, 1, cruise(0.0, 30.0, 1)), Track(2, 1, cruise(gap + extra, 24.0, 1))]
         r = make_recording(tracks[::-1] if swap else tracks)
@@ -123,7 +123,7 @@ def test_filter_is_sharp_at_constant_speeds(swap: bool) -> None:
 
 
 def test_filter_is_sharp_across() -> None:
-    """Side by side at the same lateral speeds 0: SPEC §3 has dRSS_lat(0, 0) = 1.08."""
+    """Side by side at the same lateral speeds 0: semantics §3 has dRSS_lat(0, 0) = 1.08."""
     assert sideways(0, 0, REACH) == pytest.approx(1.08)
     for extra, kept in ((0.0, True), (0.1, False)):
         apart = 1.8 + 1.08 + extra

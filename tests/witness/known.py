@@ -1,8 +1,8 @@
 """Random drives with random formulas that hold on their samples: what a NONE-WITHIN must never deny.
 
-Formulas are read by definition (SPEC §1) on samples of which the last stands for all later time; nothing of
-the encoder is used. Thresholds are values of the drive itself, so that many formulas hold there and nearly
-nowhere else.
+Formulas are read by definition (semantics §1) on samples of which the last stands for all later time;
+nothing of the encoder is used. Thresholds are values of the drive itself, so that many formulas hold there
+and nearly nowhere else.
 """
 
 import operator

@@ -222,7 +222,7 @@ def _lanes(
     for text in args.lanes:
         name, _, lane = text.rpartition("=")
         lanes[name or "L"] = trace.lanes.get(lane, lane)
-    usual = "POV" if number is not None and number % 8 == 7 else "SV"  # SPEC §5
+    usual = "POV" if number is not None and number % 8 == 7 else "SV"  # semantics §5
     for name in query.lanes:
         if not lanes.get(name):
             lanes[name] = trace.lanes.get(usual, "")

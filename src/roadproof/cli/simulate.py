@@ -176,7 +176,7 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
     """A drive for each scenario of ``text`` (such as 1-3,7), whose danger lasts up to its horizon.
 
     A recorded trace ends with its last danger, so whatever else the scenario needs has happened then;
-    L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (SPEC §7).
+    L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (semantics §7).
     """
     from roadproof.spec import scenarios as s
     from roadproof.spec.bind import default_values

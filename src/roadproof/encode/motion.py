@@ -1,4 +1,4 @@
-"""Vehicles as pairs of double integrators, exact at the samples (SPEC §2).
+"""Vehicles as pairs of double integrators, exact at the samples (semantics §2).
 
 The unknowns of a vehicle are position and speed along and across the road at each sample; the
 acceleration between two samples is constant, so it is the difference of speeds over dt, and

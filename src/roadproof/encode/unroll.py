@@ -4,7 +4,7 @@ A bound formula and a grid become a circuit over atoms at samples. Negation disa
 to the comparisons, where it turns ``<`` into ``>=``. Grid semantics: an operator ranges over samples
 k·dt; the last sample stands for every later one, so that a window that reaches past the horizon
 ends on it (the motion goes on without acceleration, see ``encode.build``). Until is the paper's
-(SPEC §1): the left side is asked for from the start of the interval on, not before.
+(semantics §1): the left side is asked for from the start of the interval on, not before.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The exact judge: whether a formula holds on a drive, in dense and unbounded time (SPEC §1).
+"""The exact judge: whether a formula holds on a drive, in dense and unbounded time (semantics §1).
 
 Nothing is sampled: each comparison becomes the set of times at which it is true, by the roots of
 its polynomials, and every operator is an operation on such sets.

@@ -82,7 +82,7 @@ def states_at(drive: Drive, time: Fraction) -> dict[str, State]:
 
 
 def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
-    """The first overlap of two boxes [s-length, s] × [d-width, d] within [0, horizon] (SPEC §2).
+    """The first overlap of two boxes [s-length, s] × [d-width, d] within [0, horizon] (semantics §2).
 
     Touching is no overlap. ``horizon`` in s; None is for ever. Raises ``UsageError`` where negative.
     """

@@ -191,7 +191,7 @@ def _greatest_ahead(body: Array, low: int, high: int | None) -> Array:
 
 
 def _until(left: Array, low: int, high: int | None, right: Array) -> Array:
-    """max over j in [low, high] of min(right[k+j], left[k+low .. k+j-1]) (SPEC §1)."""
+    """max over j in [low, high] of min(right[k+j], left[k+low .. k+j-1]) (semantics §1)."""
     length = min(len(left), len(right)) - low
     left, right = left[low : low + length], right[low : low + length]
     if high is None:

@@ -126,7 +126,7 @@ def always(low: Fraction, high: Fraction | None, body: TruthSet) -> TruthSet:
 
 
 def until(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet) -> TruthSet:
-    """U_[low, high] of SPEC §1: some t in [low, high] has right at T+t, and left at T+t' for every
+    """U_[low, high] of semantics §1: some t in [low, high] has right at T+t, and left at T+t' for every
     t' in [low, t).
 
     At T it is the until that starts with 0, seen from T + low. That one holds where right does, and,

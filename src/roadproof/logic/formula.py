@@ -4,7 +4,7 @@ Sugar dies at construction: there is no implication node, and ``!=`` is a negate
 ``Named`` remembers which definition a sub-formula came from; it means what its body means.
 Quantifiers over lanes and lanelets stay in the tree until a road is chosen (``spec.bind``).
 
-Semantics (SPEC §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0.
+Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0.
 ``Until(φ, J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.
 """
 
@@ -34,7 +34,7 @@ class Compare:
 
 @node
 class Occupies:
-    """occ(vehicle, lanelet): box and lanelet overlap with positive area (SPEC §4)."""
+    """occ(vehicle, lanelet): box and lanelet overlap with positive area (semantics §4)."""
 
     vehicle: str
     lanelet: str

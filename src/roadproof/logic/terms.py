@@ -43,7 +43,7 @@ class Variable:
 
 @node
 class Signal:
-    """A quantity of a vehicle that varies with time (SPEC §2: front-left corner, d to the left)."""
+    """A quantity of a vehicle that varies with time (semantics §2: front-left corner, d to the left)."""
 
     name: SignalName
     vehicle: str

@@ -1,4 +1,4 @@
-"""The definitions of SPEC §1, read out slowly: one trace, one sample, one view at a time.
+"""The definitions of semantics §1, read out slowly: one trace, one sample, one view at a time.
 
 Everything faster is pinned against this file, so it shares neither arrays nor arithmetic with it.
 It remembers what it has already worked out, and does nothing else to be quick.
@@ -32,7 +32,7 @@ class Trace:
 
 
 def answer(formula: Formula, trace: Trace, sample: int = 0, clip: bool = False) -> Answer:
-    """Whether ``formula`` holds at ``sample``: true for every continuation, false for none (SPEC §1).
+    """Whether ``formula`` holds at ``sample``: true for every continuation, false for none (semantics §1).
 
     With ``clip``, windows are cut at the last sample and the answer is never ``undecided``.
     """

@@ -5,7 +5,7 @@ is sample k; what lies after the last sample of a trace is *padding*, a bottom o
 
 - strong view: bottom. A witness must lie inside, and so must the whole window of an ``Always``;
 - weak view: top, the dual; ``Not`` swaps the two (Eisner et al., *Reasoning with temporal logic on
-  truncated paths*, CAV 2003; SPEC §1, end of a recorded trace);
+  truncated paths*, CAV 2003; semantics §1, end of a recorded trace);
 - clip: the padding that never matters, so windows are cut at the last sample. Nothing is in an empty
   window: ``Eventually`` and ``Until`` fail there, ``Always`` holds.
 """

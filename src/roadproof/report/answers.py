@@ -12,7 +12,7 @@ from roadproof.traffic.results import Row, Totals
 
 
 def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> str:
-    """Markdown: RQ1 to RQ5 of the paper, the paper's figures in brackets, and the facts of SPEC §6."""
+    """Markdown: RQ1 to RQ5 of the paper, the paper's figures in brackets, and the facts of semantics §6."""
     parts = [
         f"# What the numbers say\n\nFigures in brackets are {MARK}." + "".join(_left_out(failed)),
         "## RQ1: are the descriptions adequate for detecting disturbances?\n\n" + _detecting(totals),

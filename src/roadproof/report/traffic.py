@@ -1,4 +1,4 @@
-"""The tables of a traffic evaluation, the paper's figures beside ours (SPEC §7)."""
+"""The tables of a traffic evaluation, the paper's figures beside ours (semantics §7)."""
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction

@@ -56,7 +56,7 @@ def refuse_variables(formula: Formula) -> None:
 
 
 def occupies(vehicle: str, lanelet: Lanelet) -> Formula:
-    """occ(a, l) on a straight road: box and lanelet overlap with positive area (SPEC §4)."""
+    """occ(a, l) on a straight road: box and lanelet overlap with positive area (semantics §4)."""
     front: t.Term = t.Signal("s", vehicle)
     left: t.Term = t.Signal("d", vehicle)
     metres = (1, 0)

@@ -1,4 +1,4 @@
-"""Where danger arises between two vehicles: the filter and the cuts of SPEC §7.
+"""Where danger arises between two vehicles: the filter and the cuts of semantics §7.
 
 A trace starts at the first sample where initSafe holds, its whole window inside the common frames,
 and ends with the last sample of the last danger interval after that.
@@ -109,7 +109,7 @@ def cut_triples(questions: Questions, found: Disturbances, triples: Triples) -> 
     """Where each triple starts and ends; those in which no danger arises are dropped.
 
     The start is the first frame where initSafe holds for SV with both POVs, windows inside the
-    frames that all three share (SPEC §7).
+    frames that all three share (semantics §7).
     """
     near, far = _Lookup(found, triples.sv, triples.pov1), _Lookup(found, triples.sv, triples.pov2)
     latest = triples.high - questions.safe_steps

@@ -1,4 +1,4 @@
-"""The highD experiment on one recording (SPEC §7): which disturbance matches which scenario."""
+"""The highD experiment on one recording (semantics §7): which disturbance matches which scenario."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

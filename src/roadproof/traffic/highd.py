@@ -1,4 +1,4 @@
-"""Recordings in the highD format (SPEC §7; Krajewski et al., ITSC 2018), read and fully checked.
+"""Recordings in the highD format (semantics §7; Krajewski et al., ITSC 2018), read and fully checked.
 
 The format's own names mislead: ``width`` is a vehicle's length and ``height`` its width, (x, y) is
 the upper-left corner of the box, and y grows down. Direction 1 drives towards -x on the upper lanes.
@@ -97,7 +97,7 @@ def find_recordings(folder: Path) -> tuple[str, ...]:
 
 
 def read_highd(folder: Path, name: str) -> Recording:
-    """Recording ``name`` of ``folder``, in the coordinates of SPEC §2.
+    """Recording ``name`` of ``folder``, in the coordinates of semantics §2.
 
     Raises ``InputError`` that names file, row, column, value and rule for anything that does not fit;
     what is odd but usable is in ``Recording.notes``.
@@ -149,7 +149,7 @@ def read_highd(folder: Path, name: str) -> Recording:
 
 
 def lanes_of_markings(upper: tuple[float, ...], lower: tuple[float, ...]) -> tuple[Lane, ...]:
-    """Lanes from the y values of the markings; a lane's name is its laneId (SPEC §7)."""
+    """Lanes from the y values of the markings; a lane's name is its laneId (semantics §7)."""
     bands = [Lane(str(k), UPPER, (y, z)) for k, (y, z) in enumerate(pairwise(upper), start=2)]
     first = len(upper) + 2
     bands += [Lane(str(k), LOWER, (-z, -y)) for k, (y, z) in enumerate(pairwise(lower), start=first)]

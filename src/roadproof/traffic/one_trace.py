@@ -1,7 +1,7 @@
 """One trace to monitor: samples of a few vehicles on a straight road, from whatever file they came.
 
 A CSV file has the header ``HEADER`` and, for every time, one row a vehicle; times are decimals in
-equal steps, the same for all vehicles. SI units and coordinates are those of SPEC §2.
+equal steps, the same for all vehicles. SI units and coordinates are those of semantics §2.
 """
 
 import csv

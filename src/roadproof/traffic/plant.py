@@ -158,7 +158,7 @@ def _in_the_way(recording: Recording, guests: Recording, place: Place) -> Bools:
 
 
 def plantable_claim(number: int) -> str:
-    """A formula whose drives show scenario ``number`` on the trace that the evaluation cuts (SPEC §7).
+    """A formula whose drives show scenario ``number`` on the trace that the evaluation cuts (semantics §7).
 
     The trace ends with the last danger, so a drive whose vehicle changes lanes only after it, although
     it satisfies the scenario, would be cut before it does; here danger comes after the change too.

@@ -1,4 +1,4 @@
-"""What is asked of recorded traffic (SPEC §7): formulas compiled once, for all recordings.
+"""What is asked of recorded traffic (semantics §7): formulas compiled once, for all recordings.
 
 The vehicles of a pair are SV and POV in the order of the pair; a scenario is asked for both role
 assignments, so half of the formulas have the names swapped. L is the lane of the pair's first

@@ -1,6 +1,6 @@
 """A recording of traffic as plain arrays, whatever file it came from.
 
-Coordinates are those of SPEC §2: s along the road in driving direction (front of the box), d across
+Coordinates are those of semantics §2: s along the road in driving direction (front of the box), d across
 it to the left (left side of the box), in metres, metres per second and metres per second squared.
 Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 ``start[v]:start[v + 1]``, and its row of frame f is ``start[v] + f - first_frame[v]``.
@@ -40,7 +40,7 @@ class Recording:
     Per vehicle, in order of ``vehicle_id``: ``vehicle_id``, ``direction``, ``kind`` (a class such as
     Car or Truck), ``length``, ``width``, ``first_frame``, and ``start`` (one entry more than vehicles).
     Per sample: the RECORDED signals, ``occupancy`` (bit k: the box overlaps ``lanes[k]`` with positive
-    area, SPEC §4), ``lane`` (index of the lane that holds the centre of the box, -1 for none) and
+    area, semantics §4), ``lane`` (index of the lane that holds the centre of the box, -1 for none) and
     ``zones`` (bit k: the box occupies a lanelet of zone ZONES[k]).
     ``beside`` holds unordered pairs of names of adjacent lanes. ``notes`` says what is odd but usable.
     ``moments``: where other recordings may show the same, a number a sample that says so (repeats.py).
@@ -154,7 +154,7 @@ def beside_by_order(lanes: tuple[Lane, ...]) -> frozenset[frozenset[str]]:
 def occupy_bands(
     lanes: tuple[Lane, ...], direction: Integers, d: Floats, width: Floats
 ) -> tuple[Masks, Integers]:
-    """Occupancy bits and lane of the centre for boxes on straight bands (SPEC §4).
+    """Occupancy bits and lane of the centre for boxes on straight bands (semantics §4).
 
     All arrays have one entry a sample; metres are compared to the micrometre, so that a box which
     touches a marking in the decimals of the file does so here. A centre on a marking is in the band

@@ -170,7 +170,7 @@ def begin_totals(settings: Settings) -> Totals:
 
 
 def add_findings(totals: Totals, findings: Findings) -> None:
-    """Count one recording, and check the facts of SPEC §6 on it."""
+    """Count one recording, and check the facts of semantics §6 on it."""
     totals.recordings += 1
     for name in ("vehicles", "samples", "violating", "asked", "undecided", "differing"):
         setattr(totals, name, getattr(totals, name) + getattr(findings, name))
@@ -213,7 +213,7 @@ def _check(
     k: int,
     set_name: str,
 ) -> None:
-    """SPEC §6: matches are disturbances; a set matches all that the one before it does; s3 = s4."""
+    """semantics §6: matches are disturbances; a set matches all that the one before it does; s3 = s4."""
     where = f"recording {findings.recording}, minDanger {totals.settings.min_danger[k]}, {set_name}"
     totals.broken += [
         f"{where}: {pair} matches but is no disturbance" for pair in matched if pair not in traces

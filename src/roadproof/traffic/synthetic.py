@@ -1,4 +1,4 @@
-"""Recordings made of simulated traffic: 25 Hz, in SPEC §2's coordinates, decimals like highD's."""
+"""Recordings made of simulated traffic: 25 Hz, in semantics §2's coordinates, decimals like highD's."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Write a recording as the three files of the highD format (SPEC §7), every column filled."""
+"""Write a recording as the three files of the highD format (semantics §7), every column filled."""
 
 from pathlib import Path
 from typing import Any, TypeAlias

@@ -2,7 +2,7 @@
 
 Numbers may be written as TOML numbers or as text (``"9/2"``) and are read exactly. Lanelets of a
 road: ``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, ``inf`` without bound) and
-``d = [right, left]``. Lanes that share a boundary are adjacent (SPEC §4).
+``d = [right, left]``. Lanes that share a boundary are adjacent (semantics §4).
 """
 
 import dataclasses

@@ -1,4 +1,4 @@
-"""Where a vehicle is at any time of a drive, exactly: two double integrators (SPEC §2).
+"""Where a vehicle is at any time of a drive, exactly: two double integrators (semantics §2).
 
 On each piece the accelerations are constant, so speeds are linear and positions quadratic in time.
 A piece holds from its start on: at a knot the acceleration is that of the piece which begins there.

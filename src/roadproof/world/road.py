@@ -1,4 +1,4 @@
-"""Straight roads of rectangular lanelets (SPEC §4; paper, appendix *Road Network*).
+"""Straight roads of rectangular lanelets (semantics §4; paper, appendix *Road Network*).
 
 Coordinates: s along the road in driving direction, d across it to the left, in metres.
 """

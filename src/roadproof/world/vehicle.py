@@ -1,4 +1,4 @@
-"""What a vehicle can do: its box and the limits of its motion (SPEC §2)."""
+"""What a vehicle can do: its box and the limits of its motion (semantics §2)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,6 +1,6 @@
 """How often each class occurs in recordings, and whether the classes are a partition there too.
 
-A situation is a disturbance trace (SPEC §7), vehicles of it in their roles, and a lane: that of either
+A situation is a disturbance trace (semantics §7), vehicles of it in their roles, and a lane: that of either
 vehicle of the pair at the start of the trace, for three vehicles that of SV. Traces are read to their end
 and no further (``clip``): what does not happen on them does not happen.
 """
