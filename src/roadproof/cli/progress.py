@@ -8,13 +8,11 @@ import contextlib
 import os
 import sys
 import time
-from dataclasses import dataclass
 
 QUIET = "ROADPROOF_QUIET"
 _BE_QUIET = "quiet"
 
 
-@dataclass
 class _Listeners:
     """Where word of the progress goes: ``pipe`` leads to the process that watches."""
 
