@@ -1,5 +1,7 @@
 """The template: what Python knows of the scenarios comes from the specification."""
 
+from fractions import Fraction
+
 import pytest
 
 from roadproof.errors import InputError, TextError
@@ -74,3 +76,31 @@ def test_components_come_from_the_template() -> None:
     ]
     assert len(scenarios.components(BASE, 2, ("SV", "POV1", "POV2"))) == 3
     assert scenarios.components(BASE, 2, ("SV", "POV1")) == []
+
+
+def test_a_moment_of_danger_may_be_any_fraction() -> None:
+    found = scenarios.danger_at(BASE, "SV", "POV", Fraction(27, 5))
+    assert found.formula == read_claim(BASE, "F[5.4 s, 5.4 s] danger(SV, POV)").formula
+    alone = scenarios.alone_in_lane(BASE, "POV")
+    assert alone.formula == read_claim(BASE, "every M in adjacentLanes(L): not atLane(POV, M)").formula
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "means"),
+    [
+        ("4", 4, "scenario_4(SV, POV, L)"),
+        (" scenario_2 ", 2, "scenario_2(SV, POV1, POV2, L)"),
+        ("scenario_4(POV, SV, L)", None, "scenario_4(POV, SV, L)"),
+        ("F danger(SV, POV)", None, "F danger(SV, POV)"),
+    ],
+)
+def test_a_scenario_is_named_by_its_number(text: str, number: int | None, means: str) -> None:
+    found, query = scenarios.read_query(BASE, text)
+    assert found == number
+    assert query.formula == read_claim(BASE, means).formula
+    assert query.text == means
+
+
+def test_a_number_of_no_scenario_is_refused() -> None:
+    with pytest.raises(TextError, match="scenario_99"):
+        scenarios.read_query(BASE, "99")

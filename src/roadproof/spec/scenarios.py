@@ -244,7 +244,7 @@ def alone_in_lane(specification: Specification, vehicle: str) -> Query:
 
 def danger_at(specification: Specification, a: str, b: str, time: Fraction) -> Query:
     """Two vehicles violate the RSS distances for minDanger from ``time`` (s) on."""
-    return read_claim(specification, f"F[{time} s, {time} s] danger({a}, {b})")
+    return read_claim(specification, f"F[{time} * 1 s, {time} * 1 s] danger({a}, {b})")
 
 
 def in_zone(specification: Specification, vehicle: str, zone: Zone) -> Query:
