@@ -3,7 +3,9 @@
 import pytest
 
 from roadproof.errors import UsageError
+from roadproof.logic import formula as f
 from roadproof.logic.rewrite import without_names
+from roadproof.spec import compose
 from roadproof.spec.compose import (
     always,
     both,
@@ -84,3 +86,30 @@ def test_names_that_would_mean_two_things_are_refused() -> None:
         both(FOUR, read("given x: m: s(SV) > x"))
     with pytest.raises(UsageError, match=r"'K' is a variable of a quantifier inside"):
         with_lane(read("atLane(SV, L) and (some K in lanes: atLane(POV, K) and atLane(SV, L))"), "L", "K")
+
+
+@pytest.mark.parametrize(
+    "text", ["scenario_4(SV, POV, L)", "scenario_2(SV, POV1, POV2, L)", "danger(SV, POV)"]
+)
+def test_definitions_are_taken_from_another_set(text: str) -> None:
+    query = read(text)
+    taken = compose.taken_from(BASE, query, "ext")
+    name, rest = text.split("(")
+    assert taken.text == f"{name}@ext({rest}"
+    assert taken.formula == read(taken.text).formula
+    assert compose.taken_from(BASE, query, "base") == query
+
+
+def test_parts_of_a_formula_are_said_by_name() -> None:
+    query = read("aheadOf(SV, POV) and F danger(SV, POV) and atLane(POV1, L)")
+    assert isinstance(query.formula, f.And)
+    first, second, third = query.formula.parts
+    two = compose.of_parts(query, [first, second])
+    assert (two.text, two.vehicles, two.lanes) == (
+        "aheadOf(SV, POV) and F danger(SV, POV)",
+        ("POV", "SV"),
+        (),
+    )
+    assert read(two.text).formula == two.formula
+    assert compose.of_parts(query, [third]).lanes == ("L",)
+    assert compose.of_parts(query, []).text == "true"
