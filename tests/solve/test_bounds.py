@@ -107,7 +107,7 @@ def test_pieces_are_tangents_to_choose_from_and_windows():
 
 
 def test_windows_of_outer_secants_overlap():
-    """At an end or a cut, a solver that is a little off must find a window, or it says no where there is none."""
+    """At an end or a cut, a solver that is a little off finds a window; else it would say a wrong no."""
     made, _ = bounds_of(variable(0) * variable(0) + constant(Fraction(-1, 2)), "outer", 2)
     for x in (-2.0, 1 - TOLERANCE, 1.0, 1 + TOLERANCE, 4.0):
         assert evaluate(made, lambda bound, x=x: bound.affine.value([x]) >= bound.margin + TOLERANCE / 10)

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 
+from roadproof.effort import Effort
 from roadproof.errors import MissingSolverError
 from roadproof.solve.smt import Session, ask, parse_sexpression, read_value, solve
 
@@ -31,13 +32,12 @@ def test_values(text: str, value: Fraction | bool | None) -> None:
 
 
 def test_a_value_that_is_not_rational_is_left_out() -> None:
-    """There is no such number in the files, and a drive needs one that is."""
+    told = "(declare-const x Real)(declare-const p Bool)(assert (and p (< x 0.0) (= (* x x) 2.0)))"
     session = Session()
-    session.tell(
-        "(declare-const x Real)(assert (= (* x x) 2.0))(assert (< x 0.0))(declare-const p Bool)(assert p)"
-    )
+    session.tell(told)
     assert session.check() == "sat"
     assert session.values(["x", "p", "(* x x)"]) == [None, True, Fraction(2)]
+    assert solve(f"{told}(check-sat)", ["x", "p"], Effort().meter()) == {"p": True}
 
 
 def test_z3_needs_no_other_solver(monkeypatch: pytest.MonkeyPatch) -> None:
