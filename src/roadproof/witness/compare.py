@@ -84,7 +84,7 @@ def _decide(specification: Specification, request: Request, claim: str, against:
     """Ask for a proof first, which takes a moment where there is one, then for a drive."""
     effort = request.means.effort
     proof = prove(specification, claim, effort.of(min(PROOF, effort.units)))
-    if proof.verdict in (Verdict.PROVED, Verdict.VACUOUS) and proof.certificate is not None:
+    if proof.certificate is not None:
         return Direction(claim, Verdict.PROVED, proof.reason, to_json(proof.certificate), None)
     found: Outcome = ask(replace(request, what=against, count=1))
     if found.drives:

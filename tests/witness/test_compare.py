@@ -1,0 +1,59 @@
+"""Which of two formulas implies the other: a proof or a drive for each direction."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from roadproof.effort import Effort
+from roadproof.evidence.witness import from_json, judge_file
+from roadproof.spec.bind import default_values
+from roadproof.spec.library import bundled_library
+from roadproof.verdict import Verdict
+from roadproof.witness.ask import Request
+from roadproof.witness.compare import compare
+from roadproof.witness.question import Means
+
+LIBRARY = bundled_library()
+REQUEST = Request("", values=default_values(LIBRARY), horizon=Fraction(6, 5), means=Means(effort=Effort(30)))
+FAST, FASTER = "v_lon(SV) > 20 m/s", "v_lon(SV) > 30 m/s"
+
+
+def compared(first, second, set_name="base"):
+    return compare(replace(REQUEST, what=first), replace(REQUEST, what=second, set_name=set_name))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "relation"),
+    [
+        (FASTER, FAST, "stronger"),
+        (FAST, FASTER, "weaker"),
+        (FAST, f"not not {FAST}", "equivalent"),
+        (FAST, "v_lon(SV) < 25 m/s", "incomparable"),
+    ],
+)
+def test_relations_and_their_evidence(first, second, relation):
+    found = compared(first, second)
+    assert found.relation == relation
+    for direction in (found.forward, found.backward):
+        if direction.verdict is Verdict.PROVED:
+            assert json.loads(direction.certificate)["claim"] == direction.claim
+            assert direction.drive is None
+        else:
+            assert direction.verdict is Verdict.REFUTED
+            assert direction.certificate is None
+            assert judge_file(from_json(direction.drive, "drive"), LIBRARY).accepted
+
+
+def test_what_is_proved_only_where_no_drive_is_found_is_bounded():
+    found = compared("v_lon(SV) <= 40 m/s", "F[0, 1.2 s] v_lon(SV) <= 41 m/s")
+    assert found.forward.verdict is Verdict.PROVED
+    assert found.backward.verdict is Verdict.PROVED_BOUNDED
+    assert found.relation == "unknown"
+
+
+def test_the_second_formula_may_be_of_another_set():
+    found = compared("4", "4", "extA")
+    assert (found.first, found.second) == ("scenario_4(SV, POV, L)", "scenario_4@extA(SV, POV, L)")
+    assert found.backward.claim == f"({found.second}) -> ({found.first})"
