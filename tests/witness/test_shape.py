@@ -1,0 +1,34 @@
+"""What makes drives alike or different, and facts that are kept with a margin."""
+
+import pytest
+
+from roadproof.solve.bounds import Affine, Bound
+from roadproof.solve.smooth import minimise
+from roadproof.witness.shape import _with_margin
+from roadproof.witness.variety import CLEARLY
+from roadproof.world.models import load_road, load_vehicle
+
+X, Y = Affine(((0, 1.0),), 0.0), Affine(((1, 1.0),), 0.0)
+BOUNDS = [Bound(X, 0.5), Bound(X + Y.scaled(-1.0), 0.25), Bound(Y, 0.0)]
+
+
+def greatest(x_most):
+    """The point where the facts with a margin hold by as much as they can; y is fixed at 0."""
+    box, bounds, cost = _with_margin([(0.0, x_most), (0.0, 0.0)], BOUNDS)
+    found = minimise([], box, bounds, [], cost)
+    return None if found is None else found[:2]
+
+
+def test_facts_with_a_margin_hold_by_as_much_as_they_can():
+    assert greatest(8.0) == pytest.approx((8.0, 0.0), abs=1e-3)
+
+
+def test_no_fact_keeps_less_than_the_least_margin():
+    assert greatest(0.1) is None
+
+
+def test_vehicles_clearly_apart_across_are_in_different_lanes():
+    car = load_vehicle("car")
+    for lane in load_road("main-2").lanelets:
+        right, left = lane.d
+        assert left - right - car.width < CLEARLY["d"] < left - right
