@@ -54,6 +54,23 @@ def test_claims_are_numbered_from_one() -> None:
     assert [x.where for x in entries(PROVED)] == ["index.json, claim 1", "index.json, claim 2"]
 
 
+@pytest.mark.parametrize(
+    ("changed", "fault"),
+    [
+        ({"part": "2"}, ""),
+        ({"part": "more"}, "is called claim-more"),
+        ({"scenario": 4}, "is called claim scenario 4"),
+        ({"property": "P3"}, "is called P3, but its claim is no template property"),
+    ],
+)
+def test_a_claim_of_ones_own_is_called_claim_and_may_have_a_number(
+    changed: dict[str, Any], fault: str
+) -> None:
+    found = entries(with_one(PROVED, "claims", **changed))[0].fault
+    assert fault in found
+    assert bool(fault) == bool(found)
+
+
 # --- overlap -------------------------------------------------------------------------------------
 
 APART = "not (scenario_5(SV,POV,L) and scenario_6(SV,POV,L))"
