@@ -223,6 +223,7 @@ def test_us101(tmp_path: Path) -> None:
 
 def test_questions_are_compiled_once(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked, ask = [], module.ask
+    monkeypatch.setattr(module, "_asked", {})
     monkeypatch.setattr(module, "ask", lambda settings, rate: asked.append(rate) or ask(settings, rate))
     run_experiment(Experiment(folder, tmp_path, default_settings()))
     assert asked == [25]

@@ -48,6 +48,10 @@ def test_both_directions_get_a_drive(recording: Recording, drive: Drive, scenari
         assert (truth.pov2 is not None) == (scenario == 2)
         first = merged.first_frame[merged.vehicle_id == truth.sv][0]
         assert truth.start_frame == first < truth.end_frame
+        roles = {"SV": truth.sv, "POV": truth.pov, "POV1": truth.pov, "POV2": truth.pov2}
+        row = {name: merged.start[:-1][merged.vehicle_id == roles[name]] for name in drive.vehicles}
+        from_behind = sorted(drive.vehicles, key=lambda name: drive.vehicles[name].s)
+        assert from_behind == sorted(drive.vehicles, key=lambda name: merged.s[row[name]][0])
     row = next(rows_of(truths))
     assert len(row) == len(PLANTED_COLUMNS)
     assert row[7:] == ["0.6", "base", scenario]

@@ -6,11 +6,12 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.effort import Effort
+from roadproof.effort import Effort, Late
 from roadproof.evidence.witness import from_json, judge_file
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
+from roadproof.witness import compare as compare_module
 from roadproof.witness.ask import Request
 from roadproof.witness.compare import compare
 from roadproof.witness.question import Means
@@ -50,6 +51,17 @@ def test_what_is_proved_only_where_no_drive_is_found_is_bounded():
     found = compared("v_lon(SV) <= 40 m/s", "F[0, 1.2 s] v_lon(SV) <= 41 m/s")
     assert found.forward.verdict is Verdict.PROVED
     assert found.backward.verdict is Verdict.PROVED_BOUNDED
+    assert found.relation == "unknown"
+
+
+def test_what_the_clock_cuts_off_is_unknown(monkeypatch):
+    def late(*_):
+        raise Late(7.0)
+
+    monkeypatch.setattr(compare_module, "_decide", late)
+    found = compared(FAST, FASTER)
+    assert found.forward.verdict is found.backward.verdict is Verdict.UNKNOWN
+    assert "after 7 s" in found.forward.reason
     assert found.relation == "unknown"
 
 
