@@ -139,6 +139,13 @@ def test_a_cut_in_ends_near_within_a_second(kind: str) -> None:
     assert leaves  # the same with names exchanged
 
 
+@pytest.mark.parametrize("kind", ["ttc", "thw", "free"])
+def test_a_cut_in_may_be_near_at_once_and_for_a_moment_only(kind: str) -> None:
+    """POV is in L after 0.2 s, 3 m ahead, and is passed at 0.5 s."""
+    pov = ahead("5", d=F(11, 2), across=(("1.5", "-1"),))
+    assert holds(f"cutIn_{kind}(SV, POV, L)", Car(v=30), pov)
+
+
 def test_who_does_not_drift_does_not_cut_in_freely() -> None:
     """Half a second at 1.8 m/s ends in L as well."""
     quick = (("0.6", "-1.8"),)
