@@ -98,4 +98,7 @@ def test_roads_that_do_not_fit(recording: Recording) -> None:
     assert plantable(file) == ""
     assert "no scenario" in plantable(replace(file, scenario=None))
     short = Lanelet("s", "main-3", "main", "main", (F(0), None), (F(7), F(21, 2)))
-    assert "more than a straight main road" in plantable(replace(file, road=Road("x", (short,), pairs([]))))
+    merging = Lanelet("s", "merge-1", "merge", "main", (None, None), (F(7), F(21, 2)))
+    for other in (short, merging):
+        road = Road("x", (other,), pairs([]))
+        assert "more than a straight main road" in plantable(replace(file, road=road))
