@@ -13,6 +13,7 @@ from roadproof.logic import terms as t
 
 quiet = settings(deadline=None, derandomize=True)
 SIZES = {("A", "length"): Fraction(9, 2), ("A", "width"): Fraction(9, 5)}
+LONGER = t.Maximum((t.number(4), t.Sum((t.Size("length", "A"), t.number(1)))))
 leaves = st.one_of(
     st.builds(lambda n: t.number(Fraction(n, 2)), st.integers(-4, 4)),
     st.sampled_from([t.Signal("v_lon", "A"), t.Signal("v_lat", "A"), t.Signal("s", "B")]),
@@ -26,7 +27,7 @@ terms = st.recursive(
         st.builds(lambda a, b: t.Maximum((a, b)), inner, inner),
         st.builds(lambda a, b, c: t.Minimum((a, b, c)), inner, inner, inner),
         st.builds(lambda a: t.Power(a, 2), inner),
-        st.builds(lambda a: t.Quotient(a, t.number(3)), inner),
+        st.builds(t.Quotient, inner, st.sampled_from([t.number(3), LONGER])),
     ),
     max_leaves=6,
 )

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from roadproof.encode.build import Manners, fact_at, fact_for_ever
 from roadproof.encode.circuit import AnyOf, evaluate
 from roadproof.encode.motion import Layout, encode_motions
-from roadproof.encode.place import rectangles, stay_apart, stay_on_road
+from roadproof.encode.place import move_one_way, rectangles, stay_apart, stay_on_road
 from roadproof.encode.polynomial import Fact, affine, variable
 from roadproof.encode.unroll import Grid
 from roadproof.witness.rounding import round_drive
@@ -185,6 +185,23 @@ def test_a_merge_lane_must_be_left_before_it_ends():
     circuit = stay_on_road(layout, load_road("merge"), "A", CAR, True)
     assert not isinstance(circuit, AnyOf)
     assert not evaluate(circuit, lambda fact: fact.polynomial.value(lambda c: values[c]) >= 0)
+
+
+@pytest.mark.parametrize(
+    ("across", "one_way"),
+    [
+        ([0, 0, 0, 0], True),
+        ([1, 0, 0, -1], True),
+        ([-1, 0, 0, 1], True),
+        ([1, -1, 0, -1], False),  # left, then right
+        ([-1, 0, 0, 2], False),  # to the left at the last sample only
+        ([1, 0, 0, -2], False),
+    ],
+)
+def test_natural_drives_go_across_in_one_direction(across, one_way):
+    values = columns_of([(Fraction(0), Fraction(b)) for b in across])
+    circuit = move_one_way(Layout(("A",), GRID), "A")
+    assert evaluate(circuit, lambda fact: fact.polynomial.value(lambda c: values[c]) >= 0) == one_way
 
 
 def test_plain_manners_keep_what_is_not_a_matter_of_taste():

@@ -221,6 +221,13 @@ def test_a_change_is_noticed(change):
     assert check(change(whole)) is not None
 
 
+def test_a_refusal_says_what_should_stand_there_and_what_does():
+    whole = certificate(SHIPPED[0])
+    derived = ", ".join(whole.assumptions)
+    told = check(replace(whole, assumptions=("minSafe > minDanger",)))
+    assert told == f"the assumptions are {derived}, not minSafe > minDanger"
+
+
 # --- false claims with forged certificates -------------------------------------------------------
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from evidence.folders import changes, check, code, places, read, some_proofs, write
+from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Outcome
 from roadproof.prove.properties import find_label, template_properties
@@ -264,10 +265,11 @@ def test_an_undecided_query_is_unknown(folder: Path) -> None:
 
 def test_a_fault_of_ours_is_said_and_the_others_are_checked(folder: Path) -> None:
     def fail(script: str) -> str:
-        raise ZeroDivisionError("ours")
+        raise ZeroDivisionError("ours" * 100)
 
     finding = Checker(bundled_library(), fail, find_label).check(folder / "P2-base.json")
     assert (finding.outcome.exit_code, "ZeroDivisionError" in finding.reason) == (70, True)
+    assert len(finding.reason) <= 300
 
 
 def test_a_file_alone_says_what_it_is_of(folder: Path) -> None:
@@ -277,6 +279,18 @@ def test_a_file_alone_says_what_it_is_of(folder: Path) -> None:
     assert "is called P9" in check(folder / "P2-base.json")[0].reason
     write(folder / "P2-base.json", {**data, "property": "whatever one likes"})
     assert [x.label for x in check(folder / "P2-base.json")] == ["P2 base"]
+
+
+def test_a_folder_without_an_index_is_its_files(folder: Path) -> None:
+    (folder / "index.json").unlink()
+    found = [(x.outcome, x.label) for x in check(folder)]
+    assert found[1:] == [(Outcome.ACCEPTED, x) for x in ("P1 scenario 4 base", "P2 base", "P9 base")]
+    for path in folder.iterdir():
+        path.unlink()
+    with pytest.raises(InputError, match=r"holds no \.json file"):
+        check(folder)
+    (folder / "P2-base.json").symlink_to(shipped("proofs") / "P2-base.json")
+    assert [x.outcome for x in check(folder)] == [Outcome.REJECTED]
 
 
 def test_definitions_that_are_not_at_hand_are_said(folder: Path) -> None:

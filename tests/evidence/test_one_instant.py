@@ -99,6 +99,15 @@ def test_cases_cover_what_they_come_from_and_no_more(parts, at):
     assert cases_agree(parts, at)
 
 
+@pytest.mark.parametrize("kind", [t.Maximum, t.Minimum])
+@pytest.mark.parametrize("op", ["<", "<=", ">", ">="])
+def test_what_is_added_to_a_maximum_needs_no_cases(kind, op):
+    """On either side of a comparison: cases multiply, and beyond a number of them there are none."""
+    greatest = t.Sum((U, kind((V, W))))
+    for sides in ((greatest, B), (B, greatest)):
+        assert len(cases.split([f.Compare(sides[0], op, sides[1])])) == 1
+
+
 @given(formulas)
 @settings(quickly)
 def test_cases_have_no_maxima_unless_there_are_too_many(formula):

@@ -5,7 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.evidence.refutation import Countermodel, Instant, fault_of
+from roadproof.errors import InputError
+from roadproof.evidence.refutation import Countermodel, Instant, fault_of, trace_data
+from roadproof.evidence.traces import MOST_INSTANTS, read_trace
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.world.road import Lanelet, Road, pairs
@@ -76,3 +78,21 @@ def test_a_countermodel():
 )
 def test_what_is_none(changed, said):
     assert said in str(fault(changed))
+
+
+@pytest.mark.parametrize("road", [ROAD, None])
+def test_a_trace_goes_through_plain_data(road):
+    plain = trace_data(replace(FOUND, road=road))
+    assert read_trace(plain, "here") == replace(FOUND, road=road)
+    assert (plain["road"] is None) == (road is None)
+
+
+def test_a_trace_of_too_many_instants_is_refused():
+    plain = trace_data(FOUND)
+    with pytest.raises(InputError, match=f"more than {MOST_INSTANTS} instants"):
+        read_trace({**plain, "instants": plain["instants"][:1] * (MOST_INSTANTS + 1)}, "here")
+
+
+def test_a_drive_is_no_trace():
+    with pytest.raises(InputError, match="a drive is a file beside the index"):
+        read_trace({"kind": "drive"}, "here")

@@ -166,6 +166,16 @@ def test_collisions_that_are_allowed_or_come_later_are_said(tmp_path) -> None:
     assert "collisions allowed: the boxes of POV and SV overlap from 1.7" in line
 
 
+def test_boxes_that_never_meet_are_said_where_there_are_two(tmp_path) -> None:
+    away = Drive({"SV": motion("0", "10"), "POV": motion("40", "30")})
+    slower = {"formula": "v_lon(SV) < v_lon(POV)", "scenario": None, "drive": away, "lanes": {}}
+    assert "boxes apart for ever" in line_of(tmp_path, **slower)[1]
+    alone = {**slower, "formula": "v_lon(SV) > 0", "drive": Drive({"SV": motion("0", "10")})}
+    outcome, line = line_of(tmp_path, **alone)
+    assert outcome is Outcome.ACCEPTED
+    assert "apart" not in line
+
+
 def test_values_other_than_the_declared_are_said(tmp_path) -> None:
     assert "with rho=1/2" in line_of(tmp_path, values={**FILE.values, "rho": Fraction(1, 2)})[1]
 

@@ -16,7 +16,8 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.monitor import Batch, boolean, compile
-from roadproof.monitor.batch import steps_of
+from roadproof.monitor.arithmetic import Program
+from roadproof.monitor.batch import Array, steps_of
 
 S = t.Signal("s", "SV")
 FAST = f.Compare(t.Signal("v_lon", "SV"), ">", t.Sum((S, t.Size("length", "SV"))))
@@ -171,6 +172,22 @@ def test_blocks_and_threads_change_nothing(block: int, threads: int, monkeypatch
         assert (part_margins.margins[name].low == margins.margins[name].low).all()
     assert whole.answers["it"].true.any()
     assert whole.answers["it"].false.any()
+
+
+def test_every_sample_is_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In blocks that overlap the answer is the same, and the work grows with the square of the length."""
+    batch = random_batch(4, 300, 20)
+    looked = np.zeros((int(batch.lengths.max()), batch.traces), dtype=int)
+    true_run = boolean.run
+
+    def run(program: Program, batch: Batch, rows: slice, columns: slice) -> list[Array]:
+        looked[rows, columns] += 1
+        return true_run(program, batch, rows, columns)
+
+    monkeypatch.setattr(boolean, "run", run)
+    monkeypatch.setattr(boolean, "_blocks", partial(boolean._blocks, samples_in_block=128))
+    compile({"now": FAST}).evaluate(batch)
+    assert looked.max() == 1
 
 
 def test_single_precision_signals_are_widened_before_arithmetic() -> None:

@@ -72,10 +72,14 @@ def read(path: Path = RESULTS) -> dict[str, Line]:
 
 
 def is_current(line: Line, edit: Edit, package: Path, among: str) -> bool:
-    """Whether the fault need not be tried again: what was caught stays caught, what survived may not."""
+    """Whether the fault need not be tried again: what was caught stays caught, what survived may not.
+
+    What nobody could see survives whatever the tests are.
+    """
     if line.of != function_digest(edit, package):
         return False
-    return line.verdict in ("caught", "hung") or line.among == among
+    settled = line.verdict in ("caught", "hung") or line.key in equivalents()
+    return settled or line.among == among
 
 
 def write(lines: Iterable[Line], path: Path = RESULTS) -> None:

@@ -16,6 +16,7 @@ from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.motion import state_at
 
 NONE = Fraction(0)
 LENGTH = Fraction(9, 2)
@@ -42,6 +43,29 @@ def is_true(claim: str, drive: Drive, parameters: dict[str, Fraction]) -> bool:
 GAP = "s(POV) - length(POV) - s(SV)"
 FAR_ENOUGH = f"{GAP} > dRSS_lon(v_lon(SV), v_lon(POV))"
 TOUCH = f"F {GAP} <= 0 m"
+
+
+@pytest.mark.parametrize("time", ["0", "0.25", "0.5", "0.75", "2", "60"])
+def test_the_envelopes_are_the_distances_of_the_worst_case(time: str):
+    parameters = default_values(specification().library) | {"rho": Fraction(1, 2)}
+    drive = worst_case(Fraction(20), Fraction(30), Fraction(10), parameters)
+    for name, speed, vehicle in (("rearAtMost", "20", "SV"), ("frontAtLeast", "30", "POV")):
+        motion = drive.vehicles[vehicle]
+        gone = state_at(motion, Fraction(time)).s - motion.s
+        told = f"{name}({speed} m/s, {time} s)"
+        for low, high, expected in ((-1, 1, True), (1, 2, False), (-2, -1, False)):
+            least, most = (f"{float(gone) + end / 10**6:.9f}" for end in (low, high))
+            assert is_true(f"{told} >= {least} m and {told} <= {most} m", drive, parameters) == expected
+
+
+def test_from_a_stand_too_the_distance_is_a_promise():
+    """It is not kept where the front may brake less hard than the rear does, and that has to be seen."""
+    parameters = default_values(specification().library)
+    parameters |= {"a_max": Fraction(3), "rho": Fraction(1), "b_min": Fraction(20), "b_max": Fraction(1, 10)}
+    drive = worst_case(Fraction(0), Fraction(1), Fraction(10), parameters)
+    assert not is_true("staysApart(0 m/s, 1 m/s, 0.01 m, 1 s)", drive, parameters)
+    assert is_true("staysApart(0 m/s, 1 m/s, 0.01 m, 0 s)", drive, parameters)
+    assert is_true("staysApart(0 m/s, 1 m/s, 2 m, 1 s)", drive, parameters)
 
 
 def task(name: str) -> Task:

@@ -93,3 +93,29 @@ def one_lane(boxes: tuple[Box, ...], inside: set[int], outside: set[int]) -> Lay
 )
 def test_what_a_lane_can_and_cannot_do(boxes, inside, outside, possible):
     assert (lay_road(one_lane(boxes, inside, outside)) is not None) == possible
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_a_lanelet_with_a_name_may_come_first_or_later(order):
+    inside = {(L, 0), (("lanelet", "l"), 1)}
+    outside = {(("lanelet", "l"), 0)}
+    boxes = tuple((BOX, BEFORE)[k] for k in order)
+    lanelets = {"l": ("L", ZONES)}
+    road = lay_road(
+        Layout(boxes, frozenset(inside), frozenset(outside), ("L",), lanelets, frozenset(), False)
+    )
+    assert road is not None
+    assert [x.lane for x in road.lanelets if x.id == "l"] == ["L"]
+    for place, j in inside:
+        assert is_in(place, boxes[j], road)
+    assert not is_in(("lanelet", "l"), boxes[0], road)
+
+
+def test_a_short_lane_has_no_lanelet_that_it_does_not_need():
+    """Else no claim about every lanelet of a lane would be false for want of one."""
+    layout = one_lane((BOX, BEFORE), {1}, {0})
+    whole, short = lay_road(layout), lay_road(replace(layout, short=True))
+    assert all(overlap(BEFORE, x) for x in short.lanelets)
+    assert len(whole.lanelets) > len(short.lanelets)
+    assert whole.lanelets[0].s[0] < BOX.rear
+    assert whole.lanelets[-1].s[1] > BEFORE.front

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.encode.circuit import All, AnyOf, Leaf, nodes
+from roadproof.encode.circuit import All, AnyOf, Leaf, evaluate, nodes
 from roadproof.encode.polynomial import Fact, affine, constant, variable
 from roadproof.solve.bounds import (
     ROUNDING,
@@ -104,6 +104,13 @@ def test_pieces_are_tangents_to_choose_from_and_windows():
     assert isinstance(made, AnyOf)
     ends = [(b.affine.terms, b.affine.constant) for b in windows if abs(b.affine.terms[0][1]) == 1.0]
     assert {(((0, 1.0),), -1.0), (((0, -1.0),), 1.0)} <= set(ends)
+
+
+def test_windows_of_outer_secants_overlap():
+    """At an end or a cut, a solver that is a little off finds a window; else it would say a wrong no."""
+    made, _ = bounds_of(variable(0) * variable(0) + constant(Fraction(-1, 2)), "outer", 2)
+    for x in (-2.0, 1 - TOLERANCE, 1.0, 1 + TOLERANCE, 4.0):
+        assert evaluate(made, lambda bound, x=x: bound.affine.value([x]) >= bound.margin + TOLERANCE / 10)
 
 
 def test_outer_tangents_are_all_asked_for():

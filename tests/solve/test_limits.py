@@ -117,6 +117,24 @@ def test_a_check_without_work_left_is_not_one_without_a_limit():
     assert solve_mixed(split(), box_of(split()), meter=meter).status == "unknown"
 
 
+def test_more_work_than_z3_can_count_is_as_much_as_it_can():
+    """It counts in 32 bits: with one more than these hold, it would stop at once."""
+    assert ask(pigeons(7, 7) + "(check-sat)", meter=Effort((2**32 + 1) / smt.UNIT).meter()) == "sat"
+
+
+def test_an_exact_search_starts_again_with_another_seed_and_twice_the_work(monkeypatch):
+    tried = []
+
+    def give_up(self, meter, seed=0):
+        tried.append((seed, meter.limit))
+        meter.spend(meter.left())
+        return "unknown"
+
+    monkeypatch.setattr(Session, "check_plainly", give_up)
+    assert solve_exactly(split(), Effort(10).meter()).status == "unknown"
+    assert tried == [(0, 1.0), (1, 2.0), (2, 4.0), (3, 8.0)]
+
+
 @pytest.mark.parametrize("solver", ["z3", "cvc5"])
 def test_what_is_cut_off_by_the_clock_says_so(solver):
     with pytest.raises(Late, match="cut off by the clock"):

@@ -29,6 +29,11 @@ def test_a_cost_beside_squares():
     assert found == pytest.approx((-1.0, 0.0), abs=1e-4)
 
 
+def test_a_cost_alone_ends_at_the_ends_of_the_box():
+    found = minimise([], [(-1.0, 2.0), (-3.0, 4.0)], [], [], Affine(((0, -1.0), (1, 1.0)), 0.0))
+    assert found == pytest.approx((2.0, -3.0), abs=1e-4)
+
+
 def test_what_cannot_be_is_none():
     assert minimise([], BOX, [Bound(X, 3.0), Bound(X.scaled(-1.0), 0.0)], [Square(1.0, X)]) is None
 

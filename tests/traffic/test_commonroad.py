@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from roadproof.errors import InputError
 from roadproof.traffic.commonroad import read_commonroad
 from roadproof.traffic.overlaps import find_overlaps
+from roadproof.traffic.plausible import LARGEST_SIZE
 from roadproof.traffic.projection import boxes_of, even_line, inside, overlap, project, triangles_of
 from traffic.tiny_commonroad import Car, document, point
 
@@ -91,6 +92,16 @@ def test_damage_is_named(old: str, new: str, message: str, tmp_path: Path) -> No
     assert old in text
     path.write_text(text.replace(old, new, 1))
     with pytest.raises(InputError, match=message):
+        read_commonroad(path)
+
+
+def test_the_largest_vehicle_is_read_and_none_beyond(tmp_path: Path) -> None:
+    path = tmp_path / "long.xml"
+    text = document()
+    path.write_text(text.replace("<length>4.0<", f"<length>{LARGEST_SIZE}<"))
+    assert read_commonroad(path).length.max() == LARGEST_SIZE
+    path.write_text(text.replace("<length>4.0<", f"<length>{LARGEST_SIZE + 0.1}<"))
+    with pytest.raises(InputError, match="no vehicle is larger than 50 m"):
         read_commonroad(path)
 
 

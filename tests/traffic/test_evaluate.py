@@ -12,6 +12,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.logic.formula import Compare
 from roadproof.logic.terms import Parameter, number
 from roadproof.monitor import compile
+from roadproof.monitor.answers import Answer, Verdicts
 from roadproof.spec.library import Source, build_library, bundled_library
 from roadproof.traffic import disturbances, evaluate
 from roadproof.traffic import questions as module
@@ -295,3 +296,20 @@ def test_of_recordings_is_read_what_the_formulas_speak_of(questions: Questions) 
     assert mine.pairs[0].signals[-1] == "a_lat"
     recording, _ = planted_traffic(1)
     assert evaluate_recording(recording, mine).traces == evaluate_recording(recording, questions).traces != ()
+
+
+def test_only_traces_in_which_danger_arises_are_counted(questions: Questions) -> None:
+    @dataclass
+    class Answers:
+        """A monitor that says of four traces: true, false, undecided, undecided; read otherwise, false."""
+
+        def evaluate(self, seen: object, convention: str) -> Verdicts:
+            other = convention != questions.settings.convention
+            true, false = ([not other, False, False, False], [other, True, other, other])
+            return Verdicts(convention, {"it": Answer(np.array(true), np.array(false))}, {})
+
+    tally = evaluate._Tally(questions)
+    for arises, counts in (([1, 1, 1, 1], (4, 2, 1)), ([0, 1, 1, 0], (6, 3, 1)), ([1, 0, 0, 0], (7, 3, 2))):
+        seen = np.array(arises, bool)
+        assert tally.ask(Answers(), None, seen)["it"].tolist() == [bool(arises[0]), False, False, False]
+        assert (tally.asked, tally.undecided, tally.differing) == counts

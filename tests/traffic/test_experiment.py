@@ -8,6 +8,7 @@ from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -105,9 +106,20 @@ def test_killed_and_started_again(
     assert len(evaluated) == max(0, 4 - moment)
 
 
-def test_two_jobs_give_the_same_bytes(folder: Path, undisturbed: dict[str, bytes], tmp_path: Path) -> None:
+def test_two_jobs_give_the_same_bytes(
+    folder: Path, undisturbed: dict[str, bytes], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workers = []
+    true_answers = module.answers_of
+
+    def answers_of(work: Any, jobs: Any, count: int, **more: Any) -> Any:
+        workers.append(count)
+        return true_answers(work, jobs, count, **more)
+
+    monkeypatch.setattr(module, "answers_of", answers_of)
     run_experiment(Experiment(folder, tmp_path, default_settings(), jobs=2))
     assert contents(tmp_path) == undisturbed
+    assert workers == [2]
 
 
 def test_results_of_other_settings_or_files_are_not_reused(folder: Path, tmp_path: Path) -> None:

@@ -48,6 +48,10 @@ def test_both_directions_get_a_drive(recording: Recording, drive: Drive, scenari
         assert (truth.pov2 is not None) == (scenario == 2)
         first = merged.first_frame[merged.vehicle_id == truth.sv][0]
         assert truth.start_frame == first < truth.end_frame
+        roles = {"SV": truth.sv, "POV": truth.pov, "POV1": truth.pov, "POV2": truth.pov2}
+        row = {name: merged.start[:-1][merged.vehicle_id == roles[name]] for name in drive.vehicles}
+        from_behind = sorted(drive.vehicles, key=lambda name: drive.vehicles[name].s)
+        assert from_behind == sorted(drive.vehicles, key=lambda name: merged.s[row[name]][0])
     row = next(rows_of(truths))
     assert len(row) == len(PLANTED_COLUMNS)
     assert row[7:] == ["0.6", "base", scenario]
@@ -94,4 +98,7 @@ def test_roads_that_do_not_fit(recording: Recording) -> None:
     assert plantable(file) == ""
     assert "no scenario" in plantable(replace(file, scenario=None))
     short = Lanelet("s", "main-3", "main", "main", (F(0), None), (F(7), F(21, 2)))
-    assert "more than a straight main road" in plantable(replace(file, road=Road("x", (short,), pairs([]))))
+    merging = Lanelet("s", "merge-1", "merge", "main", (None, None), (F(7), F(21, 2)))
+    for other in (short, merging):
+        road = Road("x", (other,), pairs([]))
+        assert "more than a straight main road" in plantable(replace(file, road=road))

@@ -161,6 +161,7 @@ def test_every_limit_is_named_in_text_and_data():
     assert told["limits"]["lanes"] == {"L": "main-2"}
     assert told["limits"]["parameters"]["rho"] == "1"
     assert told["limits"]["shown"]
+    assert outcome.reason.endswith(f"({', '.join(told['limits']['shown'])})")
     alone = ask_for("v_lon(SV) > 41 m/s", **SHORT)
     assert alone.limits.starts is None
     assert "starts" not in alone.reason

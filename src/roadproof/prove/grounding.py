@@ -282,7 +282,6 @@ class Grounding:
     def instantiate(self, universal: Universal, when: Moment) -> None:
         """Demand what ``universal`` says at ``when``, under a switch of its own."""
         universal.done.append(when)
-        self.declare_moment(when)
         guards = " ".join([universal.switch, *universal.window.smt(when)])
         self._add_clause((universal.site, str(when)), f"(=> (and {guards}) {universal.body(when)})")
 

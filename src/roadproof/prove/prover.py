@@ -41,7 +41,8 @@ VACUITY = 0.5
 class Result:
     """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
 
-    ``work``: the units spent on the search.
+    ``work``: the units spent on the search. There is a ``certificate`` with PROVED and VACUOUS, and with
+    nothing else.
     """
 
     verdict: Verdict

@@ -49,8 +49,10 @@ def check_sight(meta: Table, tracks: Table, header: Sequence[str], upper: int) -
     rows = rows[(rows[:, 3] > 0) & (rows[:, 4] > 0)]
     rows = rows[np.argsort(rows[:, 2], kind="stable")]
     third = len(rows) // 3
-    spread = float(np.median(rows[-third:, 2]) - np.median(rows[:third, 2])) / 2 if third else 0.0
-    if third < 15 or spread < 0.2:
+    if third < 15:
+        return ()
+    spread = float(np.median(rows[-third:, 2]) - np.median(rows[:third, 2])) / 2
+    if spread < 0.2:
         return ()
     up = meta["drivingDirection"][np.searchsorted(meta["id"], rows[:, 0])] == upper
     west = rows[:, 1] + rows[:, 2] / 2 - np.where(up, rows[:, 3], rows[:, 4])

@@ -129,7 +129,7 @@ def faults(data: Fields, common: Common) -> Iterator[str]:
     """What the verdict on the set says beyond what its entries show."""
     verdict = data.text("verdict")
     lines = [Fields(x, data.where) for x in data.items("claims")]
-    proved = bool(lines) and all(x.text("verdict") in PROOFS for x in lines)
+    proved = all(x.text("verdict") in PROOFS for x in lines)
     if verdict == "COVERED":
         told = [common.formula(x.text("claim")) for x in lines]
         if not proved or told != _claims(common.specification):

@@ -1,0 +1,345 @@
+"""What the indices of each command say, read entry by entry: what they rightly say, and what they do not.
+
+The files that they name are not looked at here.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from evidence.test_drive_file import FILE
+from roadproof.analysis.coverage.claims import claims_of
+from roadproof.errors import InputError
+from roadproof.evidence.answers.entry import Entry, mismatch
+from roadproof.evidence.answers.read import faults_of, first_set, index_fields, read_index
+from roadproof.evidence.strict import Fields
+from roadproof.prove.properties import find_label
+from roadproof.spec.library import Library, bundled_library, load_library
+from roadproof.spec.scenarios import Scenario
+
+LIBRARY = bundled_library()
+SAID: dict[str, Any] = {"options": {}, "parameters": {}, "specs": []}
+
+
+def entries(data: dict[str, Any], library: Library = LIBRARY) -> list[Entry]:
+    return read_index(index_fields(data, "index.json"), library, find_label)
+
+
+def faults(data: dict[str, Any], formulas: dict[str, str] | None = None) -> list[str]:
+    return list(faults_of(index_fields(data, "index.json"), LIBRARY, formulas or {}))
+
+
+def with_one(data: dict[str, Any], field: str, **changed: Any) -> dict[str, Any]:
+    """``data`` with the first entry of a list changed."""
+    first, *rest = data[field]
+    return {**data, field: [{**first, **changed}, *rest]}
+
+
+# --- prove ---------------------------------------------------------------------------------------
+
+PROVED = {
+    "schema": "roadproof/index/1",
+    "claims": [
+        {"property": "claim", "claim": claim, "set": "base", "verdict": "PROVED", "evidence": f"{k}.json"}
+        | {"part": "", "scenario": None}
+        for k, claim in enumerate(("F p -> F p", "G p -> p"))
+    ],
+    "options": {},
+    "specs": [],
+}
+
+
+def test_claims_are_numbered_from_one() -> None:
+    assert [x.where for x in entries(PROVED)] == ["index.json, claim 1", "index.json, claim 2"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "fault"),
+    [
+        ({"part": "2"}, ""),
+        ({"part": "more"}, "is called claim-more"),
+        ({"scenario": 4}, "is called claim scenario 4"),
+        ({"property": "P3"}, "is called P3, but its claim is no template property"),
+    ],
+)
+def test_a_claim_of_ones_own_is_called_claim_and_may_have_a_number(
+    changed: dict[str, Any], fault: str
+) -> None:
+    found = entries(with_one(PROVED, "claims", **changed))[0].fault
+    assert fault in found
+    assert bool(fault) == bool(found)
+
+
+# --- overlap -------------------------------------------------------------------------------------
+
+APART = "not (scenario_5(SV,POV,L) and scenario_6(SV,POV,L))"
+APART_TOO = "not (scenario_5(SV,POV,L) and scenario_6(POV,SV,L))"
+PAIR = {"a": 5, "b": 6, "set_a": "base", "set_b": "base", "core": [], "cores": [], "drive": None}
+OVERLAP = {
+    "schema": "roadproof/overlap/1",
+    "set": "base",
+    "lanes": "same",
+    "roles": "same",
+    "start": "same",
+    **SAID,
+    "verdicts": [{**PAIR, "verdict": "IMPOSSIBLE", "formula": APART, "certificate": "c.json"}],
+}
+
+
+def test_a_pair_of_scenarios() -> None:
+    (entry,) = entries(OVERLAP)
+    assert (entry.fault, entry.shows, entry.file, entry.claim) == ("", "proof", "c.json", APART)
+    assert entry.where == "index.json, pair 1"
+    assert entry.key == ("pair", "5@base", "6@base")
+
+
+@pytest.mark.parametrize("changed", [{"b": 4}, {"formula": APART_TOO}, {"a": 4}])
+def test_a_pair_that_its_formula_is_not_about(changed: dict[str, Any]) -> None:
+    (entry,) = entries(with_one(OVERLAP, "verdicts", **changed))
+    assert "but its formula is not" in entry.fault
+
+
+def test_in_any_roles_all_assignments_of_vehicles_are_impossible() -> None:
+    either = {**OVERLAP, "roles": "any"}
+    assert "but its formula is not" in entries(either)[0].fault
+    (entry,) = entries(with_one(either, "verdicts", formula=f"{APART} and {APART_TOO}"))
+    assert entry.fault == ""
+    drive = {"verdict": "WITNESSED", "certificate": None, "drive": "d.json"}
+    formula = "scenario_5(SV,POV,L) and scenario_6(POV,SV,L)"
+    assert entries(with_one(either, "verdicts", **drive, formula=formula))[0].fault == ""
+    assert entries(with_one(OVERLAP, "verdicts", **drive, formula=formula))[0].fault != ""
+
+
+# --- redundancy ----------------------------------------------------------------------------------
+
+CHANGED = "scenario_4(SV,POV,L) and danger(SV,POV)"
+SAME = f"scenario_4(SV,POV,L) <-> ({CHANGED})"
+REDUNDANCY = {
+    "schema": "roadproof/redundancy/1",
+    "set": "base",
+    **SAID,
+    "verdicts": [
+        {"scenario": 4, "part": "danger", "where": ["scenario_4"], "as": True, "changed": CHANGED}
+        | {"redundant": True, "verdict": "PROVED", "assuming": "", "claim": SAME, "certificate": "c.json"}
+    ],
+}
+
+
+def test_a_part_that_could_be_left_out() -> None:
+    (entry,) = entries(REDUNDANCY)
+    assert (entry.fault, entry.shows, entry.file) == ("", "proof", "c.json")
+    assert entry.where == "index.json, change 1"
+    assert entry.key == (Scenario(4, "base"), "danger", ("scenario_4",), "true", CHANGED)
+
+
+@pytest.mark.parametrize(
+    ("changed", "fault"),
+    [
+        ({"redundant": False}, "redundant=False, but PROVED"),
+        ({"scenario": 5}, "but its claim is not"),
+        ({"changed": "true"}, "but its claim is not"),
+        ({"assuming": "G p"}, "but its claim is not"),
+        ({"verdict": "WITNESSED", "certificate": None, "drive": "d.json"}, "redundant=True, but WITNESSED"),
+    ],
+)
+def test_a_part_of_which_an_entry_says_what_is_not_shown(changed: dict[str, Any], fault: str) -> None:
+    (entry,) = entries(with_one(REDUNDANCY, "verdicts", **changed))
+    assert fault in entry.fault
+
+
+# --- order ---------------------------------------------------------------------------------------
+
+IMPLIES = {
+    "from": "4@base",
+    "to": "4@extA",
+    "claim": "scenario_4(SV,POV,L) -> scenario_4@extA(SV,POV,L)",
+    "certificate": "c.json",
+}
+ORDER = {
+    "schema": "roadproof/order/1",
+    "sets": ["base", "extA"],
+    **SAID,
+    "kinds": [["4@base"], ["4@extA"]],
+    "proved": [IMPLIES],
+    "edges": [IMPLIES],
+    "missing": [{"from": "4@extA", "to": "4@base", "drives": [7]}],
+    "drives": [{"number": 7, "holds": "4@extA", "fails": ["4@base"], "drive": "d.json"}],
+    "doubts": [],
+}
+DRIVEN = {"d.json": "scenario_4@extA(SV,POV,L) and not scenario_4(SV,POV,L)"}
+
+
+def test_an_order_that_its_evidence_shows() -> None:
+    proof, drive = entries(ORDER)
+    assert (proof.fault, proof.shows, proof.file) == ("", "proof", "c.json")
+    assert (drive.shows, drive.file) == ("drive", "d.json")
+    assert drive.fault_of is not None
+    assert drive.fault_of(DRIVEN["d.json"]) == ""
+    assert faults(ORDER, DRIVEN) == []
+    assert first_set(index_fields(ORDER, "index.json")) == "base"
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"to": "12@extA"},
+        {"from": "4@extA", "to": "4@base"},
+        {"claim": "scenario_4@extA(SV,POV,L) -> scenario_4(SV,POV,L)"},
+        {"claim": "scenario_4(SV,POV,L) -> scenario_4@extA(POV,SV,L)"},
+        {"claim": "true"},
+    ],
+)
+def test_an_implication_that_its_claim_is_not(changed: dict[str, str]) -> None:
+    assert "but its claim is not that" in entries(with_one(ORDER, "proved", **changed))[0].fault
+
+
+@pytest.mark.parametrize(
+    ("data", "formulas", "fault"),
+    [
+        (ORDER, {}, "4@extA does not imply 4@base is not shown"),
+        (ORDER, {"d.json": DRIVEN["d.json"].replace("not ", "")}, "is not shown by its drives"),
+        (with_one(ORDER, "missing", drives=[8]), DRIVEN, "are not those that it names"),
+        (with_one(ORDER, "drives", number=8), DRIVEN, "are not those that it names"),
+        ({**ORDER, "missing": []}, DRIVEN, "nothing is said of 4@extA -> 4@base"),
+        ({**ORDER, "proved": []}, DRIVEN, "an edge is not among what is proved"),
+        ({**ORDER, "kinds": [["4@base", "4@extA"]]}, DRIVEN, "are not one formula"),
+    ],
+)
+def test_an_order_that_its_evidence_does_not_show(
+    data: dict[str, Any], formulas: dict[str, str], fault: str
+) -> None:
+    assert any(fault in x for x in faults(data, formulas))
+
+
+# --- coverage ------------------------------------------------------------------------------------
+
+
+def coverage(set_name: str) -> dict[str, Any]:
+    claims = claims_of(LIBRARY.select(set_name))
+    return {
+        "schema": "roadproof/coverage/1",
+        "set": set_name,
+        **SAID,
+        "verdict": "COVERED",
+        "claims": [
+            {"claim": claim, "verdict": "PROVED", "certificate": f"{k}.json", "reason": ""}
+            for k, claim in enumerate(claims)
+        ],
+        "classes": [],
+        "gaps": [],
+        "needs": [],
+    }
+
+
+@pytest.mark.parametrize("set_name", ["complete", "ext"])
+def test_a_set_without_gaps(set_name: str) -> None:
+    data = coverage(set_name)
+    found = entries(data)
+    assert [x.file for x in found] == [x["certificate"] for x in data["claims"]]
+    assert found[0].where == "index.json, claim 1"
+    assert faults(data) == []
+    for less in (data["claims"][1:], data["claims"][:-1], data["claims"][::-1], []):
+        assert "COVERED, but its claims do not say that" in faults({**data, "claims": less})[0]
+    unproved = with_one(data, "claims", verdict="UNKNOWN")
+    assert "or are not all proved" in faults(unproved)[0]
+
+
+def test_verdicts_on_a_set() -> None:
+    assert faults({**coverage("ext"), "verdict": "GAPS"}) == ["GAPS, but it has none"]
+    assert faults({**coverage("ext"), "verdict": "PROVED"}) == ["there is no verdict 'PROVED' on a set"]
+    assert faults({**coverage("ext"), "verdict": "UNKNOWN"}) == []
+
+
+# --- classify ------------------------------------------------------------------------------------
+
+DEFINED = """
+set classes extends base "classes of base" {}
+def fast(a: vehicle) := v_lon(a) > 20 m/s
+def slow(a: vehicle) := not fast(a)
+"""
+CLASSIFY = {
+    "schema": "roadproof/classify/1",
+    "set": "classes",
+    **SAID,
+    "classes": [
+        {"name": "fast", "formula": "fast(SV)", "verdict": "WITNESSED", "drive": "d.json"},
+        {"name": "slow", "formula": "slow(SV)", "verdict": "UNKNOWN", "drive": None},
+    ],
+    "claims": [
+        {"name": "one of them", "kind": "cover", "claim": "fast(SV) or not fast(SV)"}
+        | {"verdict": "PROVED", "certificate": "c.json"}
+    ],
+}
+
+
+def test_classes_and_claims_about_them(tmp_path: Path) -> None:
+    path = tmp_path / "classes.spec"
+    path.write_text(DEFINED, "utf-8")
+    library = load_library((path,))
+    fast, slow, claim = entries(CLASSIFY, library)
+    assert (fast.shows, fast.file, fast.fault) == ("drive", "d.json", "")
+    assert fast.unchecked == ("that the formula is the class of that name",)
+    assert (slow.shows, slow.file, slow.unchecked) == ("nothing", None, ())
+    assert (claim.where, claim.key) == ("index.json, claim 1", ("claim", "one of them"))
+    assert (claim.shows, claim.file, claim.claim) == ("proof", "c.json", "fast(SV) or not fast(SV)")
+    assert (
+        "its formula is not quick" in entries(with_one(CLASSIFY, "classes", name="quick"), library)[0].fault
+    )
+
+
+# --- explore -------------------------------------------------------------------------------------
+
+
+def finding(*at: str, verdict: str = "WITNESSED", file: str = "drive") -> dict[str, Any]:
+    return {"at": list(at), "verdict": verdict, "formula": FILE.formula, file: f"{file}.json"}
+
+
+EXPLORE = {
+    "schema": "roadproof/explore/1",
+    **SAID,
+    "explored": [
+        {
+            "set": "base",
+            "vary": [{"name": "minSafe"}],
+            "values": [finding("3/5"), finding("1", verdict="IMPOSSIBLE", file="certificate")],
+            "boundaries": [
+                {"held": finding("3/5"), "missed": finding("1", verdict="UNKNOWN", file="reason")}
+            ],
+            "extremes": [{"point": ["1/2"], "best": finding("20"), "missed": None, "surely": None}],
+        }
+    ],
+}
+
+
+def test_values_with_and_without_a_drive() -> None:
+    found = entries(EXPLORE)
+    assert [x.fault for x in found] == [""] * 5
+    assert [x.shows for x in found] == ["drive", "impossibility", "drive", "nothing", "drive"]
+    assert [x.values and str(x.values["minSafe"]) for x in found] == ["3/5", "1", "3/5", "1", None]
+    assert found[4].common.values is not None
+    assert str(found[4].common.values["minSafe"]) == "1/2"
+    assert found[0].where == "index.json, exploration 1, value 1"
+    (one,) = EXPLORE["explored"]
+    short = {**EXPLORE, "explored": [{**one, "values": [finding()]}]}
+    assert entries(short)[0].fault.endswith("0 values of 1")
+    with pytest.raises(InputError, match="minSafe"):
+        entries({**EXPLORE, "explored": [{**one, "values": [finding("x")]}]})
+
+
+def test_a_drive_is_judged_with_the_values_of_its_entry() -> None:
+    """With those that are varied where there are some, and with those of the index where there are none."""
+    shown = str(FILE.values["minSafe"])
+    right, wrong = (
+        {**EXPLORE, "explored": [{**EXPLORE["explored"][0], "values": [finding(x)]}]} for x in (shown, "1/7")
+    )
+    assert mismatch(entries(right)[0], FILE) == ""
+    assert "has minSafe=1/7, but its file" in mismatch(entries(wrong)[0], FILE)
+    assert "has minSafe=1/2, but its file" in mismatch(entries(EXPLORE)[4], FILE)
+
+
+def test_fields_that_no_index_has() -> None:
+    with pytest.raises(InputError, match="is none of an index"):
+        index_fields({"schema": "roadproof/index/9"}, "index.json")
+    with pytest.raises(InputError, match="names no set"):
+        first_set(Fields({"sets": []}, "index.json"))
