@@ -227,6 +227,7 @@ def try_one(line: list[str]) -> str:
 def test_no_command_line_is_our_fault(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROADPROOF_TRACEBACK", "1")
     monkeypatch.setattr(working, "_answers", begin)
+    monkeypatch.setattr("roadproof.study.frame.work", begin)
     monkeypatch.setattr("roadproof.witness.compare.compare", begin_at_once)
     monkeypatch.setattr("roadproof.witness.ask.answer", begin_at_once)
     files = make_files(tmp_path)
