@@ -331,7 +331,7 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
 
 
 def test_a_road_of_one_zone_where_the_usual_one_does_not_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.analysis.classify.drives.usual_road", lambda formula: "main-2")
+    monkeypatch.setattr("roadproof.analysis.classify.drives.usual_road", lambda formula: load_road("main-2"))
     cell = Cell((12,), (12,), ("behaviourSV_16(SV, POV, L)",))
     classes = Classes(plan_of(BASE, (12, 16)), ((cell,),), ())
     text = write_classes(classes, BASE)

@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import pytest
 
+from asking import prove
 from prove.claims import settle, specification
 from roadproof.effort import Effort
 from roadproof.evidence import state
@@ -13,7 +14,6 @@ from roadproof.logic import terms as t
 from roadproof.prove import countermodel, prover
 from roadproof.prove.grounding import Grounding
 from roadproof.prove.place import place
-from roadproof.prove.prover import prove
 from roadproof.prove.search import GaveUp, Model
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_vehicle
