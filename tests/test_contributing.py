@@ -94,7 +94,7 @@ readers = {
     "judge": lambda: judge(query.formula, drive),
     "columns": lambda: Layout(("SV",), Grid(F(1), 1)).state("SV", "soon", 0),
     "places": lambda: names_places(query.formula, cars),
-    "prover": lambda: prove(bundled_library().select(), "soon(SV) > 30 m"),
+    "prover": lambda: prove(bundled_library().select(), query),
     "samples": lambda: sample_drive(drive, load_road("main-2"), F(1), F(1), "drive"),
     "monitor": lambda: compile({"it": query.formula}).evaluate(Batch(F(1), np.array([1]))),
     "recordings": lambda: gather(None, {}, *np.zeros((2, 1), int), compile({"it": query.formula}).signals),
