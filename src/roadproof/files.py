@@ -3,6 +3,7 @@
 import errno
 import os
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -74,6 +75,10 @@ def make_folder(folder: Path) -> None:
         raise InputError(f"cannot write into {folder}: no permission; name another folder")
 
 
+LETTING_GO = 5.0
+"""Seconds that a run which was ended from outside is given to let go of its folder."""
+
+
 @contextmanager
 def hold_folder(folder: Path) -> Iterator[None]:
     """Keep other runs out of a folder, which is made where there is none; the system lets go of it with us.
@@ -89,8 +94,16 @@ def hold_folder(folder: Path) -> Iterator[None]:
     except (ImportError, OSError):
         yield
         return
+    latest = time.monotonic() + LETTING_GO
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        while True:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if time.monotonic() > latest:
+                    raise
+                time.sleep(0.05)
     except BlockingIOError:
         os.close(handle)
         raise InputError(

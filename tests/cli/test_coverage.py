@@ -105,7 +105,7 @@ FAULTS = [
 def test_a_doubt_that_passes_for_an_answer_is_noticed(
     right: str, wrong: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    plant(monkeypatch, coverage, "run", right, wrong)
+    plant(monkeypatch, coverage, "_answer", right, wrong)
     assert neither_gap_nor_proof(monkeypatch, tmp_path / "out") != (ExitCode.UNKNOWN, "UNKNOWN")
 
 

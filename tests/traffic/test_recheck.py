@@ -51,7 +51,7 @@ def test_a_match_too_many_is_named(recording: Recording, questions: Questions, f
     others = []
     for match in findings.matches:
         if match.pov2 is None:
-            asked = [questions.asked[name].number for name in questions.pairs[match.min_danger].formulas]
+            asked = [x.number for x in questions.pairs[match.min_danger].formulas]
             alike = [n for n in asked if (n in POV_LANE) == (match.scenario in POV_LANE)]
             others += [replace(match, scenario=n) for n in alike]
         else:

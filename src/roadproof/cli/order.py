@@ -15,7 +15,7 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
-from roadproof.cli.progress import Counter, note
+from roadproof.cli.progress import Counter, warn
 from roadproof.cli.working import add_working_options
 from roadproof.verdict import ExitCode
 
@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
 
     begun = time.monotonic()
     study = _study(args)
-    found = conduct(study, args.out, args.jobs, Counter(), "families of scenarios", note)
+    found = conduct(study, args.out, args.jobs, Counter(), "families of scenarios", warn)
     order, seconds = study.order(found.answers), round(time.monotonic() - begun, 1)
     data = {**study.as_data(order, found.records), "seconds": seconds}
     if args.json:

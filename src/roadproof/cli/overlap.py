@@ -18,7 +18,7 @@ from roadproof.cli.options import (
     write_json,
     write_text,
 )
-from roadproof.cli.progress import Counter, note
+from roadproof.cli.progress import Counter, warn
 from roadproof.cli.working import add_working_options
 from roadproof.errors import UsageError
 from roadproof.verdict import exit_code
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
     begun = time.monotonic()
     study = _study(args)
     folder = evidence_folder(args.out, args.json)
-    found = conduct(study, folder, args.jobs, Counter(), "groups of pairs", note)
+    found = conduct(study, folder, args.jobs, Counter(), "groups of pairs", warn)
     verdicts, across = study.verdicts(found.answers), len(study.basis.set_names) > 1
     seconds = time.monotonic() - begun
     data = {

@@ -53,6 +53,12 @@ def note(line: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
+def warn(line: str) -> None:
+    """A line that is said in any case, as it is about what was found and not about how far it is."""
+    clear()
+    print(line, file=sys.stderr, flush=True)
+
+
 class Counter:
     """Tells how many of many are done, and how long the rest will take about."""
 

@@ -13,7 +13,7 @@ from roadproof.cli.options import (
     add_specification_options,
     write_json,
 )
-from roadproof.cli.progress import Counter, note
+from roadproof.cli.progress import Counter, warn
 from roadproof.cli.working import add_working_options
 from roadproof.verdict import ExitCode, Verdict
 
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
 
     begun = time.monotonic()
     study = _study(args)
-    found = conduct(study, args.out, args.jobs, Counter(), "scenarios", note)
+    found = conduct(study, args.out, args.jobs, Counter(), "scenarios", warn)
     seconds = time.monotonic() - begun
     names = [name_of(number) for number in study.numbers]
     data = {

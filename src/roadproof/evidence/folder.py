@@ -140,14 +140,14 @@ def _add_journal(told: Told, journal: Journal, library: Library) -> None:
         if line.fault:
             outcome = Outcome.UNREADABLE if line.record is None else Outcome.REJECTED
             told.problems.append(
-                Finding(str(journal.path), "journal", outcome, without_place(line.fault, journal.path))
+                Finding(str(line.path), "journal", outcome, without_place(line.fault, line.path))
             )
         if line.record is None:
             continue
         try:
             kept |= {entry.key: entry for entry in read_record(journal.head, line.record, library)}
         except RoadproofError as error:
-            told.problems.append(_unreadable(journal.path, error))
+            told.problems.append(_unreadable(line.path, error))
     known = {(x.key, x.verdict, x.claim, x.file) for x in told.entries}
     told.entries += [x for x in kept.values() if (x.key, x.verdict, x.claim, x.file) not in known]
 

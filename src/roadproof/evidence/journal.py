@@ -34,6 +34,7 @@ class Line:
     """One answer of a journal, with its number or its name; ``fault`` says why it does not count."""
 
     name: str
+    path: Path
     record: Fields | None
     fault: str = ""
 
@@ -74,7 +75,7 @@ def read_kept(folder: Path) -> Journal | None:
     head, fields = _head(read_json(folder / HEAD, LARGEST_INDEX), folder / HEAD, str(folder / HEAD))
     paths = sorted(x for x in (folder / ANSWERS).glob("*.json") if not x.name.startswith("."))
     read = [
-        _line(path.stem, partial(read_json, path, LARGEST_INDEX), str(path), folder, fields, head)
+        _line(path.stem, path, partial(read_json, path, LARGEST_INDEX), str(path), fields, head)
         for path in paths
     ]
     return Journal(folder / HEAD, head, tuple(read), False)
@@ -90,7 +91,7 @@ def read_journal(path: Path) -> Journal:
     head, fields = _head(parse_json(first, f"{path}, line 1"), path, str(path))
     torn = bool(lines) and lines[-1] != ""
     read = [
-        _line(str(number), partial(parse_json, text, where), where, path.parent, fields, head)
+        _line(str(number), path, partial(parse_json, text, where), where, fields, head)
         for number, text in enumerate(lines, 2)
         for where in (f"{path}, line {number}",)
         if text
@@ -109,20 +110,22 @@ def _head(content: object, path: Path, where: str) -> tuple[Fields, tuple[str, .
 
 
 def _line(
-    name: str, read: Callable[[], object], where: str, folder: Path, fields: Sequence[str], head: Fields
+    name: str, path: Path, read: Callable[[], object], where: str, fields: Sequence[str], head: Fields
 ) -> Line:
     try:
         record = Fields(read(), where, fields)
     except InputError as error:
-        return Line(name, None, str(error))
+        return Line(name, path, None, str(error))
     try:
         for k, file in enumerate(record.texts("evidence")):
             evidence_name(Fields({"evidence": file}, f"{where}, evidence {k + 1}"), "evidence")
-        if record.text("seal") != seal_of(record.content, head.text("question"), folder):
-            return Line(name, record, f"{where}: answer and evidence are not what its seal was made for")
+        if record.text("seal") != seal_of(record.content, head.text("question"), Path(head.where).parent):
+            return Line(
+                name, path, record, f"{where}: answer and evidence are not what its seal was made for"
+            )
     except InputError as error:
-        return Line(name, record, str(error))
-    return Line(name, record)
+        return Line(name, path, record, str(error))
+    return Line(name, path, record)
 
 
 def answers_of(journal: Journal, library: Library) -> Iterator[Line]:
