@@ -90,7 +90,9 @@ def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool) -> d
     present = [v for v in SIGNS if v in found.values()]
     for verdict in present:
         axes.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
-    axes.legend(fontsize=6, loc="lower left", bbox_to_anchor=(0, 1.04), ncols=2, frameon=False)
+    axes.legend(
+        fontsize=6, loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=3.5, ncols=2, frameon=False
+    )
     below.axis("off")
     below.text(0, 1, "\n".join(lines), fontsize=6, va="top", family="monospace", transform=below.transAxes)
     figure.suptitle(title, fontsize=9)
