@@ -11,8 +11,7 @@ import pytest
 
 from asking import prove
 from evidence.folders import changes, check, places
-from roadproof.analysis import journal as journal_module
-from roadproof.analysis.journal import Journal, Question
+from roadproof.analysis.journal import Journal
 from roadproof.analysis.overlap import SCHEMA
 from roadproof.analysis.requests import Asked
 from roadproof.cli.evidence import said_once
@@ -21,6 +20,8 @@ from roadproof.evidence.certificate import to_json
 from roadproof.evidence.finding import Outcome
 from roadproof.evidence.journal import NAME, seal_of
 from roadproof.spec.library import Source, build_library, bundled_library
+from roadproof.study import shelf
+from roadproof.study.shelf import Question
 
 LIBRARY = bundled_library()
 PAIRS = ((5, 6), (3, 4))
@@ -188,7 +189,7 @@ def test_answers_to_another_question_are_not_taken_over(folder: Path, other: Que
 
 
 def test_answers_of_another_version_are_not_taken_over(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(journal_module, "version", lambda name: "0.0.0")
+    monkeypatch.setattr(shelf, "version", lambda name: "0.0.0")
     with pytest.raises(UsageError, match="the answers to another question"):
         answers(folder)
 

@@ -19,7 +19,6 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli import working
 from roadproof.cli.main import COMMANDS, answer
 from roadproof.errors import RoadproofError
 from roadproof.shipped import shipped
@@ -226,8 +225,7 @@ def try_one(line: list[str]) -> str:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_no_command_line_is_our_fault(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROADPROOF_TRACEBACK", "1")
-    monkeypatch.setattr(working, "_answers", begin)
-    monkeypatch.setattr("roadproof.study.frame.work", begin)
+    monkeypatch.setattr("roadproof.study.pool.work", begin)
     monkeypatch.setattr("roadproof.witness.compare.compare", begin_at_once)
     monkeypatch.setattr("roadproof.witness.ask.answer", begin_at_once)
     files = make_files(tmp_path)

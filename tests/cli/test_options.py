@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli import options
+from roadproof.cli import options, prove
 from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError
 from roadproof.spec.library import bundled_library
@@ -115,3 +115,33 @@ def test_json_to_what_names_no_file(
 ) -> None:
     assert main([*command, "--json", target]) == 2
     assert f"argument --json: '{target}' names no file" in capsys.readouterr().err
+
+
+def test_a_target_that_cannot_be_written_ends_a_run_before_its_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("roadproof.cli.prove.run", lambda args: pytest.fail("the work began"))
+    for target, said in ((tmp_path / "none" / "x.json", "No such file"), (tmp_path, "Is a directory")):
+        assert main(["prove", "true", "--json", str(target)]) == 3
+        assert said in capsys.readouterr().err
+    monkeypatch.setattr("roadproof.cli.prove.run", lambda args: 0)
+    out = tmp_path / "out"
+    for target in ("-", str(tmp_path / "x.json"), str(out / "x.json")):
+        assert main(["prove", "true", "--out", str(out), "--json", target]) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "scenarios"), [(["4"], {4}), (["scenario_4", "P1"], {4}), (["1-2,7", "P1"], {1, 2, 7})]
+)
+def test_prove_takes_scenarios_as_other_commands_do(words: list[str], scenarios: set[int]) -> None:
+    tasks, _ = prove._asked(options_of_prove([*words, "--set", "base"]))
+    assert {task.scenario for task in tasks} == scenarios
+    assert {task.id for task in tasks} == {"P1"} or "P1" not in words
+    with pytest.raises(UsageError, match="no claim of P9, 4"):
+        prove._asked(options_of_prove(["P9", "4"]))
+
+
+def options_of_prove(words: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser()
+    prove.add_arguments(parser)
+    return parser.parse_args(words)

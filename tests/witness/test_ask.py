@@ -71,3 +71,19 @@ def test_a_core_costs_no_more_than_is_left(monkeypatch):
     assert found.minimal
     assert asked[0] == 5
     assert all(units <= impossible.SHORTER for units in asked[1:])
+
+
+def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatch):
+    true_find, calls = ask.find_witness, []
+
+    def find(question, means, unlike=()):
+        calls.append(len(unlike))
+        if unlike:
+            raise Late(3.0)
+        return true_find(question, means, unlike)
+
+    monkeypatch.setattr(ask, "find_witness", find)
+    outcome = ask.ask(search_for(SLOWER, count=3))
+    assert (outcome.verdict, len(outcome.drives), calls) == (Verdict.WITNESSED, 1, [0, 1])
+    assert "1 of 3 drives" in outcome.reason
+    assert "after 3 s" in outcome.reason

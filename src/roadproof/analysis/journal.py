@@ -5,44 +5,16 @@ A folder holds the evidence files of the answers (certificates and drives) and `
 evidence says; others are told of, and asked again.
 """
 
-import hashlib
 import json
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.journal import NAME, answers_of, head_of, read_journal, seal_of
 from roadproof.files import make_folder, write_whole
-from roadproof.spec.library import Library
-
-
-@dataclass(frozen=True)
-class Question:
-    """What is asked: ``schema`` is that of the index, ``said`` what the index says once for all answers.
-
-    ``more`` is what else an answer depends on.
-    """
-
-    schema: str
-    said: Mapping[str, Any]
-    more: Mapping[str, str]
-    library: Library
-
-    @property
-    def fingerprint(self) -> str:
-        """A short text that changes with the question, with all that the library says, with the version."""
-        asked = json.dumps([self.schema, dict(self.said), dict(self.more)], sort_keys=True)
-        library = [
-            repr(sorted(getattr(self.library, part.name).items()))
-            for part in fields(self.library)
-            if part.name not in ("sources", "files")
-        ]
-        texts = [version("roadproof"), asked, *library]
-        return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
+from roadproof.study.shelf import Question, inside
 
 
 def on_stderr(text: str) -> None:
@@ -113,19 +85,6 @@ class Journal:
                 return str(self.folder / data)
             case _:
                 return data
-
-
-def inside(data: Any, folder: Path) -> Any:
-    """``data`` with paths into ``folder`` as they are from there, so that the folder may be moved."""
-    match data:
-        case dict():
-            return {key: inside(value, folder) for key, value in data.items()}
-        case list():
-            return [inside(item, folder) for item in data]
-        case str() if data.startswith(f"{folder}{os.sep}"):
-            return Path(data).relative_to(folder).as_posix()
-        case _:
-            return data
 
 
 def _line(record: Mapping[str, Any]) -> str:

@@ -31,8 +31,9 @@ class Evidence:
     """Answers by component; with a folder, drives and certificates are files there, beside a journal."""
 
     def __init__(self, folder: Path | None, survey: "Survey") -> None:
-        from roadproof.analysis.journal import Journal, Question
+        from roadproof.analysis.journal import Journal
         from roadproof.evidence.answers.coverage import SCHEMA
+        from roadproof.study.shelf import Question
 
         self.folder = folder
         self.asked = survey.asked

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import json_text, write_json, write_text
+from roadproof.cli.options import json_text, write_text
 from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
@@ -47,10 +47,10 @@ def said_once(asked: "Asked", folder: Path | None) -> dict[str, Any]:
 
 
 def write_index(folder: Path, data: Mapping[str, Any]) -> None:
-    """The index of a folder; files in it are named as they are from there."""
-    from roadproof.analysis.journal import inside
+    """As ``study.shelf.write_index``."""
+    from roadproof.study import shelf
 
-    write_json(inside(dict(data), folder), str(folder / "index.json"))
+    shelf.write_index(folder, data)
 
 
 class Evidence:

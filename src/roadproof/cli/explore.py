@@ -22,8 +22,9 @@ from roadproof.cli.options import (
 )
 from roadproof.cli.progress import clear, tell
 from roadproof.cli.search_options import add_search_options, named, read_means
-from roadproof.cli.working import add_working_options, count_workers, work_in_order
+from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import UsageError
+from roadproof.study.pool import count_workers
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:

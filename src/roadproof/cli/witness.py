@@ -11,9 +11,10 @@ from roadproof.cli.numbers import whole
 from roadproof.cli.options import add_json_option, chosen_options, json_text, load_library_of, write_json
 from roadproof.cli.progress import clear
 from roadproof.cli.search_options import add_search_options, read_means, read_setting
-from roadproof.cli.working import add_working_options, count_workers, work_in_order
+from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import UsageError
 from roadproof.files import make_folder, write_whole
+from roadproof.study.pool import count_workers
 from roadproof.verdict import Verdict, exit_code
 
 if TYPE_CHECKING:

@@ -1,15 +1,13 @@
 """Work for several processes, its results as they come, and a word about how far it is."""
 
 import argparse
-import os
-import time
 from collections.abc import Callable, Generator, Sequence
 from typing import TypeVar
 
 from roadproof.cli.numbers import add_jobs_option
 from roadproof.cli.options import add_quiet_option
-from roadproof.cli.progress import tell, time_left
-from roadproof.errors import LostError, UsageError
+from roadproof.cli.progress import Counter
+from roadproof.study import pool
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
@@ -36,7 +34,7 @@ def work(
     ``workers``) out of the reason; without it ``LostError`` is raised when all others are done. The
     iterator is to be used up or closed. An error in a job, or an interruption, ends the others.
     """
-    for _, answer in _answers(function, jobs, processes, what, lost, known):
+    for _, answer in pool.work(function, jobs, processes, lost, _counter(what), what or "jobs", known):
         yield answer
 
 
@@ -49,62 +47,10 @@ def work_in_order(
     fresh: bool = False,
 ) -> Generator[Answer, None, None]:
     """As ``work``, but in the order of ``jobs``; in ``fresh`` processes, see ``workers``."""
-    early: dict[int, Answer] = {}
-    place = 0
-    try:
-        for found, answer in _answers(function, jobs, processes, what, lost, fresh=fresh):
-            early[found] = answer
-            while place in early:
-                yield early.pop(place)
-                place += 1
-    except LostError:
-        yield from (early[found] for found in sorted(early))
-        raise
+    answers = pool.work(function, jobs, processes, lost, _counter(what), what or "jobs", fresh=fresh)
+    return pool.in_order(answers)
 
 
-def count_workers(jobs: Sequence[object], processes: int | None) -> int:
-    """How many processes the jobs are given. Raises ``UsageError`` where none would be left."""
-    if processes is not None and processes < 1:
-        raise UsageError(f"--jobs {processes} must be greater than 0")
-    return min(processes or os.cpu_count() or 1, len(jobs))
-
-
-def _answers(
-    function: Callable[[Job], Answer],
-    jobs: Sequence[Job],
-    processes: int | None,
-    what: str,
-    lost: Callable[[Job, str], Answer] | None,
-    known: int = 0,
-    fresh: bool = False,
-) -> Generator[tuple[int, Answer], None, None]:
-    workers = count_workers(jobs, processes)
-    if len(jobs) > 1:
-        from roadproof.workers import Lost, answers_of, is_worker
-    if len(jobs) <= 1 or is_worker():
-        yield from enumerate(map(function, jobs))
-        return
-    begun = time.monotonic()
-    total = known + len(jobs)
-    reasons: list[str] = []
-    _tell_count(known, total, what, "")
-    found = answers_of(function, jobs, workers, fresh)
-    try:
-        for done, (place, answer) in enumerate(found, 1):
-            left = time_left(time.monotonic() - begun, done, len(jobs))
-            _tell_count(known + done, total, what, left)
-            if not isinstance(answer, Lost):
-                yield place, answer
-            elif lost is not None:
-                yield place, lost(jobs[place], answer.reason)
-            else:
-                reasons.append(f"{place + 1} of {len(jobs)} {what or 'jobs'}: {answer.reason}")
-    finally:
-        found.close()
-    if reasons:
-        raise LostError("left out: " + "; ".join(reasons))
-
-
-def _tell_count(done: int, total: int, what: str, left: str) -> None:
-    if what:
-        tell(f"{done} of {total} {what}{left}", last=done == total)
+def _counter(what: str) -> Counter | None:
+    """Who tells how far it is; nobody where there is no word for the jobs."""
+    return Counter() if what else None

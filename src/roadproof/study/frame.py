@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from roadproof.errors import InputError
-from roadproof.study.pool import Progress, work
+from roadproof.study import pool
+from roadproof.study.pool import Progress
 from roadproof.study.shelf import Question, Shelf
 
 Piece = TypeVar("Piece")
@@ -87,7 +88,7 @@ def conduct(
             continue
         records[name], known[name] = dict(record), answer
     while pieces := study.pieces(known):
-        with closing(work(study.settle, pieces, processes, study.doubt, progress, what)) as answered:
+        with closing(pool.work(study.settle, pieces, processes, study.doubt, progress, what)) as answered:
             for _, answers in answered:
                 for name, answer in answers.items():
                     made = study.record(name, answer, shelf)
