@@ -280,6 +280,7 @@ def name_of(number: int) -> str:
 class _Examining:
     def __init__(self, basis: Basis, scenario: Scenario, learned: Learned = Learned()) -> None:
         self.basis = basis
+        self.values = basis.all_values()
         self.scenario = scenario
         self.query = applied(basis.specification, scenario)
         self.learned = learned
@@ -378,7 +379,7 @@ class _Examining:
             return None
         if elsewhere:
             return placed(file, query, library)
-        values = self.basis.all_values() | dict(file.values)
+        values = {**self.values, **file.values}
         if not judge(bind(query.formula, file.road, file.lanes, values), file.drive).holds:
             return None
         return judged_as(file, query, library)
