@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test demo findings mutants fuzz lint unit format clean
+.PHONY: test demo findings interop mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -18,7 +18,7 @@ lint: $(READY)
 	$(BIN)/lint-imports
 
 unit: $(READY)
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -q -rs
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs
 
 demo: $(READY)
 	$(BIN)/roadproof show 4
@@ -29,6 +29,10 @@ demo: $(READY)
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m findings $(ARGS)
+
+# Exported drives, put to clients that nobody here wrote (docs/interop.md); environments under out/interop.
+interop: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m interop $(ARGS)
 
 # Small faults in the source, each tried against the tests that run its line (docs/tests.md); hours, taken
 # up again where it stopped. ARGS='--only judge/ --most 20' asks for less.

@@ -23,10 +23,10 @@ import numpy as np
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.monitor import Batch, Monitor, compile
-from roadproof.monitor.boolean import unpack
-from roadproof.monitor.recursive import Reading, Trace, answer
-from roadproof.monitor.semantics import interval_steps
+from roadproof.monitoring import Batch, Monitor, compile
+from roadproof.monitoring.boolean import unpack
+from roadproof.monitoring.recursive import Reading, Trace, answer
+from roadproof.monitoring.semantics import interval_steps
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import apply_definition
 from roadproof.spec.library import bundled_library

@@ -19,7 +19,7 @@ from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.prove.prover import prove
+from roadproof.proving.prover import prove
 from roadproof.solve.smt import ask
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification, bundled_library
@@ -42,7 +42,7 @@ COMMANDS = [
 
 
 def quantified(claim: Formula) -> str:
-    """The negation of an atomised claim at time 0 as SMT-LIB with quantifiers over Real."""
+    """The negation of an abstracted claim at time 0 as SMT-LIB with quantifiers over Real."""
     atoms: set[str] = set()
     count = 0
 
@@ -131,8 +131,8 @@ def main() -> None:
     prove(specification, read_claim(specification, "true"))
     print(f"{'roadproof':>18} {'z3 alone':>18} {'cvc5 alone':>18}  claim")
     for claim in CLAIMS:
-        atomised = Atoms().atomise(read_claim(specification, claim).formula)
-        script = quantified(without_adjacent_lanes(atomised))
+        abstracted = Atoms().abstract(read_claim(specification, claim).formula)
+        script = quantified(without_adjacent_lanes(abstracted))
         ours = timed(partial(verdict_of, specification, claim))
         scripts = {"z3": script, "cvc5": f"(set-option :enum-inst true)\n{script}"}
         theirs = [timed(partial(limited, text, solver, limit)) for solver, text in scripts.items()]

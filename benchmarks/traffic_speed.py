@@ -15,13 +15,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from roadproof.traffic.experiment import Experiment, run_experiment
-from roadproof.traffic.highd import SAMPLE_KINDS
-from roadproof.traffic.questions import default_settings
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.table import read_columns
-from roadproof.traffic.write_highd import write_highd
+from roadproof.evaluation.experiment import Experiment, run_experiment
+from roadproof.evaluation.questions import default_settings
+from roadproof.formats.highd import SAMPLE_KINDS
+from roadproof.formats.table import read_columns
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.simulate import Traffic
+from roadproof.simulation.synthetic import simulate
 
 
 def seconds(work: Callable[[], object]) -> float:

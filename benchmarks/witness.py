@@ -13,13 +13,13 @@ from fractions import Fraction
 
 from roadproof.effort import Effort
 from roadproof.encode.build import NONE, build_problem
+from roadproof.searching.ask import Outcome, Search, ask
+from roadproof.searching.question import pose
 from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import prepare
 from roadproof.spec.library import bundled_library
 from roadproof.spec.scenarios import Scenario, applied
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Outcome, Search, ask
-from roadproof.witness.question import pose
 
 STAGES = ("encode", "solve", "shape", "judge", "all")
 
@@ -67,10 +67,10 @@ def lanes_of(outcome: Outcome) -> dict[str, str]:
 def plainly(search: Search, lanes: dict[str, str], limit: float) -> tuple[float, str]:
     """Seconds and answer of z3 on the exact encoding of the same question, on the same grid."""
     question = pose(search.specification.library, search.query, search.setting)
-    manners = replace(question.manners.plain(), margin=NONE, inside=Fraction(0))
+    assumptions = replace(question.assumptions.plain(), margin=NONE, inside=Fraction(0))
     grid = question.grid
     begun = time.perf_counter()
-    problem, _ = build_problem(question.bound(lanes), question.road, question.vehicles, grid, manners)
+    problem, _ = build_problem(question.bound(lanes), question.road, question.vehicles, grid, assumptions)
     status = solve_exactly(problem, Effort(limit).meter()).status
     return time.perf_counter() - begun, {"found": "sat", "infeasible": "unsat"}.get(status, "gave up")
 

@@ -1,13 +1,13 @@
 """Questions of tests as text: the doors of the command line, without one."""
 
 from roadproof.effort import Effort
-from roadproof.prove import prover
-from roadproof.prove.prover import Result
+from roadproof.proving import prover
+from roadproof.proving.prover import Result
+from roadproof.searching.ask import Search
+from roadproof.searching.question import Posed, SearchOptions, Setting, pose
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification, bundled_library
 from roadproof.spec.scenarios import read_query
-from roadproof.witness.ask import Search
-from roadproof.witness.question import Means, Question, Setting, pose
 from roadproof.world.models import load_road, load_vehicle
 
 
@@ -19,7 +19,7 @@ def prove(specification: Specification, claim: str, *options: object) -> Result:
 def search_for(
     what: str,
     set_name: str = "base",
-    means: Means | None = None,
+    search_options: SearchOptions | None = None,
     count: int = 1,
     road: str | None = None,
     vehicles: dict[str, str] | None = None,
@@ -33,9 +33,11 @@ def search_for(
         vehicles={name: load_vehicle(model) for name, model in (vehicles or {}).items()},
         **setting,  # type: ignore[arg-type]
     )
-    return Search(specification, query, place, means or Means(effort=Effort(30)), count, scenario)
+    return Search(
+        specification, query, place, search_options or SearchOptions(effort=Effort(30)), count, scenario
+    )
 
 
-def posed(search: Search) -> Question:
+def posed(search: Search) -> Posed:
     """The question of a search, with road, vehicles and grid in place."""
     return pose(search.specification.library, search.query, search.setting)

@@ -1,5 +1,6 @@
-"""What CONTRIBUTING.md says about a new signal is carried out on a copy of the source."""
+"""What CONTRIBUTING.md says about a new signal and a new survey is carried out on a copy of the source."""
 
+import json
 import os
 import re
 import shutil
@@ -10,18 +11,20 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-CHANGES = re.findall(r"```diff\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(), re.DOTALL)
+TEXT = (ROOT / "CONTRIBUTING.md").read_text()
+CHANGES = re.findall(r"```diff\n(.*?)```", TEXT, re.DOTALL)
+SURVEY = dict(re.findall(r"`(src/roadproof/\S+\.py)`[^\n]*\n\n```python\n(.*?)```", TEXT, re.DOTALL))
 NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass Named:")
 READERS_OF_NODES = {
     *(
         "judge/exact.py",
         "judge/robust.py",
-        "monitor/recursive.py",
-        "monitor/semantics.py",
+        "monitoring/recursive.py",
+        "monitoring/semantics.py",
         "encode/unroll.py",
     ),
-    *("prove/grounding.py", "evidence/derivation.py", "evidence/state.py", "evidence/refutation.py"),
-    *("logic/formula.py", "logic/fragment.py", "logic/restore.py", "spec/size.py"),
+    *("proving/grounding.py", "evidence/derivation.py", "evidence/state.py", "evidence/refutation.py"),
+    *("logic/formula.py", "logic/fragment.py", "logic/restore.py"),
 }
 
 
@@ -39,13 +42,28 @@ def apply(copy, changes):
         subprocess.run(["git", "apply", "--unidiff-zero"], input=change, text=True, cwd=copy, check=True)
 
 
-def run(copy, text):
+def add_survey(copy):
+    for name, text in SURVEY.items():
+        assert not (copy / name).exists()
+        (copy / name).write_text(text)
+
+
+def begin(copy, *words):
     environment = {**os.environ, "PYTHONPATH": str(copy / "src")}
-    done = subprocess.run(
-        [sys.executable, "-c", text], env=environment, cwd=copy, capture_output=True, text=True
-    )
+    return subprocess.run([sys.executable, *words], env=environment, cwd=copy, capture_output=True, text=True)
+
+
+def run(copy, text):
+    done = begin(copy, "-c", text)
     assert done.returncode == 0, done.stderr[-2000:]
     return done.stdout.splitlines()
+
+
+def roadproof(copy, code, line):
+    """What a command line prints, whose exit code is ``code``."""
+    done = begin(copy, "-m", "roadproof", *line.split())
+    assert done.returncode == code, done.stdout + done.stderr[-2000:]
+    return done.stdout
 
 
 def files_in(changes):
@@ -54,6 +72,7 @@ def files_in(changes):
 
 def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
     apply(copy, CHANGES[:1])
+    add_survey(copy)
     tree = copy / "src/roadproof/logic/formula.py"
     alias, after = NEW_NODE
     node = '@node\nclass Since:\n    left: "Formula"\n    interval: Interval\n    right: "Formula"\n\n\n'
@@ -62,6 +81,7 @@ def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
     tree.write_text(text.replace(alias, f"{alias} | Since").replace(after, node + after))
     command = [sys.executable, "-m", "mypy", "--strict", "src", "--cache-dir", str(copy / "cache")]
     told = subprocess.run(command, cwd=copy, capture_output=True, text=True).stdout
+    assert not re.findall(r"^src/roadproof/\S+/alone.py.*", told, re.MULTILINE)
     named = set(re.findall(r"^src/roadproof/(\S+?):\d+: error:.*soon", told, re.MULTILINE))
     assert named == files_in(CHANGES[1:]) - {"world/motion.py"}
     assert (
@@ -77,12 +97,12 @@ from roadproof.encode.motion import Layout
 from roadproof.encode.unroll import Grid
 from roadproof.judge import judge
 from roadproof.logic.latex import latex
-from roadproof.prove.prover import prove
+from roadproof.proving.prover import prove
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
-from roadproof.traffic.one_trace import sample_drive
-from roadproof.traffic.traces import gather
-from roadproof.monitor import Batch, compile
+from roadproof.evaluation.one_trace import sample_drive
+from roadproof.evaluation.traces import gather
+from roadproof.monitoring import Batch, compile
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 
@@ -128,11 +148,11 @@ from roadproof.encode.circuit import evaluate
 from roadproof.encode.motion import Layout
 from roadproof.encode.unroll import Grid, unroll
 from roadproof.judge import judge
-from roadproof.monitor import compile
+from roadproof.monitoring import compile
 from roadproof.signals import STARTING
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
-from roadproof.traffic.one_trace import sample_drive
+from roadproof.evaluation.one_trace import sample_drive
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at
@@ -198,3 +218,64 @@ def test_when_all_is_done_the_readers_agree(copy):
 def test_the_example_is_the_list_its_physics_and_its_readers():
     assert files_in(CHANGES[:1]) == {"signals.py"}
     assert len(files_in(CHANGES)) == 7
+
+
+# --- a new survey ------------------------------------------------------------------------------------
+
+SLOW = """set mine extends base "scenario 4 is 6 for the slow" {
+  def scenario_4(SV, POV: vehicle, L: lane) "slow" := scenario_6(SV, POV, L) and v_lon(SV) < 5 m/s
+}
+"""
+ASK = "alone --among 4,6 --set mine --spec mine.spec --effort 3 --jobs 1 --out X"
+FROM_PYTHON = """
+import roadproof as rp
+from roadproof.analysis.alone import Alone
+found = rp.ask(Alone, "4,6", rp.load("mine", specs=["mine.spec"]), out="X", jobs=1, say=print)
+print({name: str(x) for name, x in found.verdicts.items()}, len(found.evidence), int(found.exit_code))
+"""
+
+
+def forge(path, *changes):
+    """Change the text of a file, and say what it was."""
+    text = path.read_text()
+    for old, new in changes:
+        assert old in text
+        path.write_text(path.read_text().replace(old, new, 1))
+    return text
+
+
+def test_a_survey_is_three_new_files_that_need_no_line_elsewhere(copy):
+    folders = ("analysis", "evidence/answers", "cli")
+    assert list(SURVEY) == [f"src/roadproof/{folder}/alone.py" for folder in folders]
+    add_survey(copy)
+    for words in (["check"], ["format", "--check"]):
+        done = begin(copy, "-m", "ruff", *words, *SURVEY)
+        assert done.returncode == 0, done.stdout
+    help_of_all = roadproof(copy, 0, "--help")
+    assert "alone     which scenarios can hold while no other one does" in help_of_all
+    assert "roadproof alone --among 1,3-8" in roadproof(copy, 0, "alone --help")
+
+
+def test_a_survey_is_asked_kept_taken_up_again_and_checked(copy):
+    add_survey(copy)
+    (copy / "mine.spec").write_text(SLOW)
+    told = json.loads(roadproof(copy, 0, f"{ASK} --json -"))
+    assert told["schema"] == "roadproof/alone/1"
+    assert [(x["scenario"], x["verdict"]) for x in told["verdicts"]] == [
+        ("scenario_4", "IMPOSSIBLE"),
+        ("scenario_6", "WITNESSED"),
+    ]
+    assert "2 of 2 accepted" in roadproof(copy, 0, "check X --jobs 1")
+    times = {x: x.stat().st_mtime_ns for x in (copy / "X/answers").iterdir()}
+    assert run(copy, FROM_PYTHON) == ["{'scenario_4': 'IMPOSSIBLE', 'scenario_6': 'WITNESSED'} 2 0"]
+    assert {x: x.stat().st_mtime_ns for x in times} == times
+
+    whole = forge(copy / "X/index.json", ("scenario_6(SV, POV, L) and not", "scenario_6(SV, POV, L) or not"))
+    assert "is not about scenario_6 alone" in roadproof(copy, 10, "check X --jobs 1")
+    forge(copy / "X/index.json", ('"verdicts"', '"more": 1, "verdicts"'))
+    assert "nobody reads 'more'" in roadproof(copy, 3, "check X --jobs 1")
+    (copy / "X/index.json").write_text(whole)
+    forge(copy / "X/answers/scenario_6.json", ("SV, POV, L) and not", "SV, POV, L) or not"))
+    assert "not what its seal was made for" in roadproof(copy, 10, "check X --jobs 1")
+    assert roadproof(copy, 0, ASK).startswith("IMPOSSIBLE  scenario_4\nWITNESSED   scenario_6\n2 answers")
+    assert "2 of 2 accepted" in roadproof(copy, 0, "check X --jobs 1")

@@ -1,17 +1,16 @@
 """``proofs/`` is complete, fresh, and accepted by two solvers: stale evidence must not be shipped."""
 
 import json
-from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
-from roadproof.cli.check import Job, examine
-from roadproof.effort import Effort
+from roadproof.api.checking import check
 from roadproof.evidence.certificate import read_certificate
-from roadproof.evidence.finding import Outcome
-from roadproof.prove.properties import template_properties
+from roadproof.evidence.finding import Acceptance
+from roadproof.proving.properties import template_properties
+from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
 
 PROOFS = Path(__file__).parents[1] / "proofs"
@@ -27,6 +26,11 @@ def test_index_answers_every_property_as_expected() -> None:
         (x.id, x.part, x.scenario, x.set_name, x.claim, str(x.expected)) for x in template_properties()
     ]
     assert answered == expected
+
+
+def test_index_names_the_definitions_at_hand() -> None:
+    assert INDEX["library"] == bundled_library().fingerprint, "prove all again, into a new folder"
+    assert (INDEX["options"], INDEX["specs"]) == (bundled_library().select().options, [])
 
 
 def test_every_scenario_and_set_has_its_proof_that_danger_arises() -> None:
@@ -53,18 +57,9 @@ def test_certificates_are_of_the_claims_that_the_index_names() -> None:
             assert (certificate.set_name, certificate.scenario) == (entry["set"], entry["scenario"])
 
 
-@pytest.fixture(scope="module")
-def pool() -> Iterator[ProcessPoolExecutor]:
-    with ProcessPoolExecutor(2) as made:
-        yield made
-
-
 @pytest.mark.parametrize("solver", ["z3", "cvc5"])
-def test_all_evidence_is_accepted(solver: str, pool: ProcessPoolExecutor) -> None:
+def test_all_evidence_is_accepted(solver: Literal["z3", "cvc5"]) -> None:
     if solver == "cvc5":
         pytest.importorskip("cvc5", reason="cvc5 is not installed: pip install roadproof[cvc5]")
-    jobs = [Job(path, (), solver, Effort()) for path in EVIDENCE]
-    rejected = [
-        finding for finding in pool.map(examine, jobs, chunksize=8) if finding.outcome is not Outcome.ACCEPTED
-    ]
+    rejected = [x for x in check(*EVIDENCE, solver=solver).findings if x.outcome is not Acceptance.ACCEPTED]
     assert not rejected

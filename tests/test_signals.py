@@ -7,12 +7,12 @@ from typing import get_args
 
 import pytest
 
+from roadproof.formats.recording import Recording
 from roadproof.judge.polynomial import polynomial
 from roadproof.judge.signals import DriveSignals
 from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim
 from roadproof.signals import LIMITED, RECORDED, SIGNALS, SIZES, STARTING, SignalName, SizeName
-from roadproof.traffic.recording import Recording
 from roadproof.units import SI, UNITS
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.motion import State

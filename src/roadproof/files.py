@@ -1,13 +1,14 @@
 """Files that appear whole or not at all: a reader never sees half of one; and reading with a limit."""
 
 import errno
+import json
 import os
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from roadproof.errors import InputError
 
@@ -132,6 +133,16 @@ def write_whole(path: Path, content: bytes) -> None:
     make_folder(path.parent)
     with whole_file(path) as file:
         file.write(content)
+
+
+def write_json(path: Path, data: Mapping[str, Any]) -> None:
+    """Write plain data as a JSON file, as ``write_whole``. Raises ``InputError``."""
+    write_whole(path, json_bytes(data))
+
+
+def json_bytes(data: Mapping[str, Any]) -> bytes:
+    """Plain data as the bytes of a JSON file."""
+    return (json.dumps(data, indent=2, ensure_ascii=False) + "\n").encode("utf-8")
 
 
 def read_limited(path: Path, most: int, advice: str) -> bytes:

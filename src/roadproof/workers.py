@@ -144,9 +144,19 @@ def _dismiss(team: "Sequence[_Worker]") -> None:
         worker.connection.close()
 
 
+def _end_soon(ignored: Any) -> None:
+    """An exit that came while an object was removed is lost there: ask for it again a moment later."""
+    if not isinstance(ignored.exc_value, SystemExit):
+        sys.__unraisablehook__(ignored)
+    elif hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGALRM, lambda number, frame: sys.exit(128 + signal.SIGTERM))
+        signal.setitimer(signal.ITIMER_REAL, 0.01)
+
+
 def _serve(connection: Any, function: Callable[[Any], object], parent: int) -> None:
     """What a worker does all its life. Ctrl-C is its parent's business, which z3 would take as its own."""
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
+    sys.unraisablehook = _end_soon
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})

@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from asking import prove
-from roadproof.analysis.coverage.claims import sectors_of, some_scenario
-from roadproof.analysis.coverage.classes import Classes
-from roadproof.analysis.coverage.traffic import disturbances_in
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.coverage.claims import in_either_role, sectors_of
+from roadproof.analysis.coverage.classes import GapClasses
+from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.analysis.meeting import Meeting, conjunctions
-from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.spec.library import bundled_library
@@ -81,24 +81,25 @@ def test_pairs_of_base_that_occur_are_among_the_five(together: Occurrences) -> N
 
 
 def test_no_class_of_gaps_that_occurs_is_proved_empty(recordings: Path) -> None:
-    asked = Asked(("base",))
-    gaps = [trace for trace in disturbances_in(asked, recordings) if trace.missed]
+    basis = Basis(bundled_library().select())
+    gaps = [trace for trace in disturbances_in(basis, recordings_in(recordings)) if trace.missed]
     assert gaps
     assert all(trace.classes for trace in gaps)
     seen = {key for trace in gaps for key in trace.classes}
-    specification = asked.load()[1]
-    scenarios = some_scenario(sectors_of(specification)[0])
+    specification = basis.specification
+    scenarios = " or ".join(x.text for x in in_either_role(specification, sectors_of(specification)[0]))
     empty = [
         part.key
-        for part in [p for p in Classes(asked).parts if p.key in seen and p.finest][::2]
+        for part in [p for p in GapClasses(basis).parts if p.key in seen and p.finest][::2]
         if prove(
-            specification, f"{part.without} and F danger(SV,POV) -> {scenarios}", Effort(0.3)
+            specification, f"{part.without.text} and F danger(SV,POV) -> {scenarios}", Effort(0.3)
         ).certificate
     ]
     assert empty == []
 
 
 def test_the_proposed_set_misses_no_disturbance_in_traffic(recordings: Path) -> None:
-    found = list(disturbances_in(Asked(("complete",)), recordings))
+    basis = Basis(bundled_library().select("complete"))
+    found = list(disturbances_in(basis, recordings_in(recordings)))
     assert len(found) > 10
     assert not any(trace.missed for trace in found)

@@ -7,12 +7,12 @@ from itertools import combinations, permutations
 import pytest
 
 from asking import prove
-from monitor.cases import random_traffic
+from monitoring.cases import random_traffic
 from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.redundancy import changes_of
 from roadproof.effort import Effort
 from roadproof.logic.rewrite import with_values
-from roadproof.monitor import compile
+from roadproof.monitoring import compile
 from roadproof.spec.bind import default_values
 from roadproof.spec.compose import equivalence, implication
 from roadproof.spec.elaborate import read_claim

@@ -1,7 +1,11 @@
 """Classes: against truth tables, against the monitor on random and simulated traces, and with faults."""
 
 import json
+import os
+import shutil
+import signal
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -13,30 +17,40 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asking import prove
-from monitor.cases import random_traffic
-from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, refine, text_of
+from monitoring.cases import random_traffic
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.classify import divide as dividing
+from roadproof.analysis.classify import study as settling
+from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, query_of, refine, whole_cell
 from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, where_axis
+from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
+from roadproof.analysis.classify.study import Claimed, classification_of
 from roadproof.analysis.classify.text import claims_of, ranges, with_classes, write_classes
-from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
-from roadproof.effort import Effort
+from roadproof.effort import Effort, Late
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.drive_file import load_drive, read_drive
+from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.journal import seal_of
 from roadproof.evidence.judged import judge_file
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.monitor import compile
+from roadproof.monitoring import compile
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Source, Specification, build_library, bundled_library, load_library
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import components
+from roadproof.study.frame import conduct
+from roadproof.study.shelf import Shelf
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 
 BASE = bundled_library().select("base")
+QUICK = Basis(BASE, proof=1.0)
 OVERLAPPING = {(1, 5), (3, 6), (4, 8), (4, 6, 8), (6, 8)}
 
 
@@ -44,7 +58,7 @@ OVERLAPPING = {(1, 5), (3, 6), (4, 8), (4, 6, 8), (6, 8)}
 def outlines(numbers: tuple[int, ...]) -> list[Outline]:
     """The outline of each group of scenarios of base; they are of one road sector."""
     plan = plan_of(BASE, numbers)
-    return [outline(what_axis(plan, group, BASE), BASE, Effort(1.0)) for group in plan.groups]
+    return [outline(what_axis(plan, group, BASE), QUICK) for group in plan.groups]
 
 
 @cache
@@ -53,7 +67,7 @@ def classes_of(numbers: tuple[int, ...]) -> Classes:
     plan = plan_of(BASE, numbers)
     axes = [what_axis(plan, group, BASE) for group in plan.groups]
     cells = [
-        tuple(Cell(holds, holds, tuple(axis.rows[n] for n in others)) for holds, others in made.cells)
+        tuple(whole_cell(axis, holds, others) for holds, others in made.cells)
         for axis, made in zip(axes, outlines(numbers), strict=True)
     ]
     return Classes(plan, tuple(cells), ())
@@ -90,7 +104,12 @@ def rows_that_hold(axis: Axis, values: tuple[bool, ...]) -> tuple[int, ...]:
     return tuple(n for n, row in axis.rows.items() if truth(row, values))
 
 
-def truth(text: str, values: tuple[bool, ...]) -> bool:
+def read(text: str) -> Query:
+    return read_claim(BASE, text)
+
+
+def truth(query: Query, values: tuple[bool, ...]) -> bool:
+    text = query.text
     for atom, value in zip(ATOMS, values, strict=True):
         text = text.replace(atom, str(value))
     return bool(eval(text))
@@ -99,17 +118,18 @@ def truth(text: str, values: tuple[bool, ...]) -> bool:
 @settings(max_examples=12, deadline=None, derandomize=True)
 @given(st.lists(FORMULAS, min_size=1, max_size=4))
 def test_cells_are_those_of_the_truth_table(rows: list[str]) -> None:
-    axis = Axis((), dict(enumerate(rows, 1)), {})
-    found = outline(axis, BASE, Effort(5.0))
+    axis = Axis((), dict(enumerate(map(read, rows), 1)), {})
+    basis = Basis(BASE, proof=5.0)
+    found = outline(axis, basis)
     table = {values: rows_that_hold(axis, values) for values in product((True, False), repeat=len(ATOMS))}
     assert {holds for holds, _ in found.cells} == set(table.values()) - {()}
-    cells = [refine(axis, BASE, holds, others, Effort()) for holds, others in found.cells]
+    cells = [refine(axis, basis, holds, others) for holds, others in found.cells]
     for values, holds in table.items():
-        assert [cell.holds for cell in cells if truth(text_of(axis, cell), values)] == (
+        assert [cell.holds for cell in cells if truth(query_of(axis, cell), values)] == (
             [holds] if holds else []
         )
-    for claim in found.empty:
-        assert all(truth(claim, values) for values in table)
+    for query in found.empty:
+        assert not any(truth(query, values) for values in table)
 
 
 def test_the_cells_of_base(main_road: Classes) -> None:
@@ -117,23 +137,24 @@ def test_the_cells_of_base(main_road: Classes) -> None:
     pairs, triples = main_road.what
     assert {cell.holds for cell in pairs} == {(n,) for n in (1, 3, 4, 5, 6, 7, 8)} | OVERLAPPING
     assert [cell.holds for cell in triples] == [(2,)]
-    (claim,) = outlines((1, 2, 3, 4, 5, 6, 7, 8))[0].empty
-    assert claim == "not (scenario_4(SV, POV, L) and scenario_6(SV, POV, L) and not scenario_8(SV, POV, L))"
+    (query,) = outlines((1, 2, 3, 4, 5, 6, 7, 8))[0].empty
+    assert query.text == "scenario_4(SV, POV, L) and scenario_6(SV, POV, L) and not scenario_8(SV, POV, L)"
 
 
 def test_rows_that_follow_are_not_said_and_not_denied() -> None:
     rows = {1: "G v_lon(SV) > 0", 2: "v_lon(SV) > 0", 3: "(v_lon(SV) > 0 and a_lon(SV) > 0)"}
-    axis = Axis((), rows, {3: ("a_lon(SV) > 0",)})
-    found = outline(axis, BASE, Effort(5.0))
+    faster = read("a_lon(SV) > 0")
+    axis = Axis((), {number: read(row) for number, row in rows.items()}, {3: (faster,)})
+    basis = Basis(BASE, proof=5.0)
+    found = outline(axis, basis)
     assert [holds for holds, _ in found.cells] == [(1, 2), (1, 2, 3), (2,), (2, 3)]
-    assert (
-        "not (G v_lon(SV) > 0 and not v_lon(SV) > 0 and not (v_lon(SV) > 0 and a_lon(SV) > 0))" in found.empty
-    )
-    cells = {holds: refine(axis, BASE, holds, others, Effort()) for holds, others in found.cells}
-    assert cells[1, 2] == Cell((1, 2), (1,), ("a_lon(SV) > 0",))
+    never = read("G v_lon(SV) > 0 and not v_lon(SV) > 0 and not (v_lon(SV) > 0 and a_lon(SV) > 0)")
+    assert never.formula in [query.formula for query in found.empty]
+    cells = {holds: refine(axis, basis, holds, others) for holds, others in found.cells}
+    assert cells[1, 2] == Cell((1, 2), (1,), (faster,))
     assert cells[1, 2, 3] == Cell((1, 2, 3), (1, 3), ())
     assert cells[2,].said == (2,)
-    assert cells[2, 3] == Cell((2, 3), (3,), ("G v_lon(SV) > 0",))
+    assert cells[2, 3] == Cell((2, 3), (3,), (axis.rows[1],))
 
 
 # --- claims -------------------------------------------------------------------------------------
@@ -184,12 +205,172 @@ def test_another_run_leaves_nothing_of_the_first(tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text("{}")
     assert main([*line, "--among", "7"]) == 0
     assert main([*line, "--among", "4"]) == 0
-    assert sorted(x.name for x in tmp_path.rglob("*.json")) == [
-        "class_4.json",
-        "covers-scenario-04.json",
+    assert sorted(x.relative_to(tmp_path).as_posix() for x in tmp_path.rglob("*.json")) == [
+        "answers/class_4.json",
+        "answers/covers-scenario-04.json",
+        "drives/class_4.json",
         "index.json",
         "mine.json",
+        "proofs/covers-scenario-04.json",
+        "question.json",
     ]
+
+
+def test_drives_of_ones_own_are_left_alone_in_a_new_folder(tmp_path: Path) -> None:
+    (tmp_path / "drives").mkdir()
+    (tmp_path / "drives/mine.json").write_text("{}")
+    line = ["classify", "--no-shares", "--no-pictures", "--jobs", "1", "--out", str(tmp_path)]
+    assert main([*line, "--among", "7"]) == 0
+    assert (tmp_path / "drives/mine.json").exists()
+
+
+# --- going on, and doubts -----------------------------------------------------------------------
+
+
+def test_a_run_that_was_broken_off_goes_on(
+    written: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What was kept is not asked again, what was lost or changed is; evidence without an answer goes."""
+    out = tmp_path / "out"
+    shutil.copytree(written, out)
+    whole = json.loads((out / "index.json").read_text())
+    (out / "index.json").unlink()
+    (out / "answers/class_8.json").unlink()  # a run that was killed before it had kept this
+    (out / "proofs/covers-scenario-04.json").write_text("{}")
+    (out / "proofs/exclusive-class_9-class_10.json").write_text("{}")
+    assert main(["check", str(out), "--jobs", "1"]) != 0
+    before = {path.stem: path.stat().st_mtime_ns for path in (out / "answers").iterdir()}
+    line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "1", "--out", str(out)]
+    capsys.readouterr()
+    assert main(line) == 0
+    after = {path.stem: path.stat().st_mtime_ns for path in (out / "answers").iterdir()}
+    written_now = {name for name in after if after[name] != before.get(name)}
+    assert written_now == {"class_8", "covers-scenario-04"}
+    assert "asked again, since a kept answer does not count" in capsys.readouterr().err
+    again = json.loads((out / "index.json").read_text())
+    for data in (whole, again):
+        for entry in (data, *data["claims"]):
+            del entry["seconds"]
+    assert again == whole
+    assert main(["check", str(out), "--jobs", "1"]) == 0
+    assert "8 of 8 accepted" in capsys.readouterr().out
+
+
+def test_a_folder_without_its_index_is_checked_with_the_text_beside_it(
+    written: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    shutil.copytree(written, out)
+    (out / "index.json").unlink()
+    assert main(["check", str(out), "--jobs", "1"]) == 0
+    assert "8 of 8 accepted" in capsys.readouterr().out
+
+
+def test_answers_of_another_class_do_not_count(written: Path, tmp_path: Path) -> None:
+    """Also where the seal is right: the drive of class_8 as that of class_4."""
+    out = tmp_path / "out"
+    shutil.copytree(written, out)
+    head = json.loads((out / "question.json").read_text())
+    for name, forged in (("class_8", "class_4"), ("exclusive-class_4-class_8", "covers-scenario-04")):
+        record = json.loads((out / f"answers/{name}.json").read_text())
+        del record["seal"]
+        (entry,) = (*record["classes"], *record["claims"])
+        entry["name"] = forged
+        record["seal"] = seal_of(record, head["question"], out)
+        (out / f"answers/{forged}.json").write_text(json.dumps(record))
+    told: list[str] = []
+    study = classification_of(Basis(BASE), divide(Basis(BASE), plan_of(BASE, (4, 8)), 1))
+    shelf = Shelf(out, study.question)
+    recalled = {}
+    for name, record in shelf.answers(told.append):
+        try:
+            recalled[name] = study.recall(record, shelf)[0]
+        except InputError as error:
+            told.append(str(error))
+    assert not {"class_4", "covers-scenario-04"} & {*recalled}
+    assert len(recalled) == 6
+    assert len(told) == 2
+
+
+def die(*_: object) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def late(*_: object) -> None:
+    raise Late(1.0)
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [(die, "its process ended twice"), (late, "cut off by the clock")],
+    ids=["lost", "late"],
+)
+def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
+    fault: Callable[..., None],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def one_fails(axis: Axis, basis: Basis, holds: tuple[int, ...], others: tuple[int, ...]) -> Cell:
+        if holds == (4,):
+            fault()
+        return refine(axis, basis, holds, others)
+
+    monkeypatch.setattr(dividing, "refine", one_fails)
+    line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "2"]
+    assert main([*line, "--out", str(tmp_path)]) == 20
+    printed = capsys.readouterr().out
+    assert f"UNKNOWN: whether there is a shorter text for class_4: {said}" in printed
+    assert "3 classes: 3 WITNESSED" in printed
+    index = json.loads((tmp_path / "index.json").read_text())
+    assert ":= scenario_4(SV, POV, L) and not scenario_8(SV, POV, L)" in index["text"].replace("\n  ", " ")
+    assert "and not behaviourSV_4(SV, POV, L)" in index["text"]
+    (doubt,) = index["doubts"]
+    assert said in doubt["reason"]
+    assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
+    assert "UNKNOWN   whether there is a shorter text for class_4" in capsys.readouterr().out
+    monkeypatch.undo()
+    assert main([*line, "--out", str(tmp_path)]) == 0
+    assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [(die, "its process ended twice"), (late, "cut off by the clock")],
+    ids=["lost", "late"],
+)
+def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
+    fault: Callable[..., None],
+    said: str,
+    written: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    out = tmp_path / "out"
+    shutil.copytree(written, out)
+    before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    monkeypatch.setattr(dividing, "outline", fault)
+    line = ["classify", "--no-pictures", "--jobs", "2", "--out", str(out)]
+    # Of one axis alone there is no job that could be lost.
+    assert main([*line, "--among", "4,8" if fault is late else "1-8"]) == 20
+    printed = capsys.readouterr().out
+    assert f"no classes\n  UNKNOWN: which classes there are: {said}" in printed
+    assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
+
+
+def test_lost_drives_and_proofs_are_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
+    basis = Basis(BASE)
+    study = classification_of(basis, divide(basis, plan_of(BASE, (4, 8)), 1))
+    monkeypatch.setattr(settling, "find_examples", die)
+    found = study.classified(conduct(study, processes=2).answers)
+    assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
+    assert all("its process ended twice" in x.reason for x in found.examples)
+    assert {x.verdict for x in found.decisions} == {Verdict.PROVED}
+    claims = study.doubt(Claimed(study.claims), "lost")
+    assert {(x.verdict, x.reason) for x in claims.values()} == {(Verdict.UNKNOWN, "lost")}
+    assert not any(map(study.is_sure, (*found.examples, *claims.values())))
 
 
 def test_a_doubt_is_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
@@ -207,7 +388,7 @@ def test_classes_that_recordings_contradict(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     told = Shares(["01"], 3, 2, classified=Counter({2: 2}), broken=["recording 01: two classes"])
-    monkeypatch.setattr("roadproof.cli.classify.count_on", lambda *arguments: told)
+    monkeypatch.setattr("roadproof.api.classifying.count_shares", lambda *arguments, **more: told)
     assert main(["classify", "--among", "7", "--jobs", "1"]) == 30
     said = capsys.readouterr().out
     assert "3 traces, 1 (33.3 %) in none of these scenarios" in said
@@ -216,7 +397,8 @@ def test_classes_that_recordings_contradict(
 
 def claims_that_fail(text: str, classes: Classes) -> dict[str, Verdict]:
     specification = with_classes(text, BASE)
-    verdicts = {x.name: prove(specification, x.text, Effort(20)).verdict for x in claims_of(classes, {})}
+    claims = claims_of(classes, {}, specification)
+    verdicts = {x.name: prove(specification, x.query.text, Effort(20)).verdict for x in claims}
     return {name: verdict for name, verdict in verdicts.items() if verdict is not Verdict.PROVED}
 
 
@@ -258,7 +440,7 @@ def test_classes_of_all_scenarios_are_products(main_road: Classes) -> None:
         )
         for axis, cells in zip(axes, main_road.what, strict=True)
     )
-    sectors = where_axis(plan, ("SV", "POV")).rows
+    sectors = where_axis(plan, BASE).rows
     where = tuple(
         Cell(holds, holds, tuple(sectors[n] for n in sectors if n not in holds))
         for count in (1, 2, 3)
@@ -277,7 +459,7 @@ def test_classes_of_all_scenarios_are_products(main_road: Classes) -> None:
         assert one.where is not None
         vehicles = ", ".join(one.vehicles)
         what = "_".join(["what", *map(str, one.what.holds)])
-        cells = f"{what}({vehicles}, L) and where_{classes.place(one.where)}({vehicles})"
+        cells = f"{what}({vehicles}, L) and where_{one.place}({vehicles})"
         same = (read_claim(specification, text).formula for text in (one.formula, cells))
         assert len({without_names(formula) for formula in same}) == 1
 
@@ -285,14 +467,14 @@ def test_classes_of_all_scenarios_are_products(main_road: Classes) -> None:
 def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
     plan = plan_of(BASE, (4, 12, 20))
     (group,) = plan.groups
-    happens = outline(what_axis(plan, group, BASE), BASE, Effort(1.0))
-    axis = where_axis(plan, group.vehicles)
-    places = tuple(refine(axis, BASE, *cell, Effort()) for cell in outline(axis, BASE, Effort(1.0)).cells)
+    happens = outline(what_axis(plan, group, BASE), QUICK)
+    axis = where_axis(plan, BASE)
+    places = tuple(refine(axis, QUICK, *cell) for cell in outline(axis, QUICK).cells)
     classes = Classes(plan, ((Cell((4,), (4,), ()),),), places)
     assert [holds for holds, _ in happens.cells] == [(4,)]
     assert len(classes.all()) == len(places) == 7
     text = write_classes(classes, BASE)
-    assert len(claims_of(classes, {})) == 21 + 3
+    assert len(claims_of(classes, {}, with_classes(text, BASE))) == 21 + 3
     assert claims_that_fail(text, classes) == {}
     wrong = text.replace(
         ":= roadSector_4(SV, POV) and not roadSector_12(SV, POV)", ":= roadSector_4(SV, POV)"
@@ -301,6 +483,14 @@ def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
     assert claims_that_fail(wrong, classes) == {
         "exclusive-where_main-where_main_merge-2-vehicles": Verdict.REFUTED
     }
+
+
+def test_places_of_three_vehicles_alone_are_of_any_group() -> None:
+    """Their definitions take SV and any group, so they are not said of POV1 and POV2."""
+    division = divide(QUICK, plan_of(BASE, (2, 10, 18)), 1)
+    study = classification_of(QUICK, division)
+    assert len(study.classes.all()) == 7
+    assert ":= roadSector_2(SV, POV) and not roadSector_10(SV, POV)" in study.text.replace("\n  ", " ")
 
 
 def test_zones_may_change_under_vehicles() -> None:
@@ -332,14 +522,16 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
 
 def test_a_road_of_one_zone_where_the_usual_one_does_not_do(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadproof.analysis.classify.drives.usual_road", lambda formula: load_road("main-2"))
-    cell = Cell((12,), (12,), ("behaviourSV_16(SV, POV, L)",))
-    classes = Classes(plan_of(BASE, (12, 16)), ((cell,),), ())
-    text = write_classes(classes, BASE)
-    [example] = find_examples(Asked(effort=Effort(30)), text, classes.plan, classes.all())
-    assert (example.name, example.verdict) == ("class_12", Verdict.WITNESSED)
-    file = read_drive(dict(example.drive or {}), "drive")
+    (leaves, *_) = components(BASE, 16, ("SV", "POV"))
+    assert leaves.text == "behaviourSV_16(SV, POV, L)"
+    classes = Classes(plan_of(BASE, (12, 16)), ((Cell((12,), (12,), (leaves,)),),), ())
+    specification = with_classes(write_classes(classes, BASE), BASE)
+    [example] = find_examples(Basis(specification, effort=Effort(30)), classes.all())
+    assert (example.one.name, example.verdict) == ("class_12", Verdict.WITNESSED)
+    assert example.drive is not None
+    file = example.drive.file
     assert {lanelet.zone for lanelet in file.road.lanelets} == {"merge"}
-    assert judge_file(file, with_classes(text, BASE).library).accepted
+    assert judge_file(file, specification.library).accepted
 
 
 def test_vehicles_side_by_side_may_be_in_three_zones() -> None:
@@ -451,7 +643,7 @@ def test_a_scenario_of_ones_own_is_divided_too() -> None:
     )
     specification = build_library([Source("mine", mine)], bundled_library()).select("base")
     plan = plan_of(specification, (4, 25))
-    found = outline(what_axis(plan, plan.groups[0], specification), specification, Effort(1.0))
+    found = outline(what_axis(plan, plan.groups[0], specification), Basis(specification, proof=1.0))
     assert found.cells == (((4, 25), ()), ((25,), (4,)))
 
 

@@ -1,11 +1,14 @@
 """Coverage: the proposed set is proved to have no gap, and each of its definitions is needed for that."""
 
+from dataclasses import replace
 from fractions import Fraction as F
 from pathlib import Path
 
 import pytest
 
 from asking import prove
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.coverage import needed
 from roadproof.analysis.coverage.catalogue import HORIZON, catalogue
 from roadproof.analysis.coverage.claims import (
     claims_of,
@@ -13,18 +16,16 @@ from roadproof.analysis.coverage.claims import (
     prove_claim,
     replaced_in,
     sectors_of,
+    sets_between,
     two_vehicle_numbers,
-    wider_sets,
 )
-from roadproof.analysis.coverage.classes import Classes
+from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.needed import find_need, replaced_by
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.analysis.placing import Shown, judge_drive
-from roadproof.analysis.requests import Asked
 from roadproof.cli.main import main
 from roadproof.effort import Effort
-from roadproof.errors import UsageError
-from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
+from roadproof.evidence.certificate import to_json
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.judge.replay import first_breach
 from roadproof.logic.show import text
@@ -40,19 +41,23 @@ REPLACED = ("aheadOf", "cutIn", "cutOut", "decel", "initialCondition_8")
 STEADY = Piece(None, F(0), F(0))
 
 
+def of_set(name: str) -> Basis:
+    return Basis(LIBRARY.select(name))
+
+
 def without(name: str) -> Verdict:
     """The verdict on coverage of the main road by ``complete`` with one definition as it is in ext."""
     kept = [n for n in replaced_in(LIBRARY.select("ext"), COMPLETE) if n != name]
     body = "\n".join(text(COMPLETE.definitions[n]) for n in kept)
     library = build_library([Source("trial", f"set trial extends ext {{\n{body}\n}}")], LIBRARY)
     specification = library.select("trial")
-    return prove(specification, claims_of(specification)[0], Effort(1.5)).verdict
+    return prove(specification, claims_of(specification)[0].text, Effort(1.5)).verdict
 
 
 def caught_without(name: str, drive: Drive, road: Road) -> bool:
     """Whether ``complete`` catches the drive with one definition as it is in ext."""
     file = DriveFile(None, "ext", "", F(14), {}, {}, {}, road, drive)
-    return not Trials(Asked(("ext",)), ("complete",)).misses(
+    return not Trials(of_set("ext"), ("complete",)).misses(
         file, "complete", tuple(n for n in REPLACED if n != name)
     )
 
@@ -62,7 +67,8 @@ def car(s: str, d: str, speed: int, *pieces: Piece) -> Motion:
 
 
 def file_of(drive: Drive, set_name: str = "ext", road: str = "main-2") -> DriveFile:
-    formula = missed(two_vehicle_numbers(LIBRARY.select(set_name)))
+    specification = LIBRARY.select(set_name)
+    formula = missed(specification, two_vehicle_numbers(specification)).text
     return DriveFile(None, set_name, formula, F(14), {}, {}, {}, load_road(road), drive)
 
 
@@ -73,9 +79,8 @@ def test_what_the_proposed_set_replaces() -> None:
 
 
 def test_the_sets_on_the_way() -> None:
-    assert wider_sets(LIBRARY, "base", "complete") == ("extA", "ext", "complete")
-    with pytest.raises(UsageError, match="--wider base does not extend --set ext"):
-        wider_sets(LIBRARY, "ext", "base")
+    assert sets_between(LIBRARY, "base", "complete") == ("extA", "ext", "complete")
+    assert sets_between(LIBRARY, "ext", "base") == sets_between(LIBRARY, "ext", "ext") == ()
 
 
 @pytest.mark.parametrize("name", ["cutIn", "decel", "initialCondition_8"])
@@ -86,10 +91,10 @@ def test_the_proof_fails_without_a_definition(name: str) -> None:
 def test_coverage_of_the_main_road_is_proved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main_road, *_, sectors = claims_of(COMPLETE)
     for number, claim in enumerate((main_road, sectors)):
-        covered = prove_claim(Asked(("complete",)), claim)
+        covered = prove_claim(of_set("complete"), claim)
         assert covered.verdict is Verdict.PROVED
         assert covered.certificate is not None
-        (tmp_path / f"{number}.json").write_text(covered.certificate, "utf-8")
+        (tmp_path / f"{number}.json").write_text(to_json(covered.certificate), "utf-8")
     assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
     assert "2 of 2 accepted" in capsys.readouterr().out
 
@@ -116,15 +121,14 @@ def side_by_side() -> Drive:
 def test_danger_from_beside_the_lane_is_a_gap_that_cut_in_catches() -> None:
     file = file_of(beside())
     assert judge_file(file, LIBRARY).accepted
-    assert Trials(Asked(("ext",)), ("complete",)).smallest(file) == (("cutIn",),)
-    shown = Shown(file.formula, drive_data(file, {}))
+    assert Trials(of_set("ext"), ("complete",)).smallest(file) == (("cutIn",),)
     covered = "(some M in lanes: scenario_1@complete(SV,POV,M))"
-    assert judge_drive(shown, covered, LIBRARY)
-    assert not judge_drive(shown, covered.replace("complete", "ext"), LIBRARY)
+    assert judge_file(replace(file, formula=covered), LIBRARY).accepted
+    assert not judge_file(replace(file, formula=covered.replace("complete", "ext")), LIBRARY).accepted
 
 
 def test_why_scenarios_miss_danger_from_beside_the_lane() -> None:
-    found = Classes(Asked(("ext",))).of(file_of(beside()))
+    found = GapClasses(of_set("ext")).of(file_of(beside()))
     assert "behaviourPOV_1: F[0, minDanger] sameLane(SV, POV, L) in cutIn" in found
     assert "behaviourPOV_1: not sameLane(POV, SV, L) in cutIn" not in found
 
@@ -139,24 +143,30 @@ def test_drives_that_are_missed_without_a_definition(name: str, drive: Drive) ->
 
 
 def test_a_definition_is_shown_needed() -> None:
-    complete = Asked(("complete",))
-    assert sorted(replaced_by(complete)) == list(REPLACED)
-    need = find_need(complete, "cutIn")
+    assert sorted(replaced_by(COMPLETE)) == list(REPLACED)
+    need = find_need(of_set("complete"), "cutIn")
     assert need.verdict is Verdict.WITNESSED
     assert need.drive is not None
-    file = read_drive(dict(need.drive), "needed")
-    assert judge_file(file, LIBRARY).accepted
-    assert not judge_file(file_of(file.drive, "complete"), LIBRARY).accepted
+    assert judge_file(need.drive.file, LIBRARY).accepted
+    assert not judge_file(file_of(need.drive.file.drive, "complete"), LIBRARY).accepted
+
+
+def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    basis = replace(of_set("complete"), effort=Effort(1.0, timeout=0.0001))
+    covered = prove_claim(basis, claims_of(COMPLETE)[0])
+    assert covered.verdict is Verdict.UNKNOWN
+    assert "cut off by the clock" in covered.reason
+    monkeypatch.setattr(needed, "catalogue", lambda *_: ())
+    assert find_need(basis, "cutIn").verdict is Verdict.UNKNOWN
 
 
 def test_a_set_that_extends_nothing_needs_nothing() -> None:
-    assert replaced_by(Asked(("base",))) == ()
+    assert replaced_by(LIBRARY.select()) == ()
 
 
 def test_a_trial_set_with_nothing_of_a_wider_set_is_not_that_set() -> None:
     """One object judges under both, and what it remembers of one is not taken for the other."""
-    asked = Asked(("ext",))
-    trials = Trials(asked, ("complete",))
+    trials = Trials(of_set("ext"), ("complete",))
     road, car = load_road("main-2"), load_vehicle("car")
     options = trials.specification.options
     files = (

@@ -6,12 +6,18 @@ from fractions import Fraction as F
 from roadproof.analysis.coverage.minimal import simplest
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
+from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 
 LIBRARY = bundled_library()
 FORMULA = "initSafe(SV,POV) and F danger(SV,POV) and a_lon(SV) > 0 m/s^2"
+
+
+def simple(file: DriveFile) -> DriveFile:
+    query = read_claim(LIBRARY.select(file.set_name), file.formula)
+    return simplest(file, query, LIBRARY)
 
 
 def laboured() -> DriveFile:
@@ -27,22 +33,21 @@ def laboured() -> DriveFile:
 
 
 def test_what_is_not_needed_goes() -> None:
-    simple = simplest(laboured(), LIBRARY)
-    assert judge_file(simple, LIBRARY).accepted
-    theirs, mine = simple.drive.vehicles["POV"], simple.drive.vehicles["SV"]
+    found = simple(laboured())
+    assert judge_file(found, LIBRARY).accepted
+    theirs, mine = found.drive.vehicles["POV"], found.drive.vehicles["SV"]
     assert theirs.pieces == (Piece(None, F(0), F(0)),)
     assert (mine.s, mine.v_lon, theirs.v_lon) == (0, 30, 25)
     assert len(mine.pieces) == 2
 
 
 def test_what_the_formula_needs_stays() -> None:
-    simple = simplest(laboured(), LIBRARY)
-    assert simple.drive.vehicles["SV"].pieces[0].a_lon > 0
+    assert simple(laboured()).drive.vehicles["SV"].pieces[0].a_lon > 0
 
 
 def test_a_drive_stays_on_the_road_and_within_limits() -> None:
     leaving = replace(laboured(), formula="F d(SV) > 5 m")
-    assert simplest(leaving, LIBRARY).drive.vehicles["SV"] is not None
+    assert simple(leaving).drive.vehicles["SV"] is not None
     fast = laboured().drive.vehicles["SV"]
     beyond = replace(laboured(), drive=Drive({"SV": replace(fast, v_lon=F(60)), "POV": fast}))
-    assert simplest(replace(beyond, formula="F s(SV) > 0 m"), LIBRARY).drive.vehicles["SV"].v_lon == 60
+    assert simple(replace(beyond, formula="F s(SV) > 0 m")).drive.vehicles["SV"].v_lon == 60

@@ -59,7 +59,7 @@ def test_no_two_parts_have_one_key(set_name: str) -> None:
 
 
 def weakens(set_name: str, part: Part) -> bool:
-    claim = f"scenario_{part.scenario}(SV,POV,L) -> ({part.without})"
+    claim = f"scenario_{part.scenario}(SV,POV,L) -> ({part.without.text})"
     return prove(LIBRARY.select(set_name), claim, Effort(5.0)).verdict is Verdict.PROVED
 
 

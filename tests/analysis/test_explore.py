@@ -1,6 +1,8 @@
 """Exploring: boundaries that are known by reasoning, every drive judged again at its own value, mutants."""
 
 import json
+import os
+import signal
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction as F
@@ -10,34 +12,38 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadproof.analysis.explore import search, values
+from roadproof.analysis.explore import extreme, search, study, values
+from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, PointFinding
 from roadproof.analysis.explore.bracket import Bracket
-from roadproof.analysis.explore.extreme import Extreme, Sought, find_extreme, find_extremes
+from roadproof.analysis.explore.extreme import Sought, find_extreme, find_extremes
 from roadproof.analysis.explore.knobs import Knob, between
 from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.analysis.explore.range import range_of, starting_ranges
 from roadproof.analysis.explore.search import (
     MOST_STEPS,
-    Claim,
+    DriveClaim,
     Reply,
-    Task,
+    SearchTask,
+    dt_of,
     fit_grid,
     look,
-    made_for,
     stand_ins,
+    values_of,
 )
-from roadproof.analysis.explore.values import Asked, Explored, Finding, explore
-from roadproof.analysis.requests import Request
+from roadproof.analysis.explore.study import Exploration
+from roadproof.analysis.explore.values import explore
 from roadproof.cli.main import main
-from roadproof.effort import Effort
-from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
-from roadproof.evidence.judged import judge_file
-from roadproof.spec.bind import default_values
+from roadproof.effort import Effort, Late
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.journal import seal_of
+from roadproof.evidence.judged import Judged, judge_file
+from roadproof.searching.ask import Search
+from roadproof.searching.grid import common_step, durations
+from roadproof.searching.question import SearchOptions, Setting, pose
 from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.library import bundled_library
+from roadproof.study.frame import conduct
 from roadproof.verdict import Verdict
-from roadproof.witness.grid import common_step, durations
-from roadproof.witness.question import Means
 
 LIBRARY = bundled_library()
 BASE = LIBRARY.select("base")
@@ -46,9 +52,9 @@ FASTER = "v_lon(SV) <= 20 m/s and F[0, minSafe] v_lon(SV) >= 26 m/s"
 POSITIVE = st.fractions(F(1, 100), F(50), max_denominator=100)
 
 
-def request(what: str, **values: F) -> Request:
-    means = Means(effort=Effort(6), explain=False)
-    return Request(what, values={**default_values(LIBRARY), **values}, means=means)
+def search_for(what: str, **values: F) -> Search:
+    search_options = SearchOptions(effort=Effort(6), explain=False)
+    return Search(BASE, read_claim(BASE, what), Setting(values=values), search_options)
 
 
 def complaints(explored: Explored, name: str) -> list[str]:
@@ -58,7 +64,7 @@ def complaints(explored: Explored, name: str) -> list[str]:
     for finding in (*explored.findings, *ends):
         if finding.found:
             assert finding.drive is not None
-            file = read_drive(dict(finding.drive), "drive")
+            file = finding.drive.file
             if file.values.get(name) != finding.at[0]:
                 wrong.append(f"{name}={finding.at[0]}, but the file says {file.values.get(name)}")
             if not judge_file(file, LIBRARY).accepted:
@@ -66,12 +72,12 @@ def complaints(explored: Explored, name: str) -> list[str]:
     return wrong
 
 
-def least_time(found: bool, finding: Finding) -> bool:
+def least_time(found: bool, finding: PointFinding) -> bool:
     return finding.at[0] >= 2 if found else finding.at[0] < 2
 
 
 def test_a_boundary_in_time_is_where_reasoning_puts_it() -> None:
-    explored = explore(Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 6))
+    explored = explore(Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 6))
     assert [x.found for x in explored.findings] == [False, False, True, True, True, True]
     [boundary] = explored.boundaries
     assert 2 <= boundary.held.at[0] <= F(21, 10)
@@ -87,12 +93,12 @@ def test_a_boundary_in_time_is_where_reasoning_puts_it() -> None:
 def test_a_boundary_in_a_limit_is_where_reasoning_puts_it() -> None:
     what = "v_lon(SV) <= 20 m/s and F[0, 3 s] v_lon(SV) >= 26 m/s"
     knob = Knob("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
-    explored = explore(Asked(request(what), (knob,), 3))
+    explored = explore(Explorable(search_for(what), (knob,), 3))
     [boundary] = explored.boundaries
     assert 2 <= boundary.held.at[0] <= F(21, 10)
     assert boundary.missed.at[0] < 2
     assert boundary.held.drive is not None
-    file = read_drive(dict(boundary.held.drive), "drive")
+    file = boundary.held.drive.file
     assert "G a_lon(SV) <= " in file.formula
     assert judge_file(file, LIBRARY).accepted
     assert "a_lon.max" in boundary.missed.reason
@@ -102,7 +108,7 @@ def test_a_boundary_in_a_limit_is_where_reasoning_puts_it() -> None:
 
 def test_a_map_is_what_reasoning_makes_it() -> None:
     gain = Knob("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
-    explored = explore(Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)), gain), 3))
+    explored = explore(Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)), gain), 3))
     for finding in explored.findings:
         time, limit = finding.at
         assert finding.verdict is (Verdict.WITNESSED if time * limit >= 6 else Verdict.NONE_WITHIN)
@@ -112,7 +118,7 @@ def test_a_map_is_what_reasoning_makes_it() -> None:
 
 def test_one_drive_serves_many_values() -> None:
     what = "scenario_4(SV,POV,L)"
-    explored = explore(Asked(request(what), (Knob("minDanger", "s", F(0), F(3)),), 11))
+    explored = explore(Explorable(search_for(what), (Knob("minDanger", "s", F(0), F(3)),), 11))
     assert all(x.found for x in explored.findings)
     assert explored.searches <= 3
     assert complaints(explored, "minDanger") == []
@@ -121,8 +127,8 @@ def test_one_drive_serves_many_values() -> None:
 def test_values_off_every_grid_are_served_by_drives_of_coarser_ones() -> None:
     what = "v_lon(SV) <= 20 m/s and F[0, minSafe] v_lon(SV) >= 26 m/s and F[0, 2.4 s] v_lon(SV) >= 27 m/s"
     knob = Knob("minSafe", "s", F("2.011"), F("2.413"))
-    asked = Asked(request(what), (knob,), 2)
-    assert fit_grid(request(what, minSafe=F("2.413")), read_claim(BASE, what).formula) is None
+    asked = Explorable(search_for(what), (knob,), 2)
+    assert fit_grid(search_for(what, minSafe=F("2.413"))) is None
     explored = explore(asked)
     assert [x.verdict for x in explored.findings] == [Verdict.WITNESSED] * 2
     assert complaints(explored, "minSafe") == []
@@ -132,49 +138,49 @@ def test_values_off_every_grid_are_served_by_drives_of_coarser_ones() -> None:
 
 def test_what_is_proved_impossible_takes_no_search() -> None:
     what = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
-    explored = explore(Asked(request(what), (Knob("minDanger", "s", F(0), F(3)),), 4))
+    explored = explore(Explorable(search_for(what), (Knob("minDanger", "s", F(0), F(3)),), 4))
     assert {x.verdict for x in explored.findings} == {Verdict.IMPOSSIBLE}
     assert all(x.certificate for x in explored.findings)
     assert explored.searches == 0
 
 
 def test_a_drive_that_keeps_its_old_value_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def forgetful(file: DriveFile, claim: Claim) -> DriveFile:
-        return replace(file, formula=claim.text)
+    def forgetful(file: DriveFile, claim: DriveClaim) -> DriveFile:
+        return replace(file, formula=claim.query.text)
 
     monkeypatch.setattr(search, "made_for", forgetful)
-    asked = Asked(request(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
+    asked = Explorable(search_for(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
     assert complaints(explore(asked), "minSafe")
 
 
 def test_a_drive_that_is_not_judged_again_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Trusting(values.Pool):
-        def show(self, claim: Claim, since: int = 0) -> search.Shown | None:
-            if not self.files:
-                return None
-            file = made_for(self.files[0], claim)
-            return search.Shown(1, drive_data(file, {}))
+    def believed(file: DriveFile, library: object) -> Judged:
+        """As if it had been judged."""
+        judged = object.__new__(Judged)
+        for name, value in (("file", file), ("judgement", None), ("natural", None)):
+            object.__setattr__(judged, name, value)
+        return judged
 
-    monkeypatch.setattr(values, "Pool", Trusting)
-    asked = Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3)
+    monkeypatch.setattr(search, "Judged", believed)
+    asked = Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3)
     assert complaints(explore(asked), "minSafe")
 
 
 def test_a_leap_that_takes_the_next_value_for_granted_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def hasty(self: object, held: Finding, missed: Finding, precision: F) -> Finding:
+    def hasty(self: object, held: PointFinding, missed: PointFinding, precision: F) -> PointFinding:
         return replace(held, at=(between(held.at[0], missed.at[0]),))
 
     monkeypatch.setattr(values.Exploring, "leap", hasty)
-    explored = explore(Asked(request(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3))
+    explored = explore(Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3))
     assert complaints(explored, "minSafe")
 
 
-def extreme_of(what: str, sense: Sense, term: str, when: str = "") -> tuple[Extreme, Finding, DriveFile]:
+def extreme_of(what: str, sense: Sense, term: str, when: str = "") -> tuple[Extreme, PointFinding, DriveFile]:
     """The extreme, its best value, and the drive file that shows it."""
-    found = find_extreme(Sought(request(what), read_measure(BASE, sense, term, when), F(1, 10)))
+    found = find_extreme(Sought(search_for(what), read_measure(BASE, sense, term, when), F(1, 10)))
     assert found.best is not None
     assert found.best.drive is not None
-    file = read_drive(dict(found.best.drive), "drive")
+    file = found.best.drive.file
     assert judge_file(file, LIBRARY).accepted
     return found, found.best, file
 
@@ -213,7 +219,7 @@ def test_a_measure_without_end_is_said_to_have_none() -> None:
 def test_the_drive_of_one_value_is_tried_at_the_others() -> None:
     knob = Knob("minSafe", "s", F(1), F(6))
     measure = read_measure(BASE, "least", "v_lon(SV)")
-    asked = request("F[0, minSafe] v_lon(SV) >= 30 m/s")
+    asked = search_for("F[0, minSafe] v_lon(SV) >= 30 m/s")
     soughts = [Sought(asked, measure, F(1), (knob,), (F(x),)) for x in (4, 3)]
     poor = find_extreme(replace(soughts[0], point=(F(1),)))
 
@@ -242,22 +248,23 @@ def test_both_are_multiples_of_the_common_step(a: F, b: F) -> None:
 
 @given(st.fractions(F(0), F(6), max_denominator=40), st.fractions(F(0), F(6), max_denominator=40))
 def test_grids_fit_the_durations(safe: F, danger: F) -> None:
-    asked = request("scenario_4(SV,POV,L)", minSafe=safe, minDanger=danger)
-    formula = read_claim(BASE, asked.what).formula
-    fitting = fit_grid(asked, formula)
-    for one in [fitting] if fitting is not None else stand_ins(asked, formula):
-        assert one.dt <= asked.dt
-        assert one.horizon >= asked.horizon
-        assert one.horizon / one.dt <= MOST_STEPS + 1
-        for duration in (*durations(formula, one.values), one.horizon):
-            assert (duration / one.dt).denominator == 1
+    asked = search_for("scenario_4(SV,POV,L)", minSafe=safe, minDanger=danger)
+    formula = asked.query.formula
+    fitting = fit_grid(asked)
+    for one in [fitting] if fitting is not None else stand_ins(asked):
+        horizon, dt = one.setting.horizon, dt_of(one.setting)
+        assert dt <= dt_of(asked.setting)
+        assert horizon >= asked.setting.horizon
+        assert horizon / dt <= MOST_STEPS + 1
+        for duration in (*durations(formula, values_of(one)), horizon):
+            assert (duration / dt).denominator == 1
     if fitting is not None:
-        assert fitting.values == asked.values
+        assert values_of(fitting) == values_of(asked)
 
 
 def test_the_range_of_a_term_holds_its_values() -> None:
-    question = request("scenario_4(SV,POV,L)").question()
-    ranges = starting_ranges(question)
+    asked = search_for("scenario_4(SV,POV,L)")
+    ranges = starting_ranges(pose(LIBRARY, asked.query, asked.setting))
     term, dimension = read_term(BASE, "v_lon(SV) - v_lon(POV)")
     assert range_of(term, ranges) == (-25, 25)
     assert dimension == (1, -1)
@@ -266,8 +273,8 @@ def test_the_range_of_a_term_holds_its_values() -> None:
 
 
 def test_a_doubt_is_looked_past_before_it_is_the_end() -> None:
-    def at(value: int, verdict: Verdict) -> Finding:
-        return Finding((F(value),), verdict, "")
+    def at(value: int, verdict: Verdict) -> PointFinding:
+        return PointFinding((F(value),), verdict, read_claim(BASE, "true"))
 
     bracket = Bracket(-1, F(1), at(10, Verdict.WITNESSED), F(30))
     assert bracket.next() == 30
@@ -286,19 +293,125 @@ def test_a_doubt_is_looked_past_before_it_is_the_end() -> None:
 
 
 def test_a_drive_found_later_is_judged_where_none_was_found_before() -> None:
-    first: list[Task] = []
+    first: list[SearchTask] = []
 
-    def look_all(tasks: Sequence[Task]) -> list[Reply]:
+    def look_all(tasks: Sequence[SearchTask]) -> list[Reply]:
         """The first search misses what is there."""
         if not first:
             first.extend(tasks)
             return [Reply(Verdict.NONE_WITHIN, "not looked") for _ in tasks]
         return [look(task) for task in tasks]
 
-    asked = Asked(request(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
+    asked = Explorable(search_for(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
     explored = explore(asked, look_all)
     assert all(finding.found for finding in explored.findings)
     assert explored.boundaries == ()
+
+
+TWO = (
+    Explorable(search_for(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 2),
+    Explorable(search_for("F[0, minSafe] v_lon(SV) >= 26 m/s"), (Knob("minSafe", "s", F(3), F(6)),), 2),
+)
+
+
+def test_a_search_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    def deadly(task: SearchTask) -> Reply:
+        if task.search.setting.values["minSafe"] == 6:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return look(task)
+
+    monkeypatch.setattr(study, "look", deadly)
+    asked = replace(TWO[0], knobs=(Knob("minSafe", "s", F(1), F(6)),))
+    (found,) = conduct(Exploration((asked,), 2), processes=2).answers.values()
+    assert (found.findings[1].verdict, found.late) == (Verdict.UNKNOWN, True)
+    assert "its process ended twice" in found.findings[1].reason
+    assert found.findings[0].verdict is not Verdict.WITNESSED
+
+
+def test_an_extreme_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    def deadly(sought: Sought, **_: object) -> Extreme:
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError
+
+    monkeypatch.setattr(study, "find_extreme", deadly)
+    asked = replace(TWO[0], measures=(read_measure(BASE, "least", "v_lon(SV)"),))
+    (found,) = conduct(Exploration((asked,), 2), processes=2).answers.values()
+    assert [x.verdict for x in found.findings] == [Verdict.WITNESSED] * 2
+    assert [(x.best, x.late) for x in found.extremes] == [(None, True)] * 2
+    for missed in (x.missed for x in found.extremes):
+        assert missed is not None
+        assert missed.verdict is Verdict.UNKNOWN
+        assert "its process ended twice" in missed.reason
+
+
+def test_a_formula_whose_process_dies_is_a_doubt_at_every_value(monkeypatch: pytest.MonkeyPatch) -> None:
+    def deadly(asked: Explorable, *rest: object) -> Explored:
+        if asked == TWO[0]:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return explore(asked)
+
+    monkeypatch.setattr(study, "explore", deadly)
+    lost, found = conduct(Exploration(TWO), processes=2).answers.values()
+    if not lost.late:
+        lost, found = found, lost
+    assert {x.verdict for x in lost.findings} == {Verdict.UNKNOWN}
+    assert all("its process ended twice" in x.reason for x in lost.findings)
+    assert all(x.found for x in found.findings)
+
+
+def test_what_the_clock_cuts_off_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    def late(*_: object) -> None:
+        raise Late(1.0)
+
+    for module in (values, extreme):
+        monkeypatch.setattr(module, "show_impossible", late)
+    asked = replace(TWO[0], measures=(read_measure(BASE, "least", "v_lon(SV)"),))
+    (found,) = conduct(Exploration((asked,)), processes=1).answers.values()
+    assert found.late
+    assert {x.verdict for x in found.findings} == {Verdict.WITNESSED}
+
+
+def test_what_is_kept_is_not_explored_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    measured = tuple(replace(x, measures=(read_measure(BASE, "least", "v_lon(SV)"),)) for x in TWO)
+    asked = Exploration(measured)
+    first = conduct(asked, tmp_path, 1)
+    names = list(asked.named)
+    (tmp_path / f"answers/{names[1]}.json").unlink()
+    again: list[str] = []
+
+    def counted(self: Exploration, piece: str) -> dict[str, Explored]:
+        again.append(piece)
+        return settle(self, piece)
+
+    settle = Exploration.settle
+    monkeypatch.setattr(Exploration, "settle", counted)
+    second = conduct(asked, tmp_path, 1)
+    assert again == [names[1]]
+    assert list(second.answers) == names
+    for name in names:
+        mine, other = (
+            replace(x.answers[name], seconds=0.0, findings=(), boundaries=(), extremes=())
+            for x in (first, second)
+        )
+        assert mine == other
+        kept = [{**x.records[name]["exploration"], "seconds": 0} for x in (first, second)]
+        assert kept[0] == kept[1]
+
+
+def test_a_kept_answer_on_another_formula_does_not_count(tmp_path: Path) -> None:
+    asked = Exploration(TWO[:1])
+    conduct(asked, tmp_path, 1)
+    (name,) = asked.named
+    path = tmp_path / f"answers/{name}.json"
+    data = json.loads(path.read_text())
+    data["exploration"]["values"][0]["at"] = ["5/2"]
+    data.pop("seal")
+    data["seal"] = seal_of(data, asked.question.fingerprint, tmp_path)
+    path.write_text(json.dumps(data))
+    said: list[str] = []
+    conduct(asked, tmp_path, 1, say=said.append)
+    assert len(said) == 1
+    assert "does not count" in said[0]
 
 
 def run(*words: str) -> int:
@@ -322,6 +435,12 @@ def test_the_command_writes_evidence_that_is_accepted(
     [reached] = [F(x["best"]["at"][0]) for x in explored["extremes"]]
     assert 17 <= reached <= F("17.2")
     assert list(out.glob("formula-01-base.png"))
+    assert list(out.glob("formula-01-base-least-1-best.svg"))
+    assert run(FASTER, *words, "--out", str(out), "--no-pictures") == 0
+    kept = json.loads((out / "index.json").read_text())
+    assert kept["explored"] == data["explored"]
+    assert run(FASTER, *words[:-1], "1", "--out", str(out)) == 2
+    assert "answers to another question" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -9,17 +9,24 @@ from hypothesis import strategies as st
 
 from asking import prove, search_for
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.order.deciding import Decided, Doubt, Edge, _Deciding, decide_family, settle_doubts
+from roadproof.analysis.order.deciding import (
+    Decided,
+    Edge,
+    OrderDoubt,
+    _Deciding,
+    decide_family,
+    settle_doubts,
+)
 from roadproof.analysis.order.kinds import Kind, families_of, kinds_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
 from roadproof.analysis.order.study import Order
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.report.order import as_dot
+from roadproof.searching.ask import ask
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.spec.scenarios import Scenario
-from roadproof.witness.ask import ask
 
 BASE = bundled_library().select("base")
 
@@ -133,7 +140,7 @@ def test_a_family_in_doubt_is_asked_again(
 def test_a_drive_for_another_scenario_settles_a_doubt_with_its_vehicles_exchanged() -> None:
     basis = Basis(BASE)
     three, one, wide = (read_claim(BASE, f"scenario_{x}(SV, POV, L)") for x in ("3", "1", "3@ext"))
-    decided = Decided(doubts=(Doubt(node(3), node(1), ((three, one),)),))
+    decided = Decided(doubts=(OrderDoubt(node(3), node(1), ((three, one),)),))
     (drive,) = ask(search_for("4")).drives
     settled = settle_doubts(basis, decided, [drive])
     assert settled.doubts == ()
@@ -141,5 +148,5 @@ def test_a_drive_for_another_scenario_settles_a_doubt_with_its_vehicles_exchange
     file = refuting.drive.file
     assert file.drive.vehicles["SV"] == drive.file.drive.vehicles["POV"]
     assert file.formula == "scenario_3(SV, POV, L) and not scenario_1(SV, POV, L)"
-    wrong = Doubt(node(3), node(4), ((three, wide),))
+    wrong = OrderDoubt(node(3), node(4), ((three, wide),))
     assert settle_doubts(basis, Decided(doubts=(wrong,)), [drive]).doubts == (wrong,)

@@ -275,7 +275,7 @@ def test_evidence_lies_beside_a_json_file(tmp_path: Path, capsys: pytest.Capture
     [
         (["--among", "4"], 2, "at least two scenarios"),
         (["--among", "4,99"], 3, "no scenario '99'"),
-        (["--set", "base", "--set", "base"], 2, "two different ones"),
+        (["--set", "base", "--set", "base"], 2, "named twice"),
         (["--set", "bas"], 3, "did you mean 'base'"),
         (["--timeout", "0"], 2, "greater than 0"),
     ],

@@ -10,12 +10,14 @@ from hypothesis import given, settings
 from judge.cases import drives
 from roadproof.analysis import redundancy
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.redundancy import Change, Finding, Learned, _Examining, changes_of
+from roadproof.analysis.redundancy import Change, ChangeFinding, Learned, _Examining, changes_of
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
+from roadproof.searching.ask import Outcome, Search
+from roadproof.searching.ask import ask as ask_for_drive
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
@@ -23,8 +25,6 @@ from roadproof.spec.library import Specification, bundled_library
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, without_sectors
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Outcome, Search
-from roadproof.witness.ask import ask as ask_for_drive
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 
@@ -63,7 +63,7 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
     assert len(changes("F rssViolation(SV,POV)")) == 2
 
 
-def decide(number: int, part: str, value: bool) -> Finding:
+def decide(number: int, part: str, value: bool) -> ChangeFinding:
     """The finding on the first change of ``part`` in a scenario of base."""
     examining = _Examining(BASIS, Scenario(number, "base"))
     found = changes_of(BASE, examining.query)

@@ -16,6 +16,7 @@ PAGES = [
     *EXAMPLES,
     ROOT / "README.md",
     ROOT / "docs/language.md",
+    ROOT / "docs/interop.md",
 ]
 
 

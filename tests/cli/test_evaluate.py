@@ -7,15 +7,16 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from roadproof.cli.main import main
-from roadproof.traffic import results
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.write_highd import write_highd
+from roadproof.evaluation import results
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"
 TABLES = {f"{x}.{e}" for x in ("results", "comparison") for e in ("txt", "md", "csv", "tex")}
@@ -46,7 +47,7 @@ def test_what_is_written(undisturbed: dict[str, bytes]) -> None:
     others = {"matches.csv", "pairs.csv", "results.json", "answers.md"}
     assert set(undisturbed) == TABLES | recordings | others
     header = undisturbed["matches.csv"].decode().splitlines()[0]
-    assert header == "recording,sv,pov,pov2,lane,start_frame,end_frame,min_danger,set,scenario"
+    assert header == "recording,sv,pov,pov2,lane,start_frame,end_frame,min_danger,set,scenario,uncertain"
     told = json.loads(undisturbed["results.json"])
     rows = list(csv.DictReader(undisturbed["results.csv"].decode().splitlines()))
     ours = [row for row in rows if row["data"] == "here"]
@@ -85,7 +86,7 @@ def test_killed_for_good_and_started_again(
 def test_figures_are_the_same_bytes_again(folder: Path, tmp_path: Path) -> None:
     one, other = tmp_path / "one", tmp_path / "other"
     for out in (one, other):
-        assert main(["evaluate", str(folder), "--out", str(out), "--jobs", "1", "--sets", "base"]) == 0
+        assert main(["evaluate", str(folder), "--out", str(out), "--jobs", "1", "--set", "base"]) == 0
     assert contents(one) == contents(other)
     assert sum(name.startswith("figures/") for name in contents(one)) == 6
 
@@ -94,12 +95,13 @@ def test_a_violated_fact_is_a_crosscheck_failure(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Matches of ext are lost between the monitor and the tables: exit 30, and it is said which."""
-    matched = results._matched
+    add = results.add_findings
 
-    def loses(findings: results.Findings, k: int, set_name: str) -> dict[tuple[int, int], set[int]]:
-        return {} if set_name == "ext" else matched(findings, k, set_name)
+    def loses(totals: results.Totals, findings: results.Findings) -> None:
+        kept = tuple(x for x in findings.matches if x.set_name != "ext")
+        add(totals, replace(findings, matches=kept))
 
-    monkeypatch.setattr(results, "_matched", loses)
+    monkeypatch.setattr(results, "add_findings", loses)
     assert main(["evaluate", str(folder), "--out", str(tmp_path), "--jobs", "1", "--no-pictures"]) == 30
     said = capsys.readouterr().out
     assert "CROSSCHECK-FAILED" in said
@@ -116,13 +118,22 @@ def test_the_check_denies_a_wrong_answer(
     for path in folder.glob("01_*"):
         shutil.copy2(path, ours)
     command = ["evaluate", str(ours), "--out", str(tmp_path / "out"), "--jobs", "1", "--no-pictures"]
-    command += ["--check", "--sets", "base", "--min-danger", "0", "--no-detectors", "--scenarios", "1,4,6"]
+    command += [
+        "--check",
+        "--set",
+        "base",
+        "--min-danger",
+        "0",
+        "--no-detectors",
+        "--among",
+        "1,scenario_4,6",
+    ]
     assert main(command) == 0
     saved = tmp_path / "out" / "recordings" / "01.json"
     told = json.loads(saved.read_text())
     match = next(m for m in told["findings"]["matches"] if m[2] is None)
     told["findings"]["matches"].remove(match)
-    told["findings"]["matches"].append([*match[:-1], 6 if match[-1] != 6 else 1])
+    told["findings"]["matches"].append([*match[:-2], 6 if match[-2] != 6 else 1, match[-1]])
     told["seal"] = results.seal(told["fingerprint"], told["findings"])
     saved.write_text(json.dumps(told))
     capsys.readouterr()
@@ -155,10 +166,12 @@ def test_a_bad_recording(folder: Path, tmp_path: Path, capsys: pytest.CaptureFix
         (["--min-danger", "0,0"], 2, "each once"),
         (["--min-danger", "0.61"], 3, "no multiple of the time step"),
         (["--min-safe", "-1"], 2, "--min-safe -1"),
-        (["--sets", "base,exd"], 3, "did you mean 'ext'"),
-        (["--sets", "base,,ext"], 2, "separated by commas"),
-        (["--scenarios", "1-x"], 2, "numbers and ranges"),
-        (["--scenarios", "25"], 2, "between 1 and 24"),
+        (["--set", "base,exd"], 3, "did you mean 'ext'"),
+        (["--set", "base,,ext"], 2, "separated by commas"),
+        (["--set", "base", "--set", "base"], 2, "named twice"),
+        (["--among", "1-x"], 2, "is no range of scenarios"),
+        (["--among", "25"], 3, "there is no scenario '25'"),
+        (["--sets", "base"], 2, "unrecognized arguments"),
         (["--param", "minDanger=1"], 2, "use --min-danger"),
         (["--param", "rho=fast"], 3, "this is no value"),
         (["--option", "lateral_sign=left"], 3, "must be rss or literal"),
@@ -184,13 +197,13 @@ def test_planted_drives_are_found(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert main(["evaluate", str(traffic), "--out", str(out), "--jobs", "1", "--no-pictures"]) == 0
     planted = list(csv.DictReader((traffic / "planted.csv").open()))
     found = list(csv.DictReader((out / "matches.csv").open()))
-    assert list(planted[0]) == list(found[0])
+    assert list(planted[0]) == list(found[0])[:-1]
     assert {row["scenario"] for row in planted} == {"1", "2", "4", "8"}
     assert {row["lane"] for row in planted} == {"2", "8"}  # the rightmost lane of each direction
     assert 4 <= len(planted) <= 10
     for row in planted:
         for set_name in ("base", "extA", "ext"):
-            assert {**row, "set": set_name} in found
+            assert {**row, "set": set_name, "uncertain": "0"} in found
 
 
 def test_simulate_is_what_its_seed_says(tmp_path: Path) -> None:

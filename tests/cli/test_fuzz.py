@@ -21,7 +21,10 @@ import pytest
 
 from roadproof.cli.main import COMMANDS, answer
 from roadproof.errors import RoadproofError
+from roadproof.searching import ask
+from roadproof.searching.compare import compare
 from roadproof.shipped import shipped
+from roadproof.study import pool
 from roadproof.verdict import ExitCode
 
 SEEDS = range(4)
@@ -136,7 +139,7 @@ def begin(*_: object, **__: object) -> Iterator[tuple[int, object]]:
 
 def options_of(name: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=name)
-    import_module(COMMANDS[name]).add_arguments(parser)
+    import_module(f"roadproof.cli.{name}").add_arguments(parser)
     return parser
 
 
@@ -222,12 +225,19 @@ def try_one(line: list[str]) -> str:
     return f"hints at what is not there: {hints - known}: {said}" if hints - known else ""
 
 
+def replace_everywhere(monkeypatch: pytest.MonkeyPatch, function: object, other: object) -> None:
+    """In every module that has the function, under whatever name."""
+    for module in [x for name, x in sys.modules.items() if name.partition(".")[0] == "roadproof"]:
+        for name in [name for name, value in vars(module).items() if value is function]:
+            monkeypatch.setattr(module, name, other)
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_no_command_line_is_our_fault(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROADPROOF_TRACEBACK", "1")
-    monkeypatch.setattr("roadproof.study.pool.work", begin)
-    monkeypatch.setattr("roadproof.witness.compare.compare", begin_at_once)
-    monkeypatch.setattr("roadproof.witness.ask.answer", begin_at_once)
+    replace_everywhere(monkeypatch, pool.work, begin)
+    replace_everywhere(monkeypatch, compare, begin_at_once)
+    replace_everywhere(monkeypatch, ask.answer, begin_at_once)
     files = make_files(tmp_path)
     monkeypatch.chdir(tmp_path / "inside")
     for seed in SEEDS:

@@ -16,8 +16,10 @@ from roadproof.cli.main import COMMANDS
 SOURCE = Path(roadproof.__file__).parent
 # What is raised for an option is raised only by commands that have it: these read one option each.
 READERS = {
-    "roadproof.cli.options": {"--option", "--param"},
-    "roadproof.cli.explore_options": {"--vary", "--steps", "--precision"},
+    "roadproof.cli.options": {"--option", "--param", "--set"},
+    "roadproof.study.pool": {"--jobs"},
+    "roadproof.workers": {"--jobs"},
+    "roadproof.analysis.explore.asking": {"--vary", "--steps", "--precision"},
 }
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 
@@ -75,7 +77,7 @@ def hints_in(module: str) -> frozenset[str]:
 
 def options_of(command: str) -> set[str]:
     parser = argparse.ArgumentParser()
-    import_module(COMMANDS[command]).add_arguments(parser)
+    import_module(f"roadproof.cli.{command}").add_arguments(parser)
     return {text for option in parser._actions for text in option.option_strings}
 
 
@@ -84,7 +86,7 @@ def test_errors_name_options_that_the_command_has(command: str) -> None:
     known = options_of(command)
     wrong = {
         (module, option)
-        for module in reached_from(COMMANDS[command])
+        for module in reached_from(f"roadproof.cli.{command}")
         for option in hints_in(module) - READERS.get(module, set())
         if option not in known
     }

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli import prove, supervising, working
+from roadproof.analysis.claims import Answered, Claims
+from roadproof.cli import supervising
 from roadproof.cli.main import main
-from roadproof.cli.prove import How, settle
-from roadproof.cli.prove_answers import Answered
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
-from roadproof.prove.properties import Task
+from roadproof.proving.properties import Task
+from roadproof.study.pool import in_order, work
 from roadproof.workers import Lost, answers_of
 
 HANGS = 60.0
@@ -28,7 +28,7 @@ HANGS = 60.0
 _BUSY = """
 import os, sys
 from roadproof.cli import main
-from roadproof.cli.working import work
+from roadproof.study.pool import work
 from roadproof.solve.smt import Session
 
 HARD = '(declare-const x Int)(declare-const y Int)(declare-const z Int)' \\
@@ -168,14 +168,14 @@ def test_other_deaths_are_named(tmp_path: Path) -> None:
 
 def test_what_is_lost_is_a_doubt_or_an_error_at_the_end(tmp_path: Path) -> None:
     dying = Dying(tmp_path, {1: 9})
-    doubts = list(working.work_in_order(dying, range(4), 2, lost=lambda job, reason: -job))
+    doubts = list(in_order(work(dying, range(4), 2, lambda job, reason: -job)))
     assert doubts == [0, -1, 4, 9]
-    answers = working.work_in_order(Dying(tmp_path / "none", {}), range(3), 2)
+    answers = in_order(work(Dying(tmp_path / "none", {}), range(3), 2))
     assert list(answers) == [0, 1, 4]
     kept: list[int] = []
     tmp_path.joinpath("more").mkdir()
     with pytest.raises(LostError, match="2 of 4 numbers: its process ended twice") as raised:
-        kept.extend(working.work_in_order(Dying(tmp_path / "more", {1: 9}), range(4), 2, "numbers"))
+        kept.extend(in_order(work(Dying(tmp_path / "more", {1: 9}), range(4), 2, what="numbers")))
     assert raised.value.exit_code == 20
     assert kept == [0, 4, 9]
 
@@ -210,12 +210,14 @@ def test_what_cannot_be_sent_is_an_error_and_no_hang() -> None:
 def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def settle_or_die(how: How, task: Task) -> Answered:
+    settle = Claims.settle
+
+    def settle_or_die(claims: Claims, task: Task) -> dict[str, Answered]:
         if task.claim == "false":
             os.kill(os.getpid(), signal.SIGKILL)
-        return settle(how, task)
+        return settle(claims, task)
 
-    monkeypatch.setattr(prove, "settle", settle_or_die)
+    monkeypatch.setattr(Claims, "settle", settle_or_die)
     claims = ["true", "false", "not false"]
     target = tmp_path / "answer.json"
     assert main(["prove", *claims, "--jobs", "2", "--json", str(target)]) == 20

@@ -18,7 +18,7 @@ def test_a_drive_is_written_and_accepted(tmp_path, capsys):
     code, out, _ = run(capsys, "witness", "4", "--out", str(tmp_path))
     assert code == 0
     assert "WITNESSED" in out
-    assert {p.suffix for p in tmp_path.iterdir()} == {".json", ".csv", ".png", ".svg"}
+    assert {p.suffix for p in tmp_path.iterdir() if p.is_file()} == {".json", ".csv", ".png", ".svg"}
     file = load_drive(tmp_path / "scenario-04-base.json")
     assert file.scenario == 4
     rows = (tmp_path / "scenario-04-base.csv").read_text("utf-8").splitlines()
@@ -41,7 +41,7 @@ def test_json_has_verdicts_and_drives(tmp_path, capsys):
         (3, "ext", "WITNESSED"),
     ]
     assert all(v["drives"][0]["schema"] == SCHEMA for v in data["verdicts"])
-    assert all(v["seconds"]["all"] > 0 and v["sizes"]["facts"] > 0 for v in data["verdicts"])
+    assert all(v["seconds"]["all"] > 0 and v["sizes"]["inequalities"] > 0 for v in data["verdicts"])
 
 
 def test_impossible_names_its_core_and_is_unexpected(capsys):

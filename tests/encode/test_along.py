@@ -11,7 +11,7 @@ from roadproof.encode.unroll import Grid
 from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim, signature
 from roadproof.world.drive import Drive
-from witness.known import BASE, CAR, ROADS, VALUES, holds_on_samples, known
+from searching.known import BASE, CAR, ROADS, VALUES, holds_on_samples, known
 
 GRID = Grid(Fraction(3, 5), 10)
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.encode.build import NONE, Manners, build_problem, ground
+from roadproof.encode.build import NONE, Assumptions, build_problem, ground
 from roadproof.encode.circuit import evaluate
 from roadproof.encode.motion import Layout
 from roadproof.encode.unroll import Grid, unroll
@@ -15,7 +15,7 @@ from roadproof.world.models import load_road, load_vehicle
 GRID = Grid(Fraction(1, 2), 4)
 CARS = dict.fromkeys(("A", "B", "C"), load_vehicle("car"))
 ROAD = load_road("main-2")
-REACH = Manners().reach
+REACH = Assumptions().reach
 
 
 def steady(layout, places):
@@ -53,14 +53,14 @@ def is_solution(problem, values):
     ],
 )
 def test_drives_within_the_reach_apart_and_on_the_road(b, c, possible):
-    problem, layout = build_problem(f.Truth(True), ROAD, CARS, GRID, Manners(natural=False))
+    problem, layout = build_problem(f.Truth(True), ROAD, CARS, GRID, Assumptions(natural=False))
     places = {"A": (0, Fraction(3)), "B": (b[0], Fraction(b[1])), "C": (c[0], Fraction(c[1]))}
     assert is_solution(problem, steady(layout, places)) == possible
 
 
 def test_columns_across_end_where_the_road_does():
     """How strong a linear relaxation is follows from these."""
-    problem, layout = build_problem(f.Truth(True), ROAD, CARS, GRID, Manners())
+    problem, layout = build_problem(f.Truth(True), ROAD, CARS, GRID, Assumptions())
     for name, car in CARS.items():
         column = problem.columns[layout.column(name, "d", 2)]
         assert (column.low, column.high) == (car.width, 7)

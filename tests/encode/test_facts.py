@@ -1,4 +1,4 @@
-"""Comparisons as circuits of polynomial facts, against the value of the comparison itself."""
+"""Comparisons as circuits of polynomial inequalities, against the value of the comparison itself."""
 
 from fractions import Fraction
 from math import inf
@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadproof.encode.circuit import evaluate, implicant
-from roadproof.encode.facts import facts_of, polynomial_of
+from roadproof.encode.inequalities import inequalities_of, polynomial_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 
@@ -62,9 +62,9 @@ def value(term, at):
     raise AssertionError(term)
 
 
-def fact_holds(fact, at):
-    found = fact.polynomial.value(lambda q: at[q])
-    return found > 0 if fact.strict else found >= 0
+def fact_holds(inequality, at):
+    found = inequality.polynomial.value(lambda q: at[q])
+    return found > 0 if inequality.strict else found >= 0
 
 
 @settings(quiet, max_examples=500)
@@ -72,19 +72,19 @@ def fact_holds(fact, at):
 def test_facts_are_true_where_the_comparison_is(left, op, right, at):
     a, b = value(left, at), value(right, at)
     expected = {"<": a < b, "<=": a <= b, ">": a > b, ">=": a >= b}[op]
-    circuit = facts_of(f.Compare(left, op, right), SIZES)
-    assert evaluate(circuit, lambda fact: fact_holds(fact, at)) == expected
+    circuit = inequalities_of(f.Compare(left, op, right), SIZES)
+    assert evaluate(circuit, lambda inequality: fact_holds(inequality, at)) == expected
 
 
 @settings(quiet, max_examples=150)
 @given(terms, terms, values)
 def test_an_implicant_is_true_and_suffices(left, right, at):
-    circuit = facts_of(f.Compare(left, ">=", right), SIZES)
-    if not evaluate(circuit, lambda fact: fact_holds(fact, at)):
+    circuit = inequalities_of(f.Compare(left, ">=", right), SIZES)
+    if not evaluate(circuit, lambda inequality: fact_holds(inequality, at)):
         return
-    chosen = implicant(circuit, lambda fact: float(fact.polynomial.value(lambda q: at[q])))
-    assert all(fact.polynomial.value(lambda q: at[q]) >= 0 for fact in chosen)
-    assert evaluate(circuit, lambda fact: fact in chosen)
+    chosen = implicant(circuit, lambda inequality: float(inequality.polynomial.value(lambda q: at[q])))
+    assert all(inequality.polynomial.value(lambda q: at[q]) >= 0 for inequality in chosen)
+    assert evaluate(circuit, lambda inequality: inequality in chosen)
 
 
 def test_polynomials_are_expanded():

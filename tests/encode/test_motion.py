@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadproof.encode.build import Manners, fact_at, fact_for_ever
+from roadproof.encode.build import Assumptions, inequality_at, inequality_for_ever
 from roadproof.encode.circuit import AnyOf, evaluate
 from roadproof.encode.motion import Layout, encode_motions
 from roadproof.encode.place import move_one_way, rectangles, stay_apart, stay_on_road
-from roadproof.encode.polynomial import Fact, affine, variable
+from roadproof.encode.polynomial import Inequality, affine, variable
 from roadproof.encode.unroll import Grid
-from roadproof.witness.rounding import round_drive
+from roadproof.searching.rounding import round_drive
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at
 
@@ -133,11 +133,11 @@ def test_a_fact_for_ever_stays_true(factor, square, constant, start, strict):
         variable(signal) * variable(signal)
     ).scaled(Fraction(square))
     values = columns_of([(Fraction(0), Fraction(0))] * 4, Fraction(20), Fraction(start))
-    circuit = fact_for_ever(Fact(polynomial, strict), layout)
+    circuit = inequality_for_ever(Inequality(polynomial, strict), layout)
 
-    def true(fact):
-        value = fact.polynomial.value(lambda c: values[c])
-        return value > 0 if fact.strict else value >= 0
+    def true(inequality):
+        value = inequality.polynomial.value(lambda c: values[c])
+        return value > 0 if inequality.strict else value >= 0
 
     if evaluate(circuit, true):
         end = values[layout.column("A", "s", 4)]
@@ -145,7 +145,11 @@ def test_a_fact_for_ever_stays_true(factor, square, constant, start, strict):
             value = polynomial.value(lambda _, at=end + 20 * later: at)
             assert value > 0 or (value == 0 and not strict)
     else:
-        assert true(fact_at(Fact(polynomial, strict), layout, 4)) is False or factor < 0 or square != 0
+        assert (
+            true(inequality_at(Inequality(polynomial, strict), layout, 4)) is False
+            or factor < 0
+            or square != 0
+        )
 
 
 def test_rectangles_of_a_merge_cover_the_road_and_nothing_else():
@@ -167,7 +171,7 @@ def test_boxes_apart_are_those_that_do_not_overlap(ds, dd):
     for between in (True, False):
         circuit = stay_apart(layout, ("A", CAR), ("B", CAR), none, between)
         overlap = abs(shift[0]) < CAR.length and abs(shift[1] - 3) < CAR.width
-        apart = evaluate(circuit, lambda fact: fact.polynomial.value(lambda c: values[c]) >= 0)
+        apart = evaluate(circuit, lambda inequality: inequality.polynomial.value(lambda c: values[c]) >= 0)
         assert apart != overlap
 
 
@@ -176,7 +180,9 @@ def test_the_box_stays_on_the_road(d, on_road):
     layout = Layout(("A",), GRID)
     values = columns_of([(Fraction(0), Fraction(0))] * 4, d=Fraction(d))
     circuit = stay_on_road(layout, load_road("main-2"), "A", CAR, True)
-    assert evaluate(circuit, lambda fact: fact.polynomial.value(lambda c: values[c]) >= 0) == on_road
+    assert (
+        evaluate(circuit, lambda inequality: inequality.polynomial.value(lambda c: values[c]) >= 0) == on_road
+    )
 
 
 def test_a_merge_lane_must_be_left_before_it_ends():
@@ -184,7 +190,7 @@ def test_a_merge_lane_must_be_left_before_it_ends():
     values = columns_of([(Fraction(0), Fraction(0))] * 4, d=Fraction(-1))
     circuit = stay_on_road(layout, load_road("merge"), "A", CAR, True)
     assert not isinstance(circuit, AnyOf)
-    assert not evaluate(circuit, lambda fact: fact.polynomial.value(lambda c: values[c]) >= 0)
+    assert not evaluate(circuit, lambda inequality: inequality.polynomial.value(lambda c: values[c]) >= 0)
 
 
 @pytest.mark.parametrize(
@@ -201,15 +207,17 @@ def test_a_merge_lane_must_be_left_before_it_ends():
 def test_natural_drives_go_across_in_one_direction(across, one_way):
     values = columns_of([(Fraction(0), Fraction(b)) for b in across])
     circuit = move_one_way(Layout(("A",), GRID), "A")
-    assert evaluate(circuit, lambda fact: fact.polynomial.value(lambda c: values[c]) >= 0) == one_way
+    assert (
+        evaluate(circuit, lambda inequality: inequality.polynomial.value(lambda c: values[c]) >= 0) == one_way
+    )
 
 
 def test_plain_manners_keep_what_is_not_a_matter_of_taste():
-    manners = Manners(reach=Fraction(33), collisions=True, straight=frozenset({"A"}))
-    assert manners.plain() == replace(
-        manners,
+    assumptions = Assumptions(reach=Fraction(33), collisions=True, straight=frozenset({"A"}))
+    assert assumptions.plain() == replace(
+        assumptions,
         natural=False,
         straight=frozenset(),
-        margin=manners.plain().margin,
-        apart=manners.plain().apart,
+        margin=assumptions.plain().margin,
+        apart=assumptions.plain().apart,
     )

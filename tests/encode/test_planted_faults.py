@@ -1,4 +1,4 @@
-"""Deliberate faults in unrolling, facts, motion, bounds and big-M: neighbouring checks catch each."""
+"""Deliberate faults in unrolling, inequalities, motion, bounds and big-M: neighbouring checks catch each."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -12,10 +12,10 @@ from hypothesis.errors import NoSuchExample
 from encode import cases
 from encode.test_motion import columns_of, motions, satisfied
 from planting import plant
-from roadproof.encode import facts, motion, place, unroll
+from roadproof.encode import inequalities, motion, place, unroll
 from roadproof.encode.circuit import All, AnyOf, Leaf, any_of, evaluate, implicant
 from roadproof.encode.motion import Layout
-from roadproof.encode.polynomial import Fact, affine, variable
+from roadproof.encode.polynomial import Inequality, affine, variable
 from roadproof.encode.problem import Column, Problem, Row, Unknown
 from roadproof.encode.unroll import Grid
 from roadproof.logic import formula as f
@@ -94,10 +94,10 @@ def test_strictness_lost_in_negation_is_caught(monkeypatch):
 
 
 def test_a_maximum_read_as_a_conjunction_is_caught(monkeypatch):
-    monkeypatch.setattr(facts, "any_of", facts.all_of)
+    monkeypatch.setattr(inequalities, "any_of", inequalities.all_of)
     v = t.Signal("v_lon", "A")
-    circuit = facts.facts_of(f.Compare(t.Maximum((v, t.number(0))), ">=", t.number(0)), {})
-    below = evaluate(circuit, lambda fact: fact.polynomial.value(lambda _: Fraction(-1)) >= 0)
+    circuit = inequalities.inequalities_of(f.Compare(t.Maximum((v, t.number(0))), ">=", t.number(0)), {})
+    below = evaluate(circuit, lambda inequality: inequality.polynomial.value(lambda _: Fraction(-1)) >= 0)
     assert not below  # max(-1, 0) >= 0 holds, so test_facts_are_true_where_the_comparison_is fails
 
 
@@ -130,7 +130,7 @@ def test_limits_of_acceleration_left_out_are_caught(monkeypatch):
 
 
 def square_of(column, factor):
-    return Fact(
+    return Inequality(
         (variable(column) * variable(column)).scaled(Fraction(factor)) + affine([], Fraction(10)), False
     )
 
@@ -197,22 +197,22 @@ def test_a_disjunction_that_asks_for_nothing_is_caught(monkeypatch):
 
 
 def test_an_implicant_of_the_wrong_part_would_not_be_true():
-    parts = [facts.Leaf("low"), facts.Leaf("high")]
+    parts = [inequalities.Leaf("low"), inequalities.Leaf("high")]
     assert implicant(any_of(parts), lambda x: 1.0 if x == "high" else -1.0) == ("high",)
     assert implicant(All(()), lambda _: 0.0) == ()
 
 
 def decided_wrongly():
-    """Facts that are 0 at an end of their box, and are said to be true or false all over it."""
+    """Inequalities that are 0 at an end of their box, and are said to be true or false all over it."""
     column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     wrong = set()
     for factor, constant in ((1, -1), (-1, 0), (1, 0), (-1, 1)):
         for strict in (False, True):
-            fact = Fact(affine([(0, Fraction(factor))], Fraction(constant)), strict)
-            somewhere = exactly(Problem(column, (), All((Leaf(fact),)))) == "found"
+            inequality = Inequality(affine([(0, Fraction(factor))], Fraction(constant)), strict)
+            somewhere = exactly(Problem(column, (), All((Leaf(inequality),)))) == "found"
             values = (Fraction(constant), Fraction(factor + constant))
             everywhere = all(value > 0 or (value == 0 and not strict) for value in values)
-            inner, outer = (bounds.approximate(fact, [(0.0, 1.0)], side) for side in ("inner", "outer"))
+            inner, outer = (bounds.approximate(inequality, [(0.0, 1.0)], side) for side in ("inner", "outer"))
             if somewhere and AnyOf in (type(inner), type(outer)):
                 wrong.add("false")
             if not everywhere and isinstance(inner, All):
@@ -221,9 +221,9 @@ def decided_wrongly():
 
 
 AT_ZERO = {
-    "greatest value 0 is false": ("high == 0 and fact.strict", "high == 0", {"false"}),
+    "greatest value 0 is false": ("high == 0 and inequality.strict", "high == 0", {"false"}),
     "greatest value 0 is false on the outer side": ("high < -slack", "high <= slack", {"false"}),
-    "least value 0 is true": ("low == 0 and not fact.strict", "low == 0", {"true"}),
+    "least value 0 is true": ("low == 0 and not inequality.strict", "low == 0", {"true"}),
     "greatest value 0 is true": ("low > 0 or", "high >= 0 or", {"true"}),
 }
 
@@ -240,13 +240,15 @@ def relaxation_loses_something():
     """Whether a problem that is feasible by a hair is infeasible once bounds and rows are doubles."""
     third, tenth = Fraction(1, 3), Fraction(1, 10)
     columns = tuple(Column(Unknown("x", "s", k), third * k, third * k + tenth) for k in range(3))
-    # x0 is 0 by the first row, x1 is 1/3 and x2 is 2/3 by facts.
+    # x0 is 0 by the first row, x1 is 1/3 and x2 is 2/3 by inequalities.
     rows = (Row({0: third, 1: -third}, None, -(third**2)), Row({0: tenth, 2: third}, None, 2 * third**2))
-    facts = [affine([(0, Fraction(-1))]), affine([(1, Fraction(-7))], 7 * third)]
+    inequalities = [affine([(0, Fraction(-1))]), affine([(1, Fraction(-7))], 7 * third)]
     squares = [
         (variable(1) * variable(1)).scaled(Fraction(sign)) + affine([], -sign * third**2) for sign in (1, -1)
     ]
-    problem = Problem(columns, rows, All(tuple(Leaf(Fact(p, False)) for p in (*facts, *squares))))
+    problem = Problem(
+        columns, rows, All(tuple(Leaf(Inequality(p, False)) for p in (*inequalities, *squares)))
+    )
     assert exactly(problem) == "found"
     return milp.solve_mixed(problem, milp.box_of(problem), "outer", 2).status == "infeasible"
 
@@ -254,7 +256,7 @@ def relaxation_loses_something():
 INWARDS = {
     "rows": (milp, "solve_mixed", "float(row.high) + slack", "float(row.high) - 10 * slack"),
     "bounds of columns": (milp, "solve_mixed", "loosened(box) if", "[(a + 1e-4, b) for a, b in box] if"),
-    "facts": (bounds, "_leaf", "Bound(affine, -slack)", "Bound(affine, 10 * slack)"),
+    "inequalities": (bounds, "_leaf", "Bound(affine, -slack)", "Bound(affine, 10 * slack)"),
 }
 
 
@@ -284,8 +286,8 @@ def overlap_differs():
         values[layout.column("B", "d", k)] = across
         overlap = -car.length < along < truck.length and -car.width < across < truck.width
 
-        def holds(fact, at=values):
-            return fact.polynomial.value(at.__getitem__) >= 0
+        def holds(inequality, at=values):
+            return inequality.polynomial.value(at.__getitem__) >= 0
 
         if evaluate(at_samples, holds) == overlap or (overlap and evaluate(kept, holds)):
             return True

@@ -12,8 +12,8 @@ from roadproof.encode.unroll import Grid, unroll
 from roadproof.errors import UsageError
 from roadproof.judge import judge
 from roadproof.logic import formula as f
-from roadproof.monitor.batch import Batch
-from roadproof.monitor.compiled import compile as compile_monitor
+from roadproof.monitoring.batch import Batch
+from roadproof.monitoring.compiled import compile as compile_monitor
 
 quiet = settings(deadline=None, derandomize=True)
 

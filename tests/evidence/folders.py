@@ -12,7 +12,7 @@ from roadproof.effort import Effort
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Finding, exit_code
 from roadproof.evidence.folder import conclude, survey
-from roadproof.prove.properties import find_label
+from roadproof.proving.properties import find_label
 from roadproof.shipped import shipped
 from roadproof.solve import smt
 from roadproof.spec.library import load_library

@@ -12,7 +12,7 @@ from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import ZERO, at, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import road_names
-from roadproof.solve.smt import Answer, ask
+from roadproof.solve.smt import Satisfiability, ask
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
 
@@ -21,7 +21,7 @@ def saturated(specification: Specification, claim: str, rounds: int = 4, most: i
     """The ground query of ``claim`` after ``rounds`` of naming what was met and instantiating there."""
     query = read_claim(specification, claim)
     atoms = Atoms()
-    goal = atoms.atomise(query.formula)
+    goal = atoms.abstract(query.formula)
     bounds = {name: p.bound for name, p in specification.library.parameters.items()}
     shifts = [
         moment_of(bound)
@@ -61,6 +61,6 @@ def _on_road(site: derivation.Site) -> bool:
     return site.formula.startswith(("(some", "(every"))
 
 
-def probe(specification: Specification, claim: str, units: float = 2.0) -> Answer:
+def probe(specification: Specification, claim: str, units: float = 2.0) -> Satisfiability:
     """z3's answer to the saturated query: ``unsat`` would prove ``claim``."""
     return ask(saturated(specification, claim), meter=Effort(units).meter())

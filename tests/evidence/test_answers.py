@@ -12,9 +12,17 @@ from evidence.test_drive_file import FILE
 from roadproof.analysis.coverage.claims import claims_of
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Entry, mismatch
-from roadproof.evidence.answers.read import faults_of, first_set, index_fields, read_index
+from roadproof.evidence.answers.read import (
+    faults_of,
+    index_fields,
+    read_index,
+    read_record,
+    record_fields,
+)
+from roadproof.evidence.answers.reader import first_set
+from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
-from roadproof.prove.properties import find_label
+from roadproof.proving.properties import find_label
 from roadproof.spec.library import Library, bundled_library, load_library
 from roadproof.spec.scenarios import Scenario
 
@@ -223,7 +231,7 @@ def coverage(set_name: str) -> dict[str, Any]:
         **SAID,
         "verdict": "COVERED",
         "claims": [
-            {"claim": claim, "verdict": "PROVED", "certificate": f"{k}.json", "reason": ""}
+            {"claim": claim.text, "verdict": "PROVED", "certificate": f"{k}.json", "reason": ""}
             for k, claim in enumerate(claims)
         ],
         "classes": [],
@@ -249,6 +257,14 @@ def test_verdicts_on_a_set() -> None:
     assert faults({**coverage("ext"), "verdict": "GAPS"}) == ["GAPS, but it has none"]
     assert faults({**coverage("ext"), "verdict": "PROVED"}) == ["there is no verdict 'PROVED' on a set"]
     assert faults({**coverage("ext"), "verdict": "UNKNOWN"}) == []
+
+
+def test_a_class_that_occurs_in_traffic_may_say_where() -> None:
+    part = {"scenario": 1, "component": "behaviourPOV_1", "description": "", "condition": ""}
+    more = {"verdict": "UNKNOWN", "gaps": [], "claim": "", "certificate": None, "reason": "", "none_for": []}
+    seen = {**part, **more, "in_traffic": 2, "trace": "recording 01, vehicles 3 and 5, frames 1 to 9"}
+    [found] = [x for x in entries({**coverage("ext"), "classes": [seen]}) if x.key[0] == "class"]
+    assert (found.verdict, found.shows) == ("UNKNOWN", "nothing")
 
 
 # --- classify ------------------------------------------------------------------------------------
@@ -288,6 +304,23 @@ def test_classes_and_claims_about_them(tmp_path: Path) -> None:
     )
 
 
+def test_a_kept_answer_about_classes_and_doubts_about_all_of_them(tmp_path: Path) -> None:
+    path = tmp_path / "classes.spec"
+    path.write_text(DEFINED, "utf-8")
+    library = load_library((path,))
+    said = {"set": "base", "options": {}, "parameters": {}, "scenarios": [], "specs": ["classes.spec"]}
+    head = Fields(head_of(CLASSIFY["schema"], "question", said), "question.json")
+    for kept in (
+        {"classes": CLASSIFY["classes"][:1], "claims": []},
+        {"classes": [], "claims": CLASSIFY["claims"]},
+    ):
+        (entry,) = read_record(head, Fields(kept, "answer", record_fields(CLASSIFY["schema"], "")), library)
+        assert (entry.key, entry.claim) in [(x.key, x.claim) for x in entries(CLASSIFY, library)]
+    doubts = [{"about": "whether there is a shorter text", "reason": "lost"}]
+    *_, doubt = entries({**CLASSIFY, "doubts": doubts}, library)
+    assert (doubt.verdict, doubt.shows, doubt.label) == ("UNKNOWN", "nothing", doubts[0]["about"])
+
+
 # --- explore -------------------------------------------------------------------------------------
 
 
@@ -325,6 +358,20 @@ def test_values_with_and_without_a_drive() -> None:
     assert entries(short)[0].fault.endswith("0 values of 1")
     with pytest.raises(InputError, match="minSafe"):
         entries({**EXPLORE, "explored": [{**one, "values": [finding("x")]}]})
+
+
+def test_a_kept_exploration_says_what_the_index_says() -> None:
+    """So that ``check`` does not count it twice, and tells where the two differ."""
+    head = Fields({"of": EXPLORE["schema"], "said": SAID}, "question.json")
+    record = Fields({"exploration": EXPLORE["explored"][0]}, "answers/one.json")
+    kept = read_record(head, record, LIBRARY)
+    assert [x.where.partition(", ")[2] for x in kept] == [
+        x.where.partition("exploration 1, ")[2] for x in entries(EXPLORE)
+    ]
+    assert [(x.key, x.verdict, x.claim, x.file) for x in kept] == [
+        (x.key, x.verdict, x.claim, x.file) for x in entries(EXPLORE)
+    ]
+    assert len({x.key for x in kept}) == len(kept)
 
 
 def test_a_drive_is_judged_with_the_values_of_its_entry() -> None:

@@ -9,7 +9,7 @@ from functools import cache
 import pytest
 
 from asking import prove
-from prove.claims import specification
+from proving.claims import specification
 from roadproof.effort import Effort
 from roadproof.errors import InputError
 from roadproof.evidence import derivation
@@ -50,7 +50,7 @@ def rederived(changed: Certificate) -> Certificate:
     chosen = library.select(changed.set_name, changed.options)
     query = read_claim(chosen, changed.claim)
     atoms = Atoms()
-    goal = atoms.atomise(query.formula)
+    goal = atoms.abstract(query.formula)
     bounds = {name: p.bound for name, p in library.parameters.items()}
     names, instances = dict(changed.names), dict(changed.instances)
     for _ in range(5):

@@ -3,7 +3,7 @@
 import pytest
 
 from evidence.probe import probe
-from prove.claims import INVALID, VALID, specification, spelled
+from proving.claims import INVALID, VALID, specification, spelled
 from roadproof.evidence import atoms, derivation
 from roadproof.evidence.derivation import _Derivation, _join
 from roadproof.logic import formula as f

@@ -10,8 +10,8 @@ import pytest
 from evidence.folders import changes, check, code, places, read, some_proofs, write
 from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
-from roadproof.evidence.finding import Outcome
-from roadproof.prove.properties import find_label, template_properties
+from roadproof.evidence.finding import Acceptance
+from roadproof.proving.properties import find_label, template_properties
 from roadproof.shipped import shipped
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import ExitCode
@@ -24,7 +24,7 @@ def folder(tmp_path: Path) -> Path:
 
 def test_the_folder_is_accepted_and_names_each_claim(folder: Path) -> None:
     findings = check(folder)
-    assert {x.outcome for x in findings} == {Outcome.ACCEPTED}
+    assert {x.outcome for x in findings} == {Acceptance.ACCEPTED}
     told = [(x.verdict, x.label) for x in findings]
     assert told == [
         ("PROVED", "P1 scenario 4 base"),
@@ -63,6 +63,15 @@ EQUIVALENT = {
         "verdict.natural: ": "check says that it was not checked",
     },
     "index.json": {
+        "roadproof: ": "which version made the folder: nothing rests on it",
+        "library: removed": "as in earlier folders: claims are read with the library at hand",
+        "options: ": "what is not named is the default, which it is",
+        "options.lateral_sign: removed": "the default",
+        "options.lateral_rss: removed": "the default",
+        "options.speed: removed": "the default",
+        "options.rss_form: removed": "the default",
+        "specs: null": "there are none",
+        "specs: removed": "there are none",
         "claims: turned around": "the order of claims",
         "claims.4: removed": "a folder with one claim less, which check does not print",
         "claims.4.evidence: removed": "it is null",
@@ -83,7 +92,7 @@ def test_no_change_is_accepted_that_changes_what_is_said(folder: Path, name: str
             write(path, changed)
             findings = check(folder)
             tried += 1
-            if all(x.outcome is Outcome.ACCEPTED for x in findings):
+            if all(x.outcome is Acceptance.ACCEPTED for x in findings):
                 accepted.append(f"{'.'.join(map(str, place))}: {word}")
                 assert {(x.label, x.claim) for x in findings} <= set(claims)
     assert tried > 300
@@ -227,7 +236,7 @@ ATTACKS = {
 def test_an_attack_on_a_folder_is_found(folder: Path, attack: Callable[[Path], None]) -> None:
     attack(folder)
     findings = check(folder)
-    bad = [x for x in findings if x.outcome is not Outcome.ACCEPTED]
+    bad = [x for x in findings if x.outcome is not Acceptance.ACCEPTED]
     assert any(ATTACKS[attack] in x.reason for x in bad), [x.reason for x in bad]
     assert code(folder) in (3, 10)
 
@@ -251,15 +260,15 @@ DAMAGE = {
 def test_a_damaged_file_does_not_take_the_folder_with_it(folder: Path, content: bytes) -> None:
     (folder / "P2-base.json").write_bytes(content)
     outcomes = [x.outcome for x in check(folder)]
-    assert outcomes.count(Outcome.ACCEPTED) == 4
-    assert Outcome.UNREADABLE in outcomes
+    assert outcomes.count(Acceptance.ACCEPTED) == 4
+    assert Acceptance.UNREADABLE in outcomes
     assert code(folder) == 3
 
 
 def test_an_undecided_query_is_unknown(folder: Path) -> None:
     undecided = Checker(bundled_library(), lambda script: "unknown", find_label)
     finding = undecided.check(folder / "P2-base.json")
-    assert (finding.outcome, finding.outcome.exit_code) == (Outcome.UNDECIDED, ExitCode.UNKNOWN)
+    assert (finding.outcome, finding.outcome.exit_code) == (Acceptance.UNDECIDED, ExitCode.UNKNOWN)
     assert str(finding).startswith("unknown ")
 
 
@@ -284,20 +293,20 @@ def test_a_file_alone_says_what_it_is_of(folder: Path) -> None:
 def test_a_folder_without_an_index_is_its_files(folder: Path) -> None:
     (folder / "index.json").unlink()
     found = [(x.outcome, x.label) for x in check(folder)]
-    assert found[1:] == [(Outcome.ACCEPTED, x) for x in ("P1 scenario 4 base", "P2 base", "P9 base")]
+    assert found[1:] == [(Acceptance.ACCEPTED, x) for x in ("P1 scenario 4 base", "P2 base", "P9 base")]
     for path in folder.iterdir():
         path.unlink()
     with pytest.raises(InputError, match=r"holds no \.json file"):
         check(folder)
     (folder / "P2-base.json").symlink_to(shipped("proofs") / "P2-base.json")
-    assert [x.outcome for x in check(folder)] == [Outcome.REJECTED]
+    assert [x.outcome for x in check(folder)] == [Acceptance.REJECTED]
 
 
 def test_definitions_that_are_not_at_hand_are_said(folder: Path) -> None:
     data = read(folder / "P2-base.json")
     write(folder / "P2-base.json", {**data, "claim": "near(SV,POV) -> near(SV,POV)"})
     finding = check(folder / "P2-base.json")[0]
-    assert finding.outcome is Outcome.UNREADABLE
+    assert finding.outcome is Acceptance.UNREADABLE
     assert "there is no definition 'near'" in finding.reason
     assert "--spec FILE" in finding.reason
 

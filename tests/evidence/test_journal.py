@@ -8,7 +8,7 @@ import pytest
 
 from evidence.folders import check
 from roadproof.errors import InputError
-from roadproof.evidence.finding import Outcome
+from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import NAME, Journal, head_of, read_journal, seal_of
 
 SCHEMA = "roadproof/overlap/1"
@@ -75,7 +75,7 @@ def test_a_seal_is_of_the_answer_and_the_question(tmp_path: Path) -> None:
 
 
 def test_what_is_no_journal_is_refused(tmp_path: Path) -> None:
-    for head in ({**HEAD, "schema": "roadproof/journal/9"}, {**HEAD, "of": "roadproof/explore/1"}):
+    for head in ({**HEAD, "schema": "roadproof/journal/9"}, {**HEAD, "of": "roadproof/nothing/1"}):
         (tmp_path / NAME).write_text(json.dumps(head) + "\n", "utf-8")
         with pytest.raises(InputError, match=r"schema=|there are journals of"):
             read_journal(tmp_path / NAME)
@@ -84,5 +84,5 @@ def test_what_is_no_journal_is_refused(tmp_path: Path) -> None:
 def test_a_folder_with_a_journal_alone_is_what_the_journal_says(tmp_path: Path) -> None:
     written(tmp_path)
     found = check(tmp_path)
-    assert {x.outcome for x in found} == {Outcome.ACCEPTED}
+    assert {x.outcome for x in found} == {Acceptance.ACCEPTED}
     assert [x.label for x in found] == ["scenarios 1@base and 2@base", "scenarios 3@base and 4@base"]

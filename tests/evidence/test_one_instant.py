@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, find, given, settings
 from hypothesis import strategies as st
 
-from prove.claims import holds, specification
+from proving.claims import holds, specification
 from roadproof.effort import Effort
 from roadproof.errors import InputError
 from roadproof.evidence import atoms as atoms_module
@@ -207,7 +207,7 @@ def test_a_fault_in_the_text_is_caught(fault, monkeypatch):
 
 def lemma_answers(claim: str) -> set[str]:
     known = Atoms()
-    named = known.atomise(read_claim(specification(), claim).formula)
+    named = known.abstract(read_claim(specification(), claim).formula)
     literals = [(part.name, True) for part in f.subformulas(named) if isinstance(part, f.Named)]
     bounds = {name: p.bound for name, p in specification().library.parameters.items()}
     return {ask(query, meter=Effort(5).meter()) for query in derive_lemma_queries(known, literals, bounds)}
@@ -247,12 +247,12 @@ NAMESAKES = f.Or((f.Named("near", ("SV",), positive("s")), f.Named("near", ("SV"
 
 
 def names_tell_apart(formula) -> bool:
-    return without_names(Atoms().atomise(formula)) == without_names(formula)
+    return without_names(Atoms().abstract(formula)) == without_names(formula)
 
 
 def test_two_meanings_have_two_names():
     known = Atoms()
-    first, second = known.atomise(NAMESAKES).parts
+    first, second = known.abstract(NAMESAKES).parts
     assert first.name != second.name
     assert known.meaning(first.name) == positive("s")
     assert known.meaning(second.name) == positive("d")
@@ -276,7 +276,7 @@ def test_a_name_for_two_meanings_is_caught(monkeypatch):
 def test_one_meaning_has_one_name():
     known = Atoms()
     once = f.And((f.Named("near", ("SV",), positive("s")), f.Named("close", ("SV",), positive("s"))))
-    first, second = known.atomise(once).parts
+    first, second = known.abstract(once).parts
     assert first == second
 
 
@@ -285,7 +285,9 @@ def somewhere(variable, lane="L", vehicle="SV"):
 
 
 def test_bound_variables_do_not_tell_atoms_apart():
-    first, second, third = Atoms().atomise(f.And((somewhere("l"), somewhere("m"), somewhere("l", "M")))).parts
+    first, second, third = (
+        Atoms().abstract(f.And((somewhere("l"), somewhere("m"), somewhere("l", "M")))).parts
+    )
     assert first.name == second.name != third.name
 
 

@@ -12,11 +12,11 @@ from roadproof.errors import InputError
 from roadproof.evidence import strict
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.drive_file import drive_data, read_drive
-from roadproof.evidence.finding import Outcome
+from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import DEEPEST, Fields, parse_json, rational
 from roadproof.evidence.times import read_moment
-from roadproof.prove.properties import find_label
+from roadproof.proving.properties import find_label
 from roadproof.world.drive import Drive
 
 TEXTS = [
@@ -135,7 +135,7 @@ def test_drives_that_are_refused(changed, message) -> None:
 # --- what is said of a drive that is accepted ----------------------------------------------------
 
 
-def line_of(tmp_path, **changed) -> tuple[Outcome, str]:
+def line_of(tmp_path, **changed) -> tuple[Acceptance, str]:
     file = replace(FILE, options=dict(LIBRARY.select().options), **changed)
     path = tmp_path / "drive.json"
     path.write_text(json.dumps(drive_data(file, {})), "utf-8")
@@ -149,7 +149,7 @@ FASTER = {"formula": "v_lon(SV) > v_lon(POV)", "scenario": None, "drive": CRASH,
 
 def test_check_says_what_it_checked_and_what_it_did_not(tmp_path) -> None:
     outcome, line = line_of(tmp_path)
-    assert outcome is Outcome.ACCEPTED
+    assert outcome is Acceptance.ACCEPTED
     assert line.startswith("WITNESSED scenario 4 base  scenario_4(SV, POV, L)  [dense, unbounded time")
     assert "declared parameters; boxes apart up to 3 s" in line
     assert line.endswith("not checked: limits of vehicles]")
@@ -157,12 +157,12 @@ def test_check_says_what_it_checked_and_what_it_did_not(tmp_path) -> None:
 
 def test_collisions_that_are_allowed_or_come_later_are_said(tmp_path) -> None:
     assert "overlap from 1.7" in line_of(tmp_path, **FASTER)[1]
-    assert line_of(tmp_path, **FASTER)[0] is Outcome.REJECTED
+    assert line_of(tmp_path, **FASTER)[0] is Acceptance.REJECTED
     outcome, line = line_of(tmp_path, **FASTER, horizon=Fraction(0))
-    assert outcome is Outcome.ACCEPTED
+    assert outcome is Acceptance.ACCEPTED
     assert "boxes apart up to 0 s; after that the boxes of POV and SV overlap from 1.7" in line
     outcome, line = line_of(tmp_path, **FASTER, overlaps_allowed=True)
-    assert outcome is Outcome.ACCEPTED
+    assert outcome is Acceptance.ACCEPTED
     assert "collisions allowed: the boxes of POV and SV overlap from 1.7" in line
 
 
@@ -172,7 +172,7 @@ def test_boxes_that_never_meet_are_said_where_there_are_two(tmp_path) -> None:
     assert "boxes apart for ever" in line_of(tmp_path, **slower)[1]
     alone = {**slower, "formula": "v_lon(SV) > 0", "drive": Drive({"SV": motion("0", "10")})}
     outcome, line = line_of(tmp_path, **alone)
-    assert outcome is Outcome.ACCEPTED
+    assert outcome is Acceptance.ACCEPTED
     assert "apart" not in line
 
 
@@ -195,7 +195,7 @@ def test_what_a_drive_file_says_of_itself_is_compared(tmp_path, verdict, message
     path = tmp_path / "drive.json"
     path.write_text(json.dumps(drive_data(file, {"times": times_data(judgement)})), "utf-8")
     checker = Checker(LIBRARY, answer, find_label)
-    assert checker.check(path).outcome is Outcome.ACCEPTED
+    assert checker.check(path).outcome is Acceptance.ACCEPTED
     path.write_text(json.dumps(drive_data(file, verdict)), "utf-8")
     assert message in checker.check(path).reason
 
@@ -212,5 +212,5 @@ def test_what_a_drive_was_judged_with_is_said_by_its_file(tmp_path, left_out) ->
 
 def test_a_number_that_is_not_that_of_the_formula_is_rejected(tmp_path) -> None:
     outcome, line = line_of(tmp_path, scenario=5)
-    assert outcome is Outcome.REJECTED
+    assert outcome is Acceptance.REJECTED
     assert "scenario=5, but its formula is another" in line

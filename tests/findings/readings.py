@@ -1,5 +1,6 @@
 """Figures that an output says with more than one of its lines, or in the files beside it."""
 
+import csv
 import json
 import re
 from collections import Counter
@@ -150,10 +151,25 @@ def drives_that_serve(outcome: Outcome) -> tuple[int, int, str]:
     return len(every), values.pop() if complete else 0, " or ".join(WORDS[x] for x in served)
 
 
-def us101_rows(outcome: Outcome) -> tuple[str, ...]:
-    """The cells of the results table of US-101, row by row."""
-    lines = (outcome.folder / US101 / "results.md").read_text("utf-8").splitlines()
+def us101_rows(outcome: Outcome, sector: str = "") -> tuple[str, ...]:
+    """The cells of a results table of US-101, row by row; ``sector`` is what its file's name ends in."""
+    lines = (outcome.folder / US101 / f"results{sector}.md").read_text("utf-8").splitlines()
     return tuple(line.split("| here | ")[1].rstrip(" |") for line in lines if "| here |" in line)
+
+
+def uncertain_matches(outcome: Outcome) -> tuple[int, int]:
+    """Rows of matches.csv that depend on less than places may be off by, and all."""
+    with (outcome.folder / US101 / "matches.csv").open(encoding="utf-8", newline="") as file:
+        marks = [row["uncertain"] for row in csv.DictReader(file)]
+    return marks.count("1"), len(marks)
+
+
+def sectors_of_matches(outcome: Outcome) -> tuple[str, ...]:
+    """Numbers of scenarios of merge and departure zones that match, and windows in which one does."""
+    with (outcome.folder / US101 / "matches.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if int(row["scenario"]) > 8]
+    numbers = sorted({int(row["scenario"]) for row in rows})
+    return ", ".join(map(str, numbers)), str(len({row["recording"] for row in rows}))
 
 
 def us101_counts(outcome: Outcome) -> dict[str, Any]:
@@ -165,21 +181,34 @@ def us101_counts(outcome: Outcome) -> dict[str, Any]:
 
 def disturbances(outcome: Outcome) -> tuple[int, int]:
     """With minDanger 0 and with 0.6."""
-    traces = {row["minDanger"]: row["traces"] for row in us101_counts(outcome)["table"]}
-    return traces["0"], traces["3/5"]
+    rows = [row for row in us101_counts(outcome)["table"] if row["set"] == "base"]
+    every, lasting = (sum(x["traces"] for x in rows if x["min_danger"] == d) for d in ("0", "3/5"))
+    return every, lasting
 
 
 def matched(outcome: Outcome, min_danger: str, set_name: str) -> tuple[int, int]:
     """Traces, and those that match a scenario of a set."""
     for row in us101_counts(outcome)["table"]:
-        if (row["minDanger"], row["set"]) == (min_danger, set_name):
+        if (row["min_danger"], row["set"]) == (min_danger, set_name):
             return row["traces"], row["matching"]
     return 0, 0
 
 
 def roles_differ(outcome: Outcome, min_danger: str) -> int:
     """Pairs for which scenarios 3 and 4 differ in base."""
-    return sum(x[-1] == min_danger for x in us101_counts(outcome)["checks"]["scenario3And4Differ"])
+    return sum(x[-1] == min_danger for x in us101_counts(outcome)["checks"]["unequal_3_4"])
+
+
+def windows_with_ramps(outcome: Outcome) -> int:
+    """Windows in which a merge or departure lane was inferred."""
+    windows = re.split(r"^(?=\S)", outcome.printed, flags=re.M)
+    return sum(re.search(r"^  (merge|departure) lane", window, re.M) is not None for window in windows)
+
+
+def signed(outcome: Outcome) -> tuple[int, int]:
+    """With minDanger 0: traces on the main road, and those of ext that match in merge zones."""
+    rows = {(x["sector"], x["min_danger"], x["set"]): x for x in us101_counts(outcome)["table"]}
+    return rows["main road", "0", "ext"]["traces"], rows["merge zone", "0", "ext"]["matching"]
 
 
 def vanishing(outcome: Outcome) -> tuple[int, int]:

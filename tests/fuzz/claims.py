@@ -9,8 +9,8 @@ from collections import Counter
 from hypothesis import strategies as st
 
 from fuzz.case import Disagreement
-from prove.claims import PROVED, is_false_on, settle, specification
-from prove.test_random_claims import claims, is_true_on, traces
+from proving.claims import PROVED, is_false_on, settle, specification
+from proving.test_random_claims import claims, is_true_on, traces
 from roadproof.evidence.certificate import refusal
 from roadproof.solve.smt import ask
 from roadproof.verdict import Verdict

@@ -15,7 +15,7 @@ from judge.pinning import disagreement_on_drive
 from roadproof.judge import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.monitor import Batch, compile
+from roadproof.monitoring import Batch, compile
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 

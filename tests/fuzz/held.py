@@ -23,8 +23,8 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.monitor import Batch, compile
-from roadproof.monitor.recursive import Reading, Trace
+from roadproof.monitoring import Batch, compile
+from roadproof.monitoring.recursive import Reading, Trace
 from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification, bundled_library

@@ -14,10 +14,10 @@ from judge.pinning import disagreement_on_drive
 from roadproof.effort import Effort
 from roadproof.judge import judge
 from roadproof.judge.replay import first_breach, first_overlap
+from roadproof.searching.question import SearchOptions
+from roadproof.searching.search import find_witness, show_none
 from roadproof.verdict import Verdict
-from roadproof.witness.question import Means
-from roadproof.witness.search import find_witness, show_none
-from witness.known import known
+from searching.known import known
 
 CHUNK = 20
 UNITS = 5.0
@@ -32,10 +32,10 @@ def check(case: tuple[int, str]) -> int:
     seed, engine = case
     there = known(seed)
     question = there.question()
-    means = Means("any", engine=engine, effort=Effort(UNITS), refinements=1, explain=False)
-    answer = find_witness(question, means)
+    search_options = SearchOptions("any", engine=engine, effort=Effort(UNITS), refinements=1, explain=False)
+    answer = find_witness(question, search_options)
     if answer.found is None:
-        answer = show_none(question, replace(means, explain=True))
+        answer = show_none(question, replace(search_options, explain=True))
     notes[str(answer.verdict)] += 1
     if answer.verdict in (Verdict.NONE_WITHIN, Verdict.IMPOSSIBLE):
         raise Disagreement(f"{answer.verdict} of a drive that is known, on {there.road}: {there.text}", case)

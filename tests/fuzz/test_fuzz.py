@@ -12,8 +12,8 @@ from fuzz.run import READERS, run
 from roadproof.encode import unroll
 from roadproof.judge import exact, signals, truth
 from roadproof.logic import show
-from roadproof.monitor import semantics
-from roadproof.witness import question
+from roadproof.monitoring import semantics
+from roadproof.searching import question
 
 FOUND = sorted(case.FOUND.glob("*.txt"))
 FEW = {"held": 160, "truths": 25, "drives": 25, "claims": 80, "search": 2, "texts": 25}

@@ -8,7 +8,18 @@ from pathlib import Path
 from mutants.edits import Edit, edits_of, is_fault
 from mutants.spec_edits import spec_edits_of
 
-FOLDERS = ("judge", "monitor", "encode", "solve", "evidence", "prove", "witness", "traffic")
+FOLDERS = (
+    "judge",
+    "monitoring",
+    "encode",
+    "solve",
+    "evidence",
+    "proving",
+    "searching",
+    "formats",
+    "evaluation",
+    "simulation",
+)
 SPECS = "spec/library"
 SPEC_WEIGHT = 3  # a definition says in a line what takes Python a page
 

@@ -103,8 +103,8 @@ def test_the_choice_follows_from_the_seed() -> None:
     )
     folders = {str(file).split("/")[0] for file in targets(PACKAGE)}
     assert folders == {
-        *("judge", "monitor", "encode", "solve"),
-        *("evidence", "prove", "witness", "traffic", "spec"),
+        *("judge", "monitoring", "encode", "solve", "evidence", "proving", "searching", "spec"),
+        *("formats", "evaluation", "simulation"),
     }
 
 

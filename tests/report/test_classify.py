@@ -1,26 +1,35 @@
 """The table and the picture of classes, on made-up answers."""
 
-from typing import Any
+from collections import Counter
 
 import pytest
 
-from roadproof.report.classify import as_table, draw_classes
+from roadproof.analysis.classify.cells import Cell
+from roadproof.analysis.classify.classes import Class
+from roadproof.analysis.classify.divide import Doubt
+from roadproof.analysis.classify.drives import Example
+from roadproof.analysis.classify.shares import Shares
+from roadproof.analysis.classify.study import Classified
+from roadproof.report.classify import as_table, draw_classes, summary
+from roadproof.verdict import Verdict
 
 
-def one(
-    happens: list[int], where: str | None, situations: int | None, verdict: str = "WITNESSED"
-) -> dict[str, Any]:
-    name = "_".join(map(str, happens))
-    shown = {"name": f"class_{name}", "vehicles": ["SV", "POV"], "happens": happens, "where": where}
-    return {**shown, "description": f"what {name} is", "verdict": verdict, "situations": situations}
+def one(happens: tuple[int, ...], place: str | None, verdict: Verdict = Verdict.WITNESSED) -> Example:
+    what = "_".join(map(str, happens))
+    name = f"class_{what}" if place is None else f"class_{what}_{place}"
+    cell = Cell(happens, happens, ())
+    reason = "" if verdict is Verdict.WITNESSED else "none was found"
+    return Example(Class(name, ("SV", "POV"), happens, cell, None, place, f"what {what} is"), verdict, reason)
 
 
-SHARES = {"source": "roads", "situations": {"2": 10}, "traces": 20, "covered": 8}
+def shares_of(**situations: int) -> Shares:
+    return Shares(["01"], 20, 8, Counter(situations), classified=Counter({2: 10}), source="roads")
 
 
 def test_places_are_added_up() -> None:
-    classes = [one([4], "main", 5), one([4], "merge", 1, "UNKNOWN"), one([4, 8], "main", 4)]
-    assert as_table({"classes": classes, "shares": SHARES}).splitlines() == [
+    examples = [one((4,), "main"), one((4,), "merge", Verdict.UNKNOWN), one((4, 8), "main")]
+    shares = shares_of(class_4_main=5, class_4_merge=1, class_4_8_main=4)
+    assert as_table(examples, shares).splitlines() == [
         "class      drives  situations     what happens",
         "class_4    1 of 2      6  60.0 %  what 4 is",
         "class_4_8  1 of 1      4  40.0 %  4 and 8 together",
@@ -32,13 +41,27 @@ def test_places_are_added_up() -> None:
 
 
 def test_without_shares_there_are_none() -> None:
-    table = as_table({"classes": [one([4], None, None)], "shares": None})
+    table = as_table([one((4,), None)], None)
     assert table.splitlines() == ["class    drives  what happens", "class_4  1 of 1  what 4 is"]
 
 
-@pytest.mark.parametrize("shares", [SHARES, None])
-def test_the_picture(shares: dict[str, Any] | None) -> None:
+def test_doubts_are_told_and_traces_that_are_shown_twice() -> None:
+    shares = shares_of(class_4=10)
+    shares.repeated = 5
+    found = Classified((one((4,), None, Verdict.UNKNOWN),), (), (Doubt("what there is", "lost"),), shares)
+    assert [*summary(found)] == [
+        "1 class: 1 UNKNOWN",
+        "  UNKNOWN: what there is: lost",
+        "  UNKNOWN: class_4: none was found",
+        "on roads: 20 traces, 12 (60.0 %) in none of these scenarios",
+        "5 of 25 traces are shown by an earlier recording too, so they are left out",
+        "10 situations with a scenario, each in exactly one class, which names its scenarios",
+    ]
+
+
+@pytest.mark.parametrize("shares", [shares_of(class_4=6, class_4_8=4), None])
+def test_the_picture(shares: Shares | None) -> None:
     pytest.importorskip("matplotlib")
-    drawn = draw_classes({"classes": [one([4], None, 6), one([4, 8], None, 4)], "shares": shares}, "Classes")
+    drawn = draw_classes([one((4,), None), one((4, 8), None)], shares, "Classes")
     assert drawn["png"].startswith(b"\x89PNG")
     assert b"scenario 8" in drawn["svg"] or drawn["svg"].count(b"<text") == 0

@@ -8,17 +8,25 @@ from pathlib import Path
 import pytest
 
 from roadproof.errors import InputError
+from roadproof.evaluation.questions import Settings, default_settings
+from roadproof.evaluation.results import Totals, begin_totals
 from roadproof.report.answers import answer_questions
 from roadproof.report.paper import MARK
-from roadproof.report.traffic import comparison_table, decimal, percent, results_table
+from roadproof.report.tables import Table
+from roadproof.report.traffic import comparison_table, decimal, percent, results_tables
 from roadproof.report.traffic_figures import draw_figures
 from roadproof.report.write_traffic import write_report
-from roadproof.traffic.questions import COMPARISON, Settings, default_settings
-from roadproof.traffic.results import Totals, begin_totals
+from roadproof.spec.scenarios import COMPARISON
 
 
 def settings(**changes: object) -> Settings:
     return replace(default_settings(), detectors=COMPARISON, **changes)  # type: ignore[arg-type]
+
+
+def the_table(totals: Totals, *failed: dict[str, str]) -> Table:
+    """The only one."""
+    (table,) = results_tables(totals, *failed).values()
+    return table
 
 
 @pytest.fixture
@@ -35,7 +43,7 @@ def totals() -> Totals:
 
 
 def test_results_table_has_ours_and_the_papers(totals: Totals) -> None:
-    table = results_table(totals)
+    table = the_table(totals)
     assert len(table.rows) == 12
     ours, paper = table.rows[4], table.rows[5]
     assert ours[:6] == ("0", "ext", "here", "40", "12", "30.0%")
@@ -47,7 +55,7 @@ def test_results_table_has_ours_and_the_papers(totals: Totals) -> None:
 
 
 def test_other_parameters_have_no_row_of_the_paper() -> None:
-    table = results_table(begin_totals(settings(min_danger=(Fraction(1),), sets=("base",))))
+    table = the_table(begin_totals(settings(min_danger=(Fraction(1),), sets=("base",))))
     assert [row[:6] for row in table.rows] == [("1", "base", "here", "0", "0", "-")]
 
 
@@ -72,7 +80,7 @@ def test_left_out_recordings_are_a_warning(totals: Totals) -> None:
     failed = {"07": "broken"}
     table = comparison_table(totals, failed)
     assert table is not None
-    for notes in (results_table(totals, failed).notes, table.notes):
+    for notes in (the_table(totals, failed).notes, table.notes):
         assert "WARNING: 1 recordings could not be used and are left out: 07." in notes
     assert "WARNING: 1 recordings" in answer_questions(totals, failed)
     assert "WARNING" not in answer_questions(totals)

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from roadproof.effort import Effort
 from roadproof.encode.circuit import Leaf, all_of, any_of, evaluate
-from roadproof.encode.polynomial import Fact, affine, variable
+from roadproof.encode.polynomial import Inequality, affine, variable
 from roadproof.encode.problem import Column, Problem, Row, Unknown
 from roadproof.solve.bounds import approximate, value_of
 from roadproof.solve.exact import solve_exactly
@@ -30,18 +30,18 @@ def problem(dice, quadratic):
 
 def circuit(dice, depth, quadratic):
     if depth == 0:
-        return Leaf(fact(dice, quadratic))
+        return Leaf(inequality(dice, quadratic))
     parts = [circuit(dice, depth - 1, quadratic) for _ in range(dice.randint(2, 3))]
     return (all_of if depth % 2 else any_of)(parts)
 
 
-def fact(dice, quadratic):
+def inequality(dice, quadratic):
     parts = [(k, Fraction(dice.randint(-3, 3))) for k in range(COLUMNS)]
     polynomial = affine(parts, Fraction(2 * dice.randint(-9, 3) + 1, 2))
     if quadratic:
         x, y = (variable(dice.randrange(COLUMNS)) for _ in range(2))
         polynomial = polynomial + (x * y).scaled(Fraction(dice.choice([-2, -1, 1, 2])))
-    return Fact(polynomial, dice.random() < 0.5)
+    return Inequality(polynomial, dice.random() < 0.5)
 
 
 def exactly(problem):
@@ -59,13 +59,13 @@ def approximation_holds(made, point):
     return evaluate(made, lambda bound: bound.affine.value(point) >= -1e-9)
 
 
-def inner_is_safe(fact, box, pieces=1):
-    """Wherever the inner approximation holds, the fact does."""
-    made = approximate(fact, box, "inner", pieces)
-    return all(value_of(fact, p) >= -1e-6 for p in grid_of(box) if approximation_holds(made, p))
+def inner_is_safe(inequality, box, pieces=1):
+    """Wherever the inner approximation holds, the inequality does."""
+    made = approximate(inequality, box, "inner", pieces)
+    return all(value_of(inequality, p) >= -1e-6 for p in grid_of(box) if approximation_holds(made, p))
 
 
-def outer_is_safe(fact, box, pieces=1):
-    """Wherever the fact holds, the outer approximation does."""
-    made = approximate(fact, box, "outer", pieces)
-    return all(approximation_holds(made, p) for p in grid_of(box) if value_of(fact, p) >= 0)
+def outer_is_safe(inequality, box, pieces=1):
+    """Wherever the inequality holds, the outer approximation does."""
+    made = approximate(inequality, box, "outer", pieces)
+    return all(approximation_holds(made, p) for p in grid_of(box) if value_of(inequality, p) >= 0)

@@ -1,11 +1,11 @@
-"""Affine forms, squares split off, and conditions on either side of a fact: small cases by hand."""
+"""Affine forms, squares split off, and conditions on either side of an inequality: small cases by hand."""
 
 from fractions import Fraction
 
 import pytest
 
 from roadproof.encode.circuit import All, AnyOf, Leaf, evaluate, nodes
-from roadproof.encode.polynomial import Fact, affine, constant, variable
+from roadproof.encode.polynomial import Inequality, affine, constant, variable
 from roadproof.solve.bounds import (
     ROUNDING,
     TOLERANCE,
@@ -39,14 +39,14 @@ def test_a_loosened_box_keeps_single_values():
 def test_a_polynomial_is_an_affine_part_and_squares():
     x, y = variable(0), variable(1)
     polynomial = x * x + (x * y).scaled(Fraction(6)) + affine([(0, Fraction(-3))], Fraction(7))
-    linear, squares = split_squares(Fact(polynomial, False))
+    linear, squares = split_squares(Inequality(polynomial, False))
     assert linear == Affine(((0, -3.0),), 7.0)
     for point in ([0.0, 0.0], [1.0, 2.0], [-2.0, 3.5]):
         total = linear.value(point) + sum(factor * form.value(point) ** 2 for factor, form in squares)
-        assert total == pytest.approx(value_of(Fact(polynomial, False), point))
-    assert value_of(Fact(polynomial, False), [1.0, 2.0]) == 1 + 12 - 3 + 7
+        assert total == pytest.approx(value_of(Inequality(polynomial, False), point))
+    assert value_of(Inequality(polynomial, False), [1.0, 2.0]) == 1 + 12 - 3 + 7
     with pytest.raises(TooNonlinearError):
-        split_squares(Fact(x * x * y, False))
+        split_squares(Inequality(x * x * y, False))
 
 
 @pytest.mark.parametrize(
@@ -64,9 +64,9 @@ def test_a_polynomial_is_an_affine_part_and_squares():
 )
 def test_what_the_box_decides(shift: int, strict: bool, inner: str, outer: str):
     """The polynomial is x + 1 + shift on [-1, 3], so from shift to 4 + shift."""
-    fact = Fact(affine([(0, Fraction(1))], Fraction(1 + shift)), strict, Fraction(1, 8))
+    inequality = Inequality(affine([(0, Fraction(1))], Fraction(1 + shift)), strict, Fraction(1, 8))
     for side, expected in (("inner", inner), ("outer", outer)):
-        made = approximate(fact, BOX, side)
+        made = approximate(inequality, BOX, side)
         found = (
             "leaf"
             if isinstance(made, Leaf)
@@ -81,7 +81,7 @@ def test_what_the_box_decides(shift: int, strict: bool, inner: str, outer: str):
 
 
 def bounds_of(polynomial, side, pieces):
-    made = approximate(Fact(polynomial, False), [(-2.0, 4.0)], side, pieces)
+    made = approximate(Inequality(polynomial, False), [(-2.0, 4.0)], side, pieces)
     return made, [node.content for node in nodes(made) if isinstance(node, Leaf)]
 
 
@@ -122,6 +122,6 @@ def test_outer_tangents_are_all_asked_for():
 
 def test_a_square_of_one_value_is_a_number():
     square = variable(0) * variable(0)
-    made = approximate(Fact(square + constant(Fraction(-9)), False), [(3.0, 3.0)], "inner")
+    made = approximate(Inequality(square + constant(Fraction(-9)), False), [(3.0, 3.0)], "inner")
     assert isinstance(made, All)
     assert made.parts == ()

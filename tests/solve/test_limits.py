@@ -9,7 +9,7 @@ import pytest
 from roadproof import effort
 from roadproof.effort import Effort, Late
 from roadproof.encode.circuit import Leaf, all_of, any_of
-from roadproof.encode.polynomial import Fact, affine
+from roadproof.encode.polynomial import Inequality, affine
 from roadproof.encode.problem import Column, Problem, Row, Unknown
 from roadproof.solve import exact, milp, smt
 from roadproof.solve.exact import solve_exactly
@@ -31,8 +31,8 @@ NO_ANSWERS = (
 
 def either(column):
     """A column is 0 or 1."""
-    low = Leaf(Fact(affine([(column, Fraction(-1))], Fraction(0)), False))
-    high = Leaf(Fact(affine([(column, Fraction(1))], Fraction(-1)), False))
+    low = Leaf(Inequality(affine([(column, Fraction(-1))], Fraction(0)), False))
+    high = Leaf(Inequality(affine([(column, Fraction(1))], Fraction(-1)), False))
     return any_of([low, high])
 
 

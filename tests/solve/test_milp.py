@@ -7,7 +7,7 @@ import pytest
 
 from roadproof.effort import Effort
 from roadproof.encode.circuit import All, AnyOf, Leaf
-from roadproof.encode.polynomial import Fact, affine, variable
+from roadproof.encode.polynomial import Inequality, affine, variable
 from roadproof.encode.problem import Column, Problem, Unknown
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.solve import milp
@@ -24,7 +24,7 @@ def satisfied(problem, values, tolerance=1e-6):
             row.high is not None and total > row.high + tolerance
         ):
             return False
-    return small.evaluate(problem.circuit, lambda fact: value_of(fact, values) >= -tolerance)
+    return small.evaluate(problem.circuit, lambda inequality: value_of(inequality, values) >= -tolerance)
 
 
 def test_affine_problems_have_the_same_answer_as_z3():
@@ -59,21 +59,21 @@ def test_quadratic_problems_are_answered_on_the_safe_side():
 def test_bounds_are_on_their_side(pieces):
     dice = random.Random(pieces)
     for _ in range(25):
-        fact = small.fact(dice, True)
+        inequality = small.inequality(dice, True)
         box = [(-3.0, float(dice.randint(-2, 4))) for _ in range(small.COLUMNS)]
-        assert small.inner_is_safe(fact, box, pieces)
-        assert small.outer_is_safe(fact, box, pieces)
+        assert small.inner_is_safe(inequality, box, pieces)
+        assert small.outer_is_safe(inequality, box, pieces)
 
 
 def test_more_pieces_are_nearer():
-    fact = Fact((variable(0) * variable(0)).scaled(Fraction(-1)) + affine([], Fraction(1)), False)
+    inequality = Inequality((variable(0) * variable(0)).scaled(Fraction(-1)) + affine([], Fraction(1)), False)
     box = [(-3.0, 5.0)]
 
     def kept(pieces):
-        made = approximate(fact, box, "inner", pieces)
+        made = approximate(inequality, box, "inner", pieces)
         return sum(small.approximation_holds(made, p) for p in small.grid_of(box, 161))
 
-    assert kept(1) < kept(8) <= sum(value_of(fact, p) >= 0 for p in small.grid_of(box, 161))
+    assert kept(1) < kept(8) <= sum(value_of(inequality, p) >= 0 for p in small.grid_of(box, 161))
 
 
 def test_a_cost_is_made_small():
@@ -81,7 +81,7 @@ def test_a_cost_is_made_small():
         Column(Unknown("x", "s", 0), Fraction(-5), Fraction(5)),
         Column(Unknown("y", "s", 0), Fraction(-5), Fraction(5)),
     )
-    far = AnyOf((Leaf(Fact(affine([(0, Fraction(1))], Fraction(-3)), False)), AnyOf(())))
+    far = AnyOf((Leaf(Inequality(affine([(0, Fraction(1))], Fraction(-3)), False)), AnyOf(())))
     problem = Problem(columns, (), All((far,)))
     solution = solve_mixed(problem, box_of(problem), cost=Cost({0: 1.0}, {1: 1.0}), gap=0.0)
     assert solution.values == pytest.approx((3.0, 0.0), abs=1e-6)
@@ -94,7 +94,9 @@ def test_another_solver_gives_the_same_answers():
 
 def test_degree_three_is_refused():
     cube = variable(0) * variable(0) * variable(0)
-    problem = Problem((Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),), (), Leaf(Fact(cube, False)))
+    problem = Problem(
+        (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),), (), Leaf(Inequality(cube, False))
+    )
     with pytest.raises(TooNonlinearError):
         solve_mixed(problem, box_of(problem))
     assert solve_exactly(problem).status == "found"
@@ -119,5 +121,5 @@ def test_nothing_and_everything():
 def test_strictness_is_exact_for_z3():
     x = affine([(0, Fraction(1))], Fraction(-1))
     column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
-    assert solve_exactly(Problem(column, (), Leaf(Fact(x, False)))).values == (Fraction(1),)
-    assert solve_exactly(Problem(column, (), Leaf(Fact(x, True)))).status == "infeasible"
+    assert solve_exactly(Problem(column, (), Leaf(Inequality(x, False)))).values == (Fraction(1),)
+    assert solve_exactly(Problem(column, (), Leaf(Inequality(x, True)))).status == "infeasible"

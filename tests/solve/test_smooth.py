@@ -1,4 +1,4 @@
-"""Convex programs: optima that are known, and facts near a point."""
+"""Convex programs: optima that are known, and inequalities near a point."""
 
 import random
 from fractions import Fraction
@@ -47,12 +47,12 @@ def test_fixed_columns_stay():
 def test_near_a_point_a_fact_is_approximated_from_inside():
     dice = random.Random(5)
     for _ in range(60):
-        fact = small.fact(dice, True)
+        inequality = small.inequality(dice, True)
         point = [dice.uniform(-3, 3) for _ in range(small.COLUMNS)]
         box = narrow([(-4.0, 4.0)] * small.COLUMNS, point, [0.5] * small.COLUMNS)
-        bound = near(fact, point, box)
+        bound = near(inequality, point, box)
         for p in small.grid_of(box, 5):
-            assert bound.affine.value(p) <= value_of(fact, p) + 1e-9
+            assert bound.affine.value(p) <= value_of(inequality, p) + 1e-9
 
 
 def test_narrow_stays_inside_and_around():

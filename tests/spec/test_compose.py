@@ -9,6 +9,7 @@ from roadproof.spec import compose
 from roadproof.spec.compose import (
     always,
     both,
+    conjuncts,
     either,
     equivalence,
     eventually,
@@ -49,8 +50,8 @@ TOGETHER = {
     "always": always(implication(PLAIN, ONE)),
     "roles exchanged": with_vehicles(both(FOUR, LANES), {"SV": "POV", "POV": "SV"}),
     "another lane": with_lane(FOUR, "L", "L2"),
-    "some lane": in_some_lane(both(ONE, LANES)),
-    "some lane, negated": both(PLAIN, negation(in_some_lane(FOUR))),
+    "some lane": in_some_lane(both(ONE, LANES), "L"),
+    "some lane, negated": both(PLAIN, negation(in_some_lane(FOUR, "L"))),
 }
 
 
@@ -70,7 +71,7 @@ def test_what_came_out_is_said_as_a_reader_would() -> None:
     assert TOGETHER["roles exchanged"].text.startswith(
         "given x: m/s: (scenario_4(POV, SV, L) and v_lon(POV) > x)"
     )
-    assert in_some_lane(ONE).text == "some M in lanes: scenario_1(SV, POV, M)"
+    assert in_some_lane(ONE, "L").text == "some M in lanes: scenario_1(SV, POV, M)"
     assert ONE.text == "scenario_1(SV, POV, L)"
 
 
@@ -113,3 +114,15 @@ def test_parts_of_a_formula_are_said_by_name() -> None:
     assert read(two.text).formula == two.formula
     assert compose.of_parts(query, [third]).lanes == ("L",)
     assert compose.of_parts(query, []).text == "true"
+
+
+def test_conjuncts_are_what_is_joined() -> None:
+    parts = conjuncts(FOUR)
+    assert [part.text for part in parts] == [
+        "given x: m/s: scenario_4(SV, POV, L)",
+        "given x: m/s: v_lon(SV) > x",
+    ]
+    assert [(part.vehicles, part.lanes) for part in parts] == [(("POV", "SV"), ("L",)), (("SV",), ())]
+    assert both(*parts).formula == FOUR.formula
+    assert read(both(ONE, *parts).text).formula == f.conjunction(ONE.formula, *FOUR.formula.parts)  # type: ignore[union-attr]
+    assert conjuncts(PLAIN) == (PLAIN,)

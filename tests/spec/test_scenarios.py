@@ -5,9 +5,10 @@ from fractions import Fraction
 import pytest
 
 from roadproof.errors import InputError, TextError
+from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names
 from roadproof.spec import scenarios
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.elaborate import read_claim, signature
 from roadproof.spec.library import Source, Specification, build_library, bundled_library
 from roadproof.spec.scenarios import Scenario
 
@@ -104,3 +105,37 @@ def test_a_scenario_is_named_by_its_number(text: str, number: int | None, means:
 def test_a_number_of_no_scenario_is_refused() -> None:
     with pytest.raises(TextError, match="scenario_99"):
         scenarios.read_query(BASE, "99")
+
+
+def test_a_scenario_that_is_applied_is_read_from_a_tree() -> None:
+    def read(text: str) -> scenarios.Application | None:
+        return scenarios.application_in(BASE, parse_claim(text).body)
+
+    assert read("scenario_4(SV, POV, L)") == scenarios.Application(Scenario(4, "base"), ("SV", "POV", "L"))
+    assert read("scenario_12@ext( A,B , M )") == scenarios.Application(Scenario(12, "ext"), ("A", "B", "M"))
+    for other in (
+        "scenario_2_initSafe_POV1(SV, POV, POV2, L)",
+        "danger(SV, POV)",
+        "not scenario_4(SV, POV, L)",
+        "scenario_4(SV, POV, s(SV))",
+        "true",
+    ):
+        assert read(other) is None
+
+
+def test_numbers_are_told_from_formulas() -> None:
+    assert all(map(scenarios.are_numbers, ("4", "1-8, 12", "scenario_4", "1--3")))
+    assert not any(map(scenarios.are_numbers, ("danger(SV, POV)", "scenario_4(SV, POV, L)", "P4", "")))
+
+
+def test_what_vehicles_are_called() -> None:
+    assert [scenarios.roles(n) for n in (1, 2, 3)] == [("SV",), ("SV", "POV"), ("SV", "POV1", "POV2")]
+    for number in scenarios.numbers_of(BASE):
+        vehicles = scenarios.vehicles_of(BASE, Scenario(number, "base"))
+        assert vehicles == scenarios.roles(len(vehicles))
+
+
+def test_detectors_are_definitions_about_a_pair_and_a_lane() -> None:
+    for name in scenarios.COMPARISON:
+        assert signature(BASE, name) == (*scenarios.PAIR, scenarios.LANE)
+    assert scenarios.beside_lane(BASE, "POV", "L1").text == "some M in adjacentLanes(L1): atLane(POV, M)"

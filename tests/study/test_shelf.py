@@ -15,11 +15,10 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.overlap import Overlap, PairVerdict, name_of
 from roadproof.cli.main import main
 from roadproof.errors import UsageError
-from roadproof.evidence.finding import Outcome
+from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
 from roadproof.spec.library import Source, build_library, bundled_library
 from roadproof.spec.scenarios import Scenario
-from roadproof.study import shelf as shelf_module
 from roadproof.study.frame import conduct
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
@@ -64,8 +63,8 @@ def test_answers_are_kept_and_checked(folder: Path) -> None:
     assert kept(folder) == ([FIRST, SECOND], [])
     findings = check(folder)
     assert [(x.outcome, x.verdict, x.label) for x in findings] == [
-        (Outcome.ACCEPTED, "IMPOSSIBLE", "scenarios 3@base and 4@base"),
-        (Outcome.ACCEPTED, "IMPOSSIBLE", "scenarios 5@base and 6@base"),
+        (Acceptance.ACCEPTED, "IMPOSSIBLE", "scenarios 3@base and 4@base"),
+        (Acceptance.ACCEPTED, "IMPOSSIBLE", "scenarios 5@base and 6@base"),
     ]
 
 
@@ -120,7 +119,7 @@ def test_no_change_of_an_answer_counts(folder: Path) -> None:
 def test_a_changed_answer_is_rejected_by_check(folder: Path) -> None:
     text = file_of(folder).read_text("utf-8")
     file_of(folder).write_text(text.replace("IMPOSSIBLE", "WITNESSED"), "utf-8")
-    assert any(x.outcome is Outcome.REJECTED and "seal" in x.reason for x in check(folder))
+    assert any(x.outcome is Acceptance.REJECTED and "seal" in x.reason for x in check(folder))
 
 
 def test_other_evidence_is_found_under_a_new_seal(folder: Path) -> None:
@@ -179,7 +178,7 @@ def test_answers_to_another_question_are_not_taken_over(folder: Path, other: Que
 
 
 def test_answers_of_another_version_are_not_taken_over(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shelf_module, "version", lambda name: "0.0.0")
+    monkeypatch.setattr("roadproof.evidence.heading.version", lambda name: "0.0.0")
     with pytest.raises(UsageError, match="the answers to another question"):
         kept(folder)
 
@@ -204,7 +203,7 @@ def test_planted_evidence_that_is_not_looked_at_is_noticed(
     sealed = {**wrong, "seal": seal_of(wrong, head["question"], folder)}
     file_of(folder).write_text(json.dumps(sealed), "utf-8")
     with monkeypatch.context() as patch:
-        patch.setattr("roadproof.evidence.journal.read_record", lambda head, record, library: [])
+        patch.setattr("roadproof.evidence.journal.read_record", lambda *_: [])
         assert kept(folder)[0] == [FIRST, SECOND]
     assert kept(folder)[0] == [SECOND]
 

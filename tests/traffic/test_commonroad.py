@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadproof.errors import InputError
-from roadproof.traffic.commonroad import read_commonroad
-from roadproof.traffic.overlaps import find_overlaps
-from roadproof.traffic.plausible import LARGEST_SIZE
-from roadproof.traffic.projection import boxes_of, even_line, inside, overlap, project, triangles_of
+from roadproof.formats.commonroad import read_commonroad
+from roadproof.formats.overlaps import find_overlaps
+from roadproof.formats.plausible import LARGEST_SIZE
+from roadproof.formats.projection import boxes_of, even_line, inside, overlap, project, triangles_of
 from traffic.tiny_commonroad import Car, document, point
 
 US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
@@ -55,6 +55,21 @@ def test_zone_behind_the_merge_lane(tmp_path: Path) -> None:
     assert r.occupancy.tolist() == [1, 1, 1]
 
 
+def test_a_vehicle_off_the_road_is_refused(tmp_path: Path) -> None:
+    """At all times; one that leaves it, or comes from beside it, is noted."""
+    path = tmp_path / "off.xml"
+    path.write_text(
+        document((Car(1, 0, ((50.0, 1.75), (52.0, 1.75))), Car(4, 0, ((50.0, 30.0), (52.0, 30.0)))))
+    )
+    with pytest.raises(InputError, match=r"off\.xml: dynamicObstacle 4: on no lanelet at any time"):
+        read_commonroad(path)
+    path.write_text(document((Car(1, 0, ((158.0, 1.75), (160.0, 1.75), (162.0, 1.75), (164.5, 1.75))),)))
+    assert "1 of 4 samples have the centre of the box on no lane" not in (
+        notes := read_commonroad(path).notes
+    )
+    assert "2 of 4 samples have the centre of the box on no lane" in notes
+
+
 def test_overlaps_are_reported(tmp_path: Path) -> None:
     path = tmp_path / "crash.xml"
     path.write_text(
@@ -74,7 +89,7 @@ def test_overlaps_are_reported(tmp_path: Path) -> None:
         ('timeStepSize="0.1"', 'timeStepSize="fast"', "timeStepSize of commonRoad is 'fast'"),
         ('Version="2020a"', 'Version="2018b"', "2020a is needed"),
         ("</commonRoad>", "", "no well-formed XML"),
-        ('<?xml version="1.0"?>', '<!DOCTYPE a [<!ENTITY b "c">]>', "no document type"),
+        ('<?xml version="1.0"?>', '<!DOCTYPE a [<!ENTITY b "c">]>', "the file has a document type"),
         (
             "<time><exact>2</exact>",
             "<time><exact>5</exact>",
@@ -84,6 +99,8 @@ def test_overlaps_are_reported(tmp_path: Path) -> None:
         ("<width>1.8</width>", "<width>-1.8</width>", r"dynamicObstacle 7 has length=4.0, width=-1.8"),
         ('dynamicObstacle id="3"', 'dynamicObstacle id="7"', "dynamicObstacle 7 occurs twice"),
         ("<lanelet ", "<lane ", "no well-formed XML"),
+        ('successor ref="4"', 'successor ref="99"', "lanelet 3: successor 99 is no lanelet of the file"),
+        ('lanelet id="2"', 'lanelet id="1"', "lanelet 1 occurs twice"),
     ],
 )
 def test_damage_is_named(old: str, new: str, message: str, tmp_path: Path) -> None:
@@ -223,4 +240,4 @@ def test_us101() -> None:
             assert error.max() < limit
         assert any(note.startswith("accelerations") for note in r.notes)
     first = read_commonroad(paths[0])
-    assert list(find_overlaps(first)) == [(504, 513, 2, pytest.approx(0.16, abs=0.01))]
+    assert list(find_overlaps(first)) == [(504, 513, 3, pytest.approx(0.12, abs=0.01))]

@@ -7,18 +7,19 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from roadproof.monitor.recursive import Reading
+from roadproof.evaluation import detectors
+from roadproof.evaluation.detectors import Detection, find_detections
+from roadproof.evaluation.evaluate import evaluate_recording
+from roadproof.evaluation.questions import Questions, ask, default_settings
+from roadproof.evaluation.results import add_findings, as_json, begin_totals
+from roadproof.formats.pairs import Sight, common_pairs
+from roadproof.formats.recording import Recording
+from roadproof.monitoring.recursive import Reading
+from roadproof.simulation.plant import Place, plant
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 from roadproof.spec.library import Source, build_library, bundled_library
-from roadproof.traffic import detectors
-from roadproof.traffic.detectors import Detection, find_detections
-from roadproof.traffic.evaluate import evaluate_recording
-from roadproof.traffic.pairs import Sight, common_pairs
-from roadproof.traffic.plant import Place, plant
-from roadproof.traffic.questions import COMPARISON, Questions, ask, default_settings
-from roadproof.traffic.recording import Recording
-from roadproof.traffic.results import add_findings, as_json, begin_totals
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
+from roadproof.spec.scenarios import COMPARISON
 from traffic.drives import braking, cut_in
 from traffic.make_recording import LANES, Track, cruise, make_recording
 from traffic.reference import Reference
@@ -141,7 +142,7 @@ def test_counts_are_of_unordered_pairs(questions: Questions) -> None:
     totals = begin_totals(questions.settings)
     twice = (*findings.detections, Detection("decel_thw", 2, 1, "7"), Detection("decel_thw", 1, 2, "6"))
     add_findings(totals, replace(findings, detections=twice))
-    assert as_json(totals)["detectors"] == {
+    assert as_json(totals, {})["detectors"] == {
         name: int(name.startswith("decel")) for name in questions.settings.detectors
     }
 

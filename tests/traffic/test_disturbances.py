@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from roadproof.traffic.disturbances import NEVER, Disturbances, _last, _Lookup, _next
-from roadproof.traffic.pairs import Pairs
+from roadproof.evaluation.disturbances import NEVER, Disturbances, _last, _Lookup, _next
+from roadproof.formats.pairs import Pairs
 
 
 def column(*values: int) -> np.ndarray:

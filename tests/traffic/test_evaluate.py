@@ -9,19 +9,32 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError, UsageError
+from roadproof.evaluation import disturbances, evaluate
+from roadproof.evaluation import questions as module
+from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.questions import (
+    SAFE,
+    VIOLATION,
+    Danger,
+    MonitorKey,
+    Questions,
+    ask,
+    default_settings,
+)
+from roadproof.formats.recording import Recording, keep_vehicles
+from roadproof.logic import show
 from roadproof.logic.formula import Compare
+from roadproof.logic.syntax import Claim
 from roadproof.logic.terms import Parameter, number
-from roadproof.monitor import compile
-from roadproof.monitor.answers import Answer, Verdicts
-from roadproof.spec.library import Source, build_library, bundled_library
-from roadproof.traffic import disturbances, evaluate
-from roadproof.traffic import questions as module
-from roadproof.traffic.evaluate import Findings, evaluate_recording
-from roadproof.traffic.plant import Place, plant
-from roadproof.traffic.questions import SAFE, VIOLATION, Asked, Condition, Questions, ask, default_settings
-from roadproof.traffic.recording import Recording, keep_vehicles
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
+from roadproof.monitoring import compile
+from roadproof.monitoring.answers import TruthArrays, Verdicts
+from roadproof.simulation.plant import Place, plant
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
+from roadproof.spec import elaborate as elaborating
+from roadproof.spec import scenarios
+from roadproof.spec.library import Source, Specification, build_library, bundled_library
+from roadproof.spec.query import Query
 from traffic.drives import braking, cut_in, cut_out, late_cut_out, swerve
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.reference import Reference, Row
@@ -129,7 +142,7 @@ def _lane_at_the_end(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Q
 
 
 def _own_lane_for_scenario_7(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
-    monkeypatch.setattr(module, "POV_LANE", ())
+    monkeypatch.setattr(module, "lane_owner", lambda specification, scenario: "SV")
     return ask(questions.settings, 25)
 
 
@@ -277,13 +290,65 @@ def test_wrong_settings() -> None:
         ask(replace(settings, sets=("bass",)), 25)
 
 
+def test_each_claim_is_elaborated_once_and_no_text_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Claims of the settings' specifications, and of the bundled one that they are compared with."""
+    settings = default_settings()
+    asked: Counter[tuple[int, str]] = Counter()
+    kept: list[Specification] = []
+    honest = elaborating.elaborate
+
+    def counted(specification: Specification, claim: Claim) -> Query:
+        kept.append(specification)
+        asked[id(specification), show.text(claim)] += 1
+        return honest(specification, claim)
+
+    for user in (elaborating, scenarios):
+        monkeypatch.setattr(user, "elaborate", counted)
+    monkeypatch.delattr(elaborating, "parse_claim")
+    ask(replace(settings, detectors=scenarios.COMPARISON), 25)
+    assert set(asked.values()) == {1}
+    assert len(asked) == 110
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("def scenario_25(SV, A, B, C: vehicle, L: lane) := atLane(C, L)", "about 4 vehicles"),
+        ("def scenario_25(SV: vehicle, L: lane) := atLane(SV, L)", "about 1 vehicles"),
+        (
+            'def scenario_25(SV, POV1, POV2: vehicle, L: lane) := true\nlane of POV2 for 25 "odd"',
+            "L is the lane of POV2",
+        ),
+    ],
+)
+def test_scenarios_that_recordings_are_not_asked_for(text: str, said: str) -> None:
+    library = build_library([Source("mine.spec", text)], bundled_library())
+    with pytest.raises(InputError, match=said):
+        ask(replace(default_settings(library), scenarios=(25,)), 25)
+
+
+def test_a_scenario_of_ones_own_says_its_vehicles_and_its_lane() -> None:
+    text = "def scenario_25(SV, A: vehicle, L: lane) := atLane(A, L)\nlane of A for 25"
+    library = build_library([Source("mine.spec", text)], bundled_library())
+    mine = ask(replace(default_settings(library), sets=("ext",), scenarios=(2, 25)), 25)
+    assert set(mine.pairs[0].formulas) == {
+        MonitorKey("ext", 25, "first", "L1"),
+        MonitorKey("ext", 25, "second", "L"),
+    }
+    assert set(mine.triples[0].formulas) == {MonitorKey("ext", 2, "first", "L")}
+
+
 def test_what_is_asked_is_a_value_and_mistakes_show_it_as_text(questions: Questions) -> None:
-    assert set(questions.danger.formulas) == {VIOLATION, SAFE, Condition("danger", 0), Condition("danger", 1)}
-    asked = {Asked("ext", 7, "first", "L1"), Asked("ext", 7, "second", "L"), Asked("base", 3, "first", "L")}
+    assert set(questions.danger.formulas) == {VIOLATION, SAFE, Danger(0), Danger(1)}
+    asked = {
+        MonitorKey("ext", 7, "first", "L1"),
+        MonitorKey("ext", 7, "second", "L"),
+        MonitorKey("base", 3, "first", "L"),
+    }
     assert asked <= set(questions.pairs[0].formulas)
-    assert str(Asked("ext", 7, "first", "L1")) == "ext/7/first"
+    assert str(MonitorKey("ext", 7, "first", "L1")) == "ext/7/first"
     with pytest.raises(InputError, match=r"^danger 1: a monitor needs numbers, but x has no value"):
-        compile({Condition("danger", 1): Compare(Parameter("x"), "<", number(1))})
+        compile({Danger(1): Compare(Parameter("x"), "<", number(1))})
 
 
 def test_of_recordings_is_read_what_the_formulas_speak_of(questions: Questions) -> None:
@@ -306,7 +371,7 @@ def test_only_traces_in_which_danger_arises_are_counted(questions: Questions) ->
         def evaluate(self, seen: object, convention: str) -> Verdicts:
             other = convention != questions.settings.convention
             true, false = ([not other, False, False, False], [other, True, other, other])
-            return Verdicts(convention, {"it": Answer(np.array(true), np.array(false))}, {})
+            return Verdicts(convention, {"it": TruthArrays(np.array(true), np.array(false))}, {})
 
     tally = evaluate._Tally(questions)
     for arises, counts in (([1, 1, 1, 1], (4, 2, 1)), ([0, 1, 1, 0], (6, 3, 1)), ([1, 0, 0, 0], (7, 3, 2))):

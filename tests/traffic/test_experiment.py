@@ -13,15 +13,15 @@ from typing import Any
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.traffic import experiment as module
-from roadproof.traffic.evaluate import Findings, Match, Trace
-from roadproof.traffic.experiment import Experiment, run_experiment
-from roadproof.traffic.questions import default_settings
-from roadproof.traffic.results import add_findings, as_json, begin_totals
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.sources import find_sources
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.write_highd import write_highd
+from roadproof.evaluation import experiment as module
+from roadproof.evaluation.evaluate import Findings, Match, Trace
+from roadproof.evaluation.experiment import Experiment, run_experiment
+from roadproof.evaluation.questions import default_settings
+from roadproof.evaluation.results import add_findings, as_json, begin_totals
+from roadproof.formats.sources import find_sources
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 
 US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
 
@@ -53,21 +53,21 @@ def test_files_and_their_numbers(undisturbed: dict[str, bytes]) -> None:
         *(f"recordings/{x}.json" for x in ("01", "02", "03")),
     }
     told = json.loads(undisturbed["results.json"])
-    assert told["schema"] == "roadproof/traffic-results/1"
+    assert told["schema"] == "roadproof/traffic-results/3"
     assert told["recordings"] == 3
     assert told["checks"]["broken"] == []
     matches = list(csv.DictReader(undisturbed["matches.csv"].decode().splitlines()))
     pairs = list(csv.DictReader(undisturbed["pairs.csv"].decode().splitlines()))
     assert len(told["table"]) == 6
     for row in told["table"]:
-        danger = {"0": "0", "3/5": "0.6"}[row["minDanger"]]
+        danger = {"0": "0", "3/5": "0.6"}[row["min_danger"]]
         ours = [m for m in matches if (m["min_danger"], m["set"]) == (danger, row["set"])]
         chosen = [p for p in pairs if p["min_danger"] == danger]
         assert row["traces"] == len(chosen) > 0
         two = {(m["recording"], *sorted((m["sv"], m["pov"]))) for m in ours if not m["pov2"]}
         assert row["matching"] == len(two) > 0
         assert row["recall"] == len(two) / len(chosen)
-        assert row["matchingWithThreeCars"] == sum(int(p[row["set"]]) for p in chosen)
+        assert row["matching_with_three_cars"] == sum(int(p[row["set"]]) for p in chosen)
         for i, count in row["scenarios"].items():
             who = {
                 (m["recording"], *sorted((m["sv"], m["pov2"] or m["pov"])))
@@ -190,13 +190,13 @@ def match(sv: int, pov: int, set_name: str, scenario: int) -> Match:
     ],
 )
 def test_facts_are_checked(matches: list[Match], lanes: tuple[str, str], broken: str | None) -> None:
-    traces = (Trace(1, 2, 0, 1, 50, *lanes),)
+    traces = (Trace(1, 2, 0, 1, 50, *lanes, ("main road",)),)
     totals = begin_totals(default_settings())
-    add_findings(totals, Findings("01", 9, 99, 1, 0, 1, 0, 0, traces, tuple(matches), (), ()))
-    told = as_json(totals)["checks"]
+    add_findings(totals, Findings("01", 9, 99, 1, 0, 1, 0, 0, traces, tuple(matches), (), (), ("main road",)))
+    told = as_json(totals, {})["checks"]
     assert (broken is None and told["broken"] == []) or any(str(broken) in x for x in told["broken"])
     three_and_four = {m.scenario for m in matches} & {3, 4}
-    assert len(told["scenario3And4Differ"]) == (len(three_and_four) == 1)
+    assert len(told["unequal_3_4"]) == (len(three_and_four) == 1)
 
 
 def test_sources(tmp_path: Path) -> None:
@@ -206,8 +206,12 @@ def test_sources(tmp_path: Path) -> None:
     assert [s.name for s in find_sources(tmp_path)] == ["a"]
     assert [s.name for s in find_sources(tmp_path / "a.xml")] == ["a"]
     (tmp_path / "01_tracks.csv").write_text("")
-    with pytest.raises(InputError, match="in one folder"):
+    with pytest.raises(InputError, match="highD and CommonRoad files in one folder"):
         find_sources(tmp_path)
+    assert [s.format.name for s in find_sources(tmp_path / "01_tracks.csv")] == ["highD"]
+    (tmp_path / "notes.txt").write_text("")
+    with pytest.raises(InputError, match=r"no recording; recordings are highD: XX_recordingMeta.csv"):
+        find_sources(tmp_path / "notes.txt")
 
 
 @pytest.mark.skipif(not US101.is_dir(), reason="the US-101 recordings are not here: ../shared/data/us101")
@@ -224,6 +228,6 @@ def test_us101(tmp_path: Path) -> None:
 def test_questions_are_compiled_once(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked, ask = [], module.ask
     monkeypatch.setattr(module, "_asked", {})
-    monkeypatch.setattr(module, "ask", lambda settings, rate: asked.append(rate) or ask(settings, rate))
+    monkeypatch.setattr(module, "ask", lambda settings, *on: asked.append(on) or ask(settings, *on))
     run_experiment(Experiment(folder, tmp_path, default_settings()))
-    assert asked == [25]
+    assert asked == [(25, ("main",))]

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError, MissingSolverError
-from roadproof.traffic.highd import find_recordings, read_highd
-from roadproof.traffic.recording import Recording, keep_vehicles
+from roadproof.formats.highd import find_highd, read_highd
+from roadproof.formats.recording import Recording, keep_vehicles
 from traffic.tiny_highd import Files, tiny_files, write_files
 
 TRACKS, META, RECORDING = "01_tracks.csv", "01_tracksMeta.csv", "01_recordingMeta.csv"
@@ -98,9 +98,9 @@ def test_shuffled_rows_are_sorted_and_noted(tmp_path: Path) -> None:
 def test_find_recordings(tmp_path: Path) -> None:
     for name in ("02_tracks.csv", "01_recordingMeta.csv", "10_tracksMeta.csv", "x_tracks.csv"):
         (tmp_path / name).write_text("")
-    assert find_recordings(tmp_path) == ("01", "02", "10")
-    with pytest.raises(InputError, match="not a folder"):
-        find_recordings(tmp_path / "none")
+    assert list(find_highd(tmp_path)) == ["01", "02", "10"]
+    assert list(find_highd(tmp_path / "02_tracks.csv")) == ["02"]
+    assert find_highd(tmp_path / "x_tracks.csv") == find_highd(tmp_path / "none") == {}
 
 
 def change(file: str, row: int, column: str, value: str) -> Callable[[Files], None]:

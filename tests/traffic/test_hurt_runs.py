@@ -19,17 +19,17 @@ import pytest
 
 from roadproof.cli.main import main
 from roadproof.errors import InputError
+from roadproof.evaluation import experiment as module
+from roadproof.evaluation import results
+from roadproof.evaluation.experiment import Experiment, run_experiment
+from roadproof.evaluation.one_trace import read_samples
+from roadproof.evaluation.questions import default_settings
 from roadproof.files import hold_folder, write_whole
-from roadproof.traffic import experiment as module
-from roadproof.traffic import results
-from roadproof.traffic.commonroad import read_commonroad
-from roadproof.traffic.experiment import Experiment, run_experiment
-from roadproof.traffic.highd import read_highd
-from roadproof.traffic.one_trace import read_samples
-from roadproof.traffic.questions import default_settings
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.write_highd import write_highd
+from roadproof.formats.commonroad import read_commonroad
+from roadproof.formats.highd import read_highd
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 from roadproof.world.models import load_road
 from traffic.tiny_highd import tiny_files, write_files
 
@@ -139,7 +139,7 @@ def test_a_failing_run_leaves_no_tables_of_another_input(folder: Path, tmp_path:
 def test_a_mistake_in_the_options_costs_no_tables(folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert evaluate(folder, out) == 0
-    assert evaluate(folder, out, "--scenarios", "99") == 2
+    assert evaluate(folder, out, "--among", "99") == 3
     assert evaluate(tmp_path / "nowhere", out) == 3
     assert all((out / name).exists() for name in TABLES)
 
@@ -254,19 +254,20 @@ def test_a_recording_under_two_names_counts_once(folder: Path, tmp_path: Path) -
 def test_equal_settings_are_compiled_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Workers get a copy of the settings with every recording."""
     asked, ask = [], module.ask
-    monkeypatch.setattr(module, "ask", lambda settings, rate: asked.append(rate) or ask(settings, rate))
+    monkeypatch.setattr(module, "ask", lambda settings, *on: asked.append(on) or ask(settings, *on))
     monkeypatch.setattr(module, "_asked", {})
     settings = default_settings()
     question = results.question_mark(settings)
+    recording = read_highd(folder, "01")
     for _ in range(3):
         copy = pickle.loads(pickle.dumps(settings))
         assert copy is not settings
         assert results.question_mark(copy) == question
-        module._questions(copy, question, 25)
-    assert asked == [25]
+        module.questions_for(copy, question, recording)
+    assert asked == [(25, ("main",))]
     other = replace(settings, scenarios=(4,))
-    module._questions(other, results.question_mark(other), 25)
-    assert asked == [25, 25]
+    module.questions_for(other, results.question_mark(other), recording)
+    assert asked == [(25, ("main",))] * 2
 
 
 def zipped(content: bytes) -> bytes:

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.traffic.evaluate import evaluate_recording
-from roadproof.traffic.highd import read_highd
-from roadproof.traffic.plant import Place, plant
-from roadproof.traffic.plausible import find_doubts
-from roadproof.traffic.questions import ask, default_settings
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.write_highd import write_highd
+from roadproof.evaluation.evaluate import evaluate_recording
+from roadproof.evaluation.questions import ask, default_settings
+from roadproof.formats.highd import read_highd
+from roadproof.formats.plausible import find_doubts
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.plant import Place, plant
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 from traffic.drives import cut_in
 from traffic.lies import NOTED, REFUSED, Files, one_vehicle_twice, read_columns, write_columns
 

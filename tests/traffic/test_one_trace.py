@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
+from roadproof.evaluation.one_trace import cut_trace, read_samples
+from roadproof.formats.neighbours import NONE, find_neighbours
+from roadproof.formats.samples import HEADER
 from roadproof.logic.rewrite import with_values
 from roadproof.spec.bind import occupies
-from roadproof.traffic.neighbours import NONE, find_neighbours
-from roadproof.traffic.one_trace import HEADER, cut_trace, read_samples
 from roadproof.world.models import load_road
 from traffic.make_recording import LANES, Track, cruise, make_recording
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadproof.traffic import pairs as module
-from roadproof.traffic.pairs import Pairs, Reach, common_pairs, near_pairs, triples_of
-from roadproof.traffic.recording import Recording
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
+from roadproof.formats import pairs as module
+from roadproof.formats.pairs import Pairs, Reach, common_pairs, near_pairs, triples_of
+from roadproof.formats.recording import Recording
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 from traffic.make_recording import Track, cruise, make_recording
 
 REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)

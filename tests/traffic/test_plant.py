@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from roadproof.errors import UsageError
-from roadproof.traffic.highd import read_highd
-from roadproof.traffic.overlaps import find_overlaps
-from roadproof.traffic.plant import Place, plant
-from roadproof.traffic.recording import Recording
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.write_highd import write_highd
+from roadproof.formats.highd import read_highd
+from roadproof.formats.overlaps import find_overlaps
+from roadproof.formats.recording import Recording
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.plant import Place, plant
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 from traffic.drives import braking, cut_in, cut_out

@@ -1,6 +1,7 @@
 """Judged drives of all eight scenarios, woven into traffic, written, read and found again.
 
-The drive files are witnesses of ``plantable_claim``, made by ``roadproof witness``.
+The drive files are made by ``roadproof witness`` for the formulas that they name: a trace ends with its last
+danger, so where a vehicle changes lanes there is danger after that too.
 """
 
 from fractions import Fraction
@@ -8,17 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.questions import ask, default_settings
 from roadproof.evidence.drive_file import load_drive
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.traffic.evaluate import Findings, evaluate_recording
-from roadproof.traffic.highd import read_highd
-from roadproof.traffic.overlaps import find_overlaps
-from roadproof.traffic.plant import Place, Planted, plant, plantable_claim
-from roadproof.traffic.questions import ask, default_settings
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.write_highd import write_highd
+from roadproof.formats.highd import read_highd
+from roadproof.formats.overlaps import find_overlaps
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.plant import Place, Planted, plant
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 
 DRIVES = Path(__file__).parent / "planted"
 SCENARIOS = range(1, 9)
@@ -59,10 +58,3 @@ def test_planted_scenario_is_found(
         if (m.sv, m.pov, m.pov2) == names and (m.scenario, m.set_name, m.min_danger) == (number, set_name, 1)
     }
     assert starts == {truth.first_frame}
-
-
-@pytest.mark.parametrize("number", range(1, 25))
-def test_claims_can_be_read(number: int) -> None:
-    query = read_claim(bundled_library().select("ext"), plantable_claim(number))
-    assert query.lanes == ("L",)
-    assert len(query.vehicles) == (3 if number % 8 == 2 else 2)

@@ -1,5 +1,6 @@
 """Wrong experiments, planted by hand: each check holds as things are, and fails on every fault beside it."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -8,14 +9,21 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from roadproof.analysis.classify.cells import Cell
+from roadproof.analysis.classify.classes import Class
+from roadproof.analysis.classify.drives import Example
+from roadproof.analysis.classify.shares import Shares
 from roadproof.errors import InputError
+from roadproof.evaluation import disturbances, evaluate
+from roadproof.evaluation.detectors import find_detections
+from roadproof.evaluation.questions import ask, default_settings
+from roadproof.formats import pairs
+from roadproof.formats.pairs import Reach, Sight, common_pairs
+from roadproof.formats.recording import Recording
 from roadproof.report import classify
 from roadproof.spec.library import Source, build_library, bundled_library
-from roadproof.traffic import disturbances, evaluate, pairs
-from roadproof.traffic.detectors import find_detections
-from roadproof.traffic.pairs import Reach, Sight, common_pairs
-from roadproof.traffic.questions import COMPARISON, ask, default_settings
-from roadproof.traffic.recording import Recording
+from roadproof.spec.scenarios import COMPARISON, PAIR, TRIPLE
+from roadproof.verdict import Verdict
 from traffic.faults import faulty_library, plant_fault
 from traffic.make_recording import Track, cruise, make_recording
 
@@ -272,18 +280,18 @@ def test_headway_and_time_to_collision(fault: tuple[str, str] | None) -> None:
 SHARES = {
     "over all sizes": Fault(
         classify,
-        'sum(shares["situations"].get(number, 0) for number in one["of"])',
-        'sum(shares["situations"].values())',
+        "sum(shares.classified[size] for size in row.sizes)",
+        "sum(shares.classified.values())",
     ),
     "over traces": Fault(
         classify,
-        'sum(shares["situations"].get(number, 0) for number in one["of"])',
-        'shares["traces"]',
+        "sum(shares.classified[size] for size in row.sizes)",
+        "shares.all_traces",
     ),
     "over covered traces": Fault(
         classify,
-        'sum(shares["situations"].get(number, 0) for number in one["of"])',
-        'shares["covered"]',
+        "sum(shares.classified[size] for size in row.sizes)",
+        "shares.covered",
     ),
 }
 
@@ -294,22 +302,17 @@ def test_shares_are_of_situations_with_as_many_vehicles(
 ) -> None:
     """6 and 2 of 8 situations of two vehicles are 75 and 25 %, 4 of 4 of three vehicles are all."""
 
-    def one(number: int, vehicles: list[str], situations: int) -> dict[str, object]:
-        told = {"name": f"class_{number}", "where": "main road", "description": f"{number} happens"}
-        counts = {"situations": situations, "traces": situations, "verdict": "WITNESSED"}
-        return told | counts | {"vehicles": vehicles, "scenarios": [number], "happens": [number]}
+    def one(number: int, vehicles: tuple[str, ...]) -> Example:
+        cell = Cell((number,), (number,), ())
+        named = Class(f"class_{number}", vehicles, (number,), cell, None, "main road", f"{number} happens")
+        return Example(named, Verdict.WITNESSED)
 
-    data = {
-        "classes": [
-            one(1, ["SV", "POV"], 6),
-            one(4, ["SV", "POV"], 2),
-            one(2, ["SV", "POV1", "POV2"], 4),
-        ],
-        "shares": {"situations": {"2": 8, "3": 4}, "traces": 10, "covered": 9, "source": "here"},
-    }
+    examples = [one(1, PAIR), one(4, PAIR), one(2, TRIPLE)]
+    situations = Counter({"class_1": 6, "class_4": 2, "class_2": 4})
+    shares = Shares(["01"], 10, 9, situations, classified=Counter({2: 8, 3: 4}), source="here")
 
     def check() -> None:
-        rows = {line.split()[0]: line for line in classify.as_table(data).splitlines()[1:]}
+        rows = {line.split()[0]: line for line in classify.as_table(examples, shares).splitlines()[1:]}
         assert {name: row.split()[5] for name, row in rows.items()} == {
             "class_1": "75.0",
             "class_4": "25.0",

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from roadproof.traffic.evaluate import Findings, evaluate_recording
-from roadproof.traffic.questions import POV_LANE, Questions, ask, default_settings
-from roadproof.traffic.recheck import recheck
-from roadproof.traffic.recording import Recording, keep_vehicles
+from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.questions import Questions, ask, default_settings
+from roadproof.evaluation.recheck import recheck
+from roadproof.formats.recording import Recording, keep_vehicles
+from roadproof.spec.library import bundled_library
+from roadproof.spec.scenarios import Scenario, lane_owner
 from traffic.test_evaluate import planted_traffic
 
 
@@ -52,7 +54,7 @@ def test_a_match_too_many_is_named(recording: Recording, questions: Questions, f
     for match in findings.matches:
         if match.pov2 is None:
             asked = [x.number for x in questions.pairs[match.min_danger].formulas]
-            alike = [n for n in asked if (n in POV_LANE) == (match.scenario in POV_LANE)]
+            alike = [n for n in asked if _owner(n) == _owner(match.scenario)]
             others += [replace(match, scenario=n) for n in alike]
         else:
             others += [replace(match, lane=x.name) for x in recording.lanes]
@@ -60,3 +62,7 @@ def test_a_match_too_many_is_named(recording: Recording, questions: Questions, f
         wrong = next(x for x in others if x not in findings.matches and (x.pov2 is not None) == many)
         (line,) = recheck(recording, questions, replace(findings, matches=(*findings.matches, wrong)))
         assert f"scenario {wrong.scenario}: found, but the recursive evaluator denies it" in line
+
+
+def _owner(number: int) -> str:
+    return lane_owner(bundled_library().select(), Scenario(number, "base"))

@@ -7,11 +7,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roadproof.traffic.counting import Counted
-from roadproof.traffic.experiment import Experiment, run_experiment
-from roadproof.traffic.questions import COMPARISON, default_settings
-from roadproof.traffic.repeats import STEPS, moments_of
-from roadproof.traffic.results import Totals
+from roadproof.analysis.classify.cells import whole_cell
+from roadproof.analysis.classify.classes import Classes, plan_of, what_axis
+from roadproof.analysis.classify.shares import Shares, count_shares
+from roadproof.analysis.classify.text import with_classes, write_classes
+from roadproof.evaluation.counting import Counted
+from roadproof.evaluation.experiment import Experiment, run_experiment
+from roadproof.evaluation.questions import default_settings
+from roadproof.evaluation.results import Row, Totals
+from roadproof.formats.repeats import STEPS, moments_of
+from roadproof.formats.sources import find_sources
+from roadproof.spec.bind import default_values
+from roadproof.spec.library import bundled_library
+from roadproof.spec.scenarios import COMPARISON
 from traffic.tiny_commonroad import Car, document
 
 SPEEDS = {"rear": (20.0, 0.02), "front": (12.0, 0.03)}
@@ -43,7 +51,12 @@ def evaluate(folder: Path, out: Path) -> Totals:
 
 
 def traces(totals: Totals) -> list[int]:
-    return [row.traces for row in totals.rows if row.set_name == "base"]
+    return [row.traces for row in merging(totals) if row.set_name == "base"]
+
+
+def merging(totals: Totals) -> list[Row]:
+    """Those of the merge zone: the main lanes of the tiny road lie in it too."""
+    return totals.tables["merge zone"]
 
 
 @pytest.fixture
@@ -53,10 +66,20 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path / "windows"
 
 
+def test_drives_that_were_made_are_no_windows(folder: Path, tmp_path: Path) -> None:
+    """Files of tests may show the same drive on purpose: each counts, as ZAM in their names says."""
+    window(folder / "b.xml", 0, STEPS_SEEN)
+    for path in folder.glob("*.xml"):
+        named = f'benchmarkID="ZAM_Made-{ord(path.stem)}_1_T-1" commonRoadVersion'
+        path.write_text(path.read_text().replace("commonRoadVersion", named, 1))
+    totals = evaluate(folder, tmp_path / "out")
+    assert (traces(totals), totals.violating, totals.repeats) == ([2, 2], 2, [])
+
+
 def test_a_window_alone_counts(folder: Path, tmp_path: Path) -> None:
     totals = evaluate(folder, tmp_path / "out")
     assert (traces(totals), totals.violating, totals.repeats) == ([1, 1], 1, [])
-    assert all(row.matching == 1 for row in totals.rows)
+    assert all(row.matching == 1 for row in merging(totals))
 
 
 @pytest.mark.parametrize(("first", "ids"), [(0, (7, 8)), (3, (1, 2)), (6, (9, 4))])
@@ -67,11 +90,15 @@ def test_what_an_earlier_window_shows_is_left_out(
     window(folder / "b.xml", first, STEPS_SEEN, ids)
     totals = evaluate(folder, tmp_path / "out")
     assert (traces(totals), totals.violating, totals.repeated) == ([1, 1], 1, 2)
-    assert all(row.matching == 1 for row in totals.rows)
+    assert all(row.matching == 1 for row in merging(totals))
     told = json.loads((tmp_path / "out" / "results.json").read_text())
-    assert {"recording": "b", "pair": sorted(ids), "what": "trace", "minDanger": "0", "shownIn": "a"} in told[
-        "repeats"
-    ]
+    assert {
+        "recording": "b",
+        "pair": sorted(ids),
+        "what": "trace",
+        "min_danger": "0",
+        "shown_in": "a",
+    } in told["repeats"]
     rows = (tmp_path / "out" / "pairs.csv").read_text().splitlines()
     assert len(rows) == 3
     assert all(row.startswith("a,") for row in rows[1:])
@@ -119,3 +146,23 @@ def test_the_same_recording_repeats_nothing() -> None:
     assert counted.is_new("b", (1, 2), "trace", 1, (5,))  # another minDanger
     assert not counted.is_new("b", (3, 4), "trace", 0, (9, 7))
     assert [(r.recording, r.first, r.shown_in) for r in counted.repeats] == [("b", 3, "a")]
+
+
+def test_classes_count_what_two_windows_show_once(folder: Path) -> None:
+    """Of a class that holds wherever scenario 12 does: the road begins as a merge zone."""
+    library = bundled_library()
+    (group,) = (plan := plan_of(library.select(), (12,))).groups
+    cells = ((whole_cell(what_axis(plan, group, library.select()), (12,), ()),),)
+    classes = Classes(plan, cells, ())
+    specification = with_classes(write_classes(classes, library.select()), library.select())
+
+    def shares() -> Shares:
+        recordings = [source.read() for source in find_sources(folder)]
+        return count_shares(classes, specification, default_values(library), recordings)
+
+    alone = shares()
+    assert (alone.all_traces, alone.traces["class_12"], alone.repeated, alone.broken) == (1, 1, 0, [])
+    window(folder / "b.xml", 5, STEPS_SEEN, ids=(7, 8))
+    both = shares()
+    assert (both.all_traces, both.traces["class_12"], both.repeated, both.broken) == (1, 1, 1, [])
+    assert both.situations == alone.situations

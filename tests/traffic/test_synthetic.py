@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from roadproof.errors import UsageError
-from roadproof.traffic.highd import read_highd
-from roadproof.traffic.recording import Recording
-from roadproof.traffic.simulate import Traffic
-from roadproof.traffic.synthetic import simulate
-from roadproof.traffic.write_highd import write_highd
+from roadproof.formats.highd import read_highd
+from roadproof.formats.recording import Recording
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
 
 
 @pytest.fixture(scope="module", params=[2, 3])

@@ -82,7 +82,7 @@ def document(cars: tuple[Car, ...] = CARS) -> str:
             "1", 0.0, 3.5, (0, 80), "highway", '<successor ref="2"/><adjacentLeft ref="3" drivingDir="same"/>'
         ),
         lanelet("2", 0.0, 3.5, (80, 160), "highway", '<predecessor ref="1"/>'),
-        lanelet("3", 3.5, 7.0, (0, 80), "highway", '<successor ref="4"/><successor ref="99"/>'),
+        lanelet("3", 3.5, 7.0, (0, 80), "highway", '<successor ref="4"/>'),
         lanelet("4", 3.5, 7.0, (80, 160), "highway", '<adjacentRight ref="2" drivingDir="same"/>'),
         lanelet("5", -3.5, 0.0, (0, 80), "accessRamp", '<adjacentLeft ref="1" drivingDir="same"/>'),
     ]

@@ -6,13 +6,13 @@ from fractions import Fraction
 from typing import Any
 
 from roadproof.effort import Effort
-from roadproof.prove.prover import Result, prove
+from roadproof.proving.prover import Result, prove
+from roadproof.searching.ask import Search
+from roadproof.searching.question import SearchOptions, Setting
 from roadproof.spec.bind import values_with
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
 from roadproof.study.shelf import specification_names
-from roadproof.witness.ask import Search
-from roadproof.witness.question import Means, Setting
 from roadproof.world.road import Road
 
 
@@ -59,8 +59,8 @@ class Basis:
     ) -> Search:
         """A search for a smooth drive on which ``query`` holds."""
         setting = Setting(road=road, values=self.values, horizon=self.horizon)
-        means = Means("smooth", effort=effort or self.effort, explain=explain)
-        return Search(self.specification, query, setting, means)
+        search_options = SearchOptions("smooth", effort=effort or self.effort, explain=explain)
+        return Search(self.specification, query, setting, search_options)
 
     def proof_of(self, query: Query, units: float | None = None, label: str = "") -> Result:
         """The prover's verdict on a claim with so many units of work (``proof``). Raises ``Late``."""

@@ -20,14 +20,14 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
+from roadproof.searching.ask import ask
+from roadproof.searching.impossible import parts, show_impossible, told_parts
 from roadproof.spec.compose import both, either, negation
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, likes_of, numbers_of
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import ask
-from roadproof.witness.impossible import parts, show_impossible, told_parts
 
 SCHEMA = "roadproof/overlap/1"
 
@@ -185,6 +185,15 @@ class Overlap:
     def verdicts(self, answers: Mapping[str, PairVerdict]) -> list[PairVerdict]:
         """The answers in the order of ``pairs``."""
         return [answers[name_of(a, b)] for a, b in self.pairs]
+
+    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+        return {
+            **self.question.heading,
+            "view": "dense",
+            "seconds": round(seconds, 2),
+            "verdicts": [records[name_of(a, b)]["verdict"] for a, b in self.pairs],
+        }
 
 
 def name_of(a: Scenario, b: Scenario) -> str:

@@ -1,33 +1,21 @@
 """A drive that was found once, put on other roads: same motions, other zones, judged again."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
-from roadproof.errors import InputError
-from roadproof.evidence.drive_file import DriveFile, drive_data, read_drive
-from roadproof.evidence.judged import Judged, RejectedError, Ruling, judge_file, times_data
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged, RejectedError
 from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
+from roadproof.searching.impossible import parts
 from roadproof.spec.bind import bind, values_with
-from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
 from roadproof.spec.query import Query
-from roadproof.verdict import Verdict
-from roadproof.witness.impossible import parts
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, names_of
 from roadproof.world.road import Lanelet, Road
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A drive file that has been judged, as plain data, with its formula's text."""
-
-    formula: str
-    data: dict[str, Any]
 
 
 def placed(
@@ -39,10 +27,15 @@ def placed(
     as they are and moved along so that a zone begins or ends under one of the vehicles at time 0;
     with ``roads`` only these, whatever zones they have.
     """
+    chosen = _roads(file, zones_of(query.formula)) if roads is None else _with_moved(roads, file.drive)
+    return placed_on(file, query, library, chosen)
+
+
+def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[Road]) -> Judged | None:
+    """The motions of ``file`` on the first of ``roads`` on which they satisfy ``query``, judged."""
     values = values_with(library, file.values)
     now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
-    chosen = _roads(file, zones_of(query.formula)) if roads is None else _with_moved(roads, file.drive)
-    for road in chosen:
+    for road in roads:
         if not set(file.lanes.values()) <= set(road.lanes):
             continue
         if not judge(bind(now, road, file.lanes, values), file.drive).holds:
@@ -60,33 +53,6 @@ def judged_as(file: DriveFile, query: Query, library: Library) -> Judged | None:
         return Judged(here, library)
     except RejectedError:
         return None
-
-
-def show_elsewhere(
-    shown: Shown, formula: str, library: Library, roads: Sequence[str] | None = None
-) -> Shown | None:
-    """As ``placed``, of a drive file as plain data and a formula as text; ``roads`` by name."""
-    file = read_drive(shown.data, "drive")
-    query = read_claim(library.select(file.set_name, file.options), formula)
-    judged = placed(file, query, library, None if roads is None else [load_road(name) for name in roads])
-    return None if judged is None else Shown(formula, judged.as_data())
-
-
-def judge_drive(shown: Shown, formula: str, library: Library) -> bool:
-    """Whether ``formula`` holds on a drive where it is, whatever boxes do. Raises ``InputError``."""
-    file = replace(read_drive(shown.data, "drive"), formula=formula)
-    ruling = judge_file(file, library)
-    if ruling.judgement is None:
-        raise InputError(ruling.reason)
-    return ruling.judgement.holds
-
-
-def as_data(file: DriveFile, ruling: Ruling) -> dict[str, Any]:
-    """A judged file as plain data, with what is true when."""
-    assert ruling.accepted
-    assert ruling.judgement is not None
-    times = times_data(ruling.judgement)
-    return drive_data(file, {"verdict": str(Verdict.WITNESSED), "view": "dense", "times": times})
 
 
 def zones_of(formula: Formula) -> frozenset[str]:

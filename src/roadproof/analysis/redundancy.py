@@ -24,6 +24,8 @@ from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim
+from roadproof.searching.ask import Search, ask
+from roadproof.searching.question import usual_road
 from roadproof.spec.bind import bind
 from roadproof.spec.compose import both, equivalence, implication, negation
 from roadproof.spec.elaborate import elaborate, read_claim
@@ -40,8 +42,6 @@ from roadproof.spec.scenarios import (
 )
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import Search, ask
-from roadproof.witness.question import usual_road
 
 SCHEMA = "roadproof/redundancy/1"
 # How many drives are tried on other roads for a change inside a road sector.
@@ -63,7 +63,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ChangeFinding:
     """PROVED: the change may be made. REFUTED: it matters, as a drive shows, or else a trace. UNKNOWN.
 
     ``trace`` is a judged countermodel over points in time, where no drive was found. ``assuming``: a
@@ -87,7 +87,7 @@ class Finding:
         return None if self.verdict is Verdict.UNKNOWN else self.verdict is Verdict.PROVED
 
 
-Findings = tuple[Finding, ...]
+ChangeFindings = tuple[ChangeFinding, ...]
 
 
 def changes_of(specification: Specification, query: Query, whole: bool = False) -> Iterator[Change]:
@@ -148,7 +148,7 @@ class Learned:
     vain: frozenset[Formula] = frozenset()
 
 
-def learn(findings: Findings) -> Learned:
+def learn(findings: ChangeFindings) -> Learned:
     """What the findings on one scenario teach about its likes."""
     vain = (x for x in findings if x.drive is None and not x.redundant and not x.late)
     return Learned(
@@ -190,7 +190,7 @@ class Redundancy:
         more = {"whole": str(self.whole), "effort": f"{self.basis.effort.units:g}"}
         return Question(SCHEMA, said, more, self.basis.library)
 
-    def pieces(self, known: Mapping[str, Findings]) -> Sequence[Examined]:
+    def pieces(self, known: Mapping[str, ChangeFindings]) -> Sequence[Examined]:
         """One scenario of each kind comes first; those that differ in their road sector learn from it."""
         first: dict[int, int] = {}
         for number in self.numbers:
@@ -209,19 +209,19 @@ class Redundancy:
     def _likes(self) -> dict[int, int]:
         return likes_of(self.basis.specification)
 
-    def settle(self, piece: Examined) -> dict[str, Findings]:
+    def settle(self, piece: Examined) -> dict[str, ChangeFindings]:
         examining = _Examining(self.basis, piece.scenario, piece.learned)
         return {name_of(piece.scenario.number): tuple(examining.run(self.whole))}
 
-    def doubt(self, piece: Examined, reason: str) -> dict[str, Findings]:
+    def doubt(self, piece: Examined, reason: str) -> dict[str, ChangeFindings]:
         examining = _Examining(self.basis, piece.scenario)
         changes = changes_of(self.basis.specification, examining.query, self.whole)
         return {name_of(piece.scenario.number): tuple(examining.doubt(x, reason) for x in changes)}
 
-    def is_sure(self, answer: Findings) -> bool:
+    def is_sure(self, answer: ChangeFindings) -> bool:
         return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
-    def record(self, name: str, answer: Findings, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: ChangeFindings, shelf: Shelf) -> dict[str, Any]:
         number = int(name.rpartition("-")[2])
         verdicts = [
             {
@@ -244,7 +244,7 @@ class Redundancy:
         ]
         return {"scenario": number, "verdicts": verdicts}
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Findings]:
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, ChangeFindings]:
         examining = _Examining(self.basis, self._scenario(record["scenario"]))
         changes = list(changes_of(self.basis.specification, examining.query, self.whole))
         verdicts = record["verdicts"]
@@ -255,11 +255,11 @@ class Redundancy:
         findings = (self._recalled(x, y, shelf) for x, y in zip(changes, verdicts, strict=True))
         return name_of(record["scenario"]), tuple(findings)
 
-    def _recalled(self, change: Change, said: Mapping[str, Any], shelf: Shelf) -> Finding:
+    def _recalled(self, change: Change, said: Mapping[str, Any], shelf: Shelf) -> ChangeFinding:
         specification = self.basis.specification
         if said["changed"] != change.changed.text:
             raise InputError(f"a finding on {said['changed']}, where one on {change.changed.text} was kept")
-        return Finding(
+        return ChangeFinding(
             change,
             Verdict(said["verdict"]),
             read_claim(specification, said["claim"]),
@@ -270,6 +270,16 @@ class Redundancy:
             read_claim(specification, said["assuming"]) if said["assuming"] else None,
             said["late"],
         )
+
+    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+        names = [name_of(number) for number in self.numbers]
+        return {
+            **self.question.heading,
+            "view": "dense",
+            "seconds": round(seconds, 1),
+            "verdicts": [verdict for name in names for verdict in records[name]["verdicts"]],
+        }
 
 
 def name_of(number: int) -> str:
@@ -286,10 +296,10 @@ class _Examining:
         self.learned = learned
         self.mine: list[Judged] = []
 
-    def run(self, whole: bool) -> Iterator[Finding]:
+    def run(self, whole: bool) -> Iterator[ChangeFinding]:
         """The findings on every change, in the order of ``changes_of``."""
         changes = list(changes_of(self.basis.specification, self.query, whole))
-        known: dict[Formula, Finding] = {}
+        known: dict[Formula, ChangeFinding] = {}
         try:
             self._collect()
         except Late as late:
@@ -302,10 +312,10 @@ class _Examining:
                     known[change.changed.formula] = self.doubt(change, str(late))
             yield replace(known[change.changed.formula], change=change)
 
-    def doubt(self, change: Change, reason: str) -> Finding:
+    def doubt(self, change: Change, reason: str) -> ChangeFinding:
         """What is said of a change that nothing is known of."""
         claim = equivalence(self.query, change.changed)
-        return Finding(change, Verdict.UNKNOWN, claim, reason=reason, late=True)
+        return ChangeFinding(change, Verdict.UNKNOWN, claim, reason=reason, late=True)
 
     def _collect(self) -> None:
         """Drives of this scenario, and drives for earlier ones put on a road of its sector."""
@@ -329,18 +339,18 @@ class _Examining:
             twin = self.learned.drives.get(_key(change))
             yield from [] if twin is None else [(twin, True)]
 
-    def _decide(self, change: Change) -> Finding:
+    def _decide(self, change: Change) -> ChangeFinding:
         apart = both(self.query, negation(change.changed))
         if change.weakens:
             apart = both(change.changed, negation(self.query))
         for judged, elsewhere in self._candidates(change):
             told = self._tells_apart(judged, apart, elsewhere)
             if told is not None:
-                return Finding(change, Verdict.REFUTED, apart, drive=told)
+                return ChangeFinding(change, Verdict.REFUTED, apart, drive=told)
         claim, label = equivalence(self.query, change.changed), f"redundancy-{self.scenario}"
         result = self.basis.proof_of(claim, label=label)
         if result.holds and result.certificate is not None:
-            return Finding(change, Verdict.PROVED, claim, result.certificate)
+            return ChangeFinding(change, Verdict.PROVED, claim, result.certificate)
         moving = self._redundant_in_motion(change)
         if moving is not None:
             return moving
@@ -348,16 +358,16 @@ class _Examining:
         drives = () if vain else ask(self._search(apart)).drives
         if drives:
             self.mine.append(drives[0])
-            return Finding(change, Verdict.REFUTED, apart, drive=drives[0])
+            return ChangeFinding(change, Verdict.REFUTED, apart, drive=drives[0])
         units, horizon = self.basis.effort.units, self.basis.horizon
         within = f"no drive was found with {units:g} units of work, {horizon} s ahead"
         within += ", for the same scenario on another road" if vain else ""
         if result.countermodel is not None:
-            return Finding(change, Verdict.REFUTED, claim, trace=result.countermodel, reason=within)
+            return ChangeFinding(change, Verdict.REFUTED, claim, trace=result.countermodel, reason=within)
         reason = f"{within}, and no proof with {self.basis.proof:g}: {result.reason}"
-        return Finding(change, Verdict.UNKNOWN, claim, reason=reason)
+        return ChangeFinding(change, Verdict.UNKNOWN, claim, reason=reason)
 
-    def _redundant_in_motion(self, change: Change) -> Finding | None:
+    def _redundant_in_motion(self, change: Change) -> ChangeFinding | None:
         """A proof for traces on which a vehicle that leaves L has a first moment outside it.
 
         Every drive is one: it does not jump, and a lane is an open set, since touching is not occupying.
@@ -370,7 +380,7 @@ class _Examining:
         result = self.basis.proof_of(claim, label=label)
         if result.verdict is not Verdict.PROVED or result.certificate is None:
             return None
-        return Finding(change, Verdict.PROVED, claim, result.certificate, assuming=both(*moving))
+        return ChangeFinding(change, Verdict.PROVED, claim, result.certificate, assuming=both(*moving))
 
     def _tells_apart(self, judged: Judged, query: Query, elsewhere: bool) -> Judged | None:
         """The drive judged on ``query`` where it is, or also on roads of other zones."""

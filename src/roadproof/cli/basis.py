@@ -1,31 +1,86 @@
-"""What analyses rest on, from the options that they share."""
+"""What questions are asked of, from the options that commands share."""
 
 import argparse
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
-from roadproof.cli.numbers import read_effort
-from roadproof.cli.options import chosen_options, load_library_of, parameter_values
+from roadproof.cli.options import chosen_options, given_values, load_library_of, write_json
+from roadproof.cli.progress import Counter, warn
+from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
-    from roadproof.analysis.basis import Basis
-    from roadproof.spec.library import Specification
+    from roadproof.api.definitions import Definitions
+    from roadproof.api.studied import Studied
+    from roadproof.study.pool import Progress, Say
+
+A = TypeVar("A")
 
 
-def read_basis(args: argparse.Namespace, sets: Sequence[str]) -> "Basis":
-    """The definitions of ``sets``, values and work. Raises ``InputError``, ``UsageError``."""
-    from roadproof.analysis.basis import Basis
+class Asking(TypedDict):
+    """How much work, how many processes, where answers are kept, and who is told how far it is."""
+
+    effort: float
+    timeout: float | None
+    jobs: int | None
+    out: Path | None
+    progress: "Progress"
+    say: "Say"
+
+
+def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definitions":
+    """The definitions of ``sets``, readings and values. Raises ``InputError``, ``UsageError``."""
+    from roadproof.api.definitions import Definitions
 
     library, options = load_library_of(args), chosen_options(args)
+    if len({*sets}) < len(sets):
+        raise UsageError(f"--set {','.join(sets)}: one is named twice; name one spec set, or different ones")
     for name in sets:
         library.select(name, options)
-    specification = library.select(sets[0], options)
-    values = parameter_values(args, library)
-    return Basis(specification, tuple(sets), values, effort=read_effort(args))
+    values = given_values(args, library) if "params" in args else {}
+    return Definitions(library.select(sets[0], options), tuple(sets), values)
 
 
-def among(args: argparse.Namespace, specification: "Specification") -> tuple[int, ...] | None:
-    """The scenarios of ``--among``, None where all are meant. Raises ``UsageError``, ``InputError``."""
-    from roadproof.spec.scenarios import read_numbers
+def asking(args: argparse.Namespace, folder: Path | None) -> Asking:
+    """What every long question is told besides what is asked."""
+    return {
+        "effort": args.effort,
+        "timeout": args.timeout,
+        "jobs": args.jobs,
+        "out": folder,
+        "progress": Counter(),
+        "say": warn,
+    }
 
-    return read_numbers(specification, args.among) if args.among else None
+
+def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[str, A], None]:
+    """A listener that shows answers in the order of ``names``, each once those before it are shown."""
+    left, early = deque(names), dict[str, A]()
+
+    def hear(name: str, answer: A) -> None:
+        early[name] = answer
+        while left and left[0] in early:
+            first = left.popleft()
+            show(first, early[first])
+
+    return hear
+
+
+def hand_over(args: argparse.Namespace, found: "Studied[Any, Any]") -> int:
+    """JSON, what is written to be looked at, and the text of an answer; its exit code."""
+    if args.json:
+        write_json(found.as_data(), args.json)
+    if args.out is not None:
+        found.add_files(not getattr(args, "no_pictures", False))
+    if args.json != "-":
+        print(found)
+    return found.exit_code
+
+
+def evidence_folder(out: Path | None, target: str | None) -> Path | None:
+    """DIR of --out, or FILE-evidence beside the file of --json, or none."""
+    if out is None and target not in (None, "-"):
+        path = Path(str(target))
+        return path.with_name(f"{path.stem}-evidence")
+    return out

@@ -1,20 +1,13 @@
 """``roadproof check``: certificates and drive files, checked again without what made them."""
 
 import argparse
-from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from roadproof.cli.numbers import add_effort_options, read_effort
+from roadproof.cli.numbers import add_effort_options, add_working_options
 from roadproof.cli.options import add_json_option, write_json
-from roadproof.cli.working import add_working_options, work_in_order
-from roadproof.effort import Effort
-
-if TYPE_CHECKING:
-    from roadproof.evidence.finding import Finding
+from roadproof.cli.progress import Counter
 
 SUMMARY = "check certificates and drive files again, without the programs that made them"
-SCHEMA = "roadproof/check/2"
 
 _EXAMPLES = """\
 examples:
@@ -53,54 +46,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_json_option(parser)
 
 
-@dataclass(frozen=True)
-class Job:
-    path: Path
-    specs: tuple[Path, ...]
-    solver: str
-    effort: Effort
-
-
 def run(args: argparse.Namespace) -> int:
-    from roadproof.evidence.finding import Outcome, exit_code, summary
-    from roadproof.evidence.folder import conclude, survey
-    from roadproof.prove.properties import find_label
-    from roadproof.solve.smt import ask
+    from roadproof.api.checking import check
 
-    ask("(set-logic QF_UF)(check-sat)", args.solver)  # a solver that is missing is said once, before any work
-    surveyed = survey(args.paths, tuple(args.specs), find_label)
-    effort = read_effort(args)
-    jobs = [Job(path, specs, args.solver, effort) for path, specs in surveyed.files.items()]
-    found = dict(
-        zip(surveyed.files, work_in_order(examine, jobs, args.jobs, "files", undecided), strict=True)
-    )
-    findings = list(conclude(surveyed, found))
+    more = {"effort": args.effort, "timeout": args.timeout, "jobs": args.jobs, "progress": Counter()}
+    checked = check(*args.paths, solver=args.solver, specs=args.specs, **more)
     if args.json != "-":
-        for path in (path for told in surveyed.told for path in told.specs):
-            print(f"read with {path}")
-        print("\n".join(map(str, findings)))
-        print(summary(findings, args.solver))
+        print(checked)
     if args.json:
-        entries = [{**asdict(x), "accepted": x.outcome is Outcome.ACCEPTED} for x in findings]
-        write_json({"schema": SCHEMA, "solver": args.solver, "findings": entries}, args.json)
-    return exit_code(findings)
-
-
-def undecided(job: Job, reason: str) -> "Finding":
-    """The finding on a file that nothing is known of."""
-    from roadproof.evidence.finding import Finding, Outcome
-
-    return Finding(str(job.path), "", Outcome.UNDECIDED, reason)
-
-
-def examine(job: Job) -> "Finding":
-    """Check one file by what its schema says that it is."""
-    from roadproof.evidence.checking import Checker
-    from roadproof.prove.properties import find_label
-    from roadproof.solve.smt import ask
-    from roadproof.spec.library import load_library
-
-    def answer(script: str) -> str:
-        return ask(script, job.solver, job.effort.meter())
-
-    return Checker(load_library(job.specs), answer, find_label).check(job.path)
+        write_json(checked.as_data(), args.json)
+    return checked.exit_code

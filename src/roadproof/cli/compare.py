@@ -2,25 +2,13 @@
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
-from roadproof.cli.options import (
-    add_json_option,
-    add_quiet_option,
-    chosen_options,
-    load_library_of,
-    write_json,
-    write_text,
-)
-from roadproof.cli.search_options import add_search_options, read_means, read_setting
+from roadproof.cli.basis import read_definitions
+from roadproof.cli.options import add_json_option, add_quiet_option, chosen_sets, write_json
+from roadproof.cli.search_options import add_search_options, how_asked, where_asked
 from roadproof.errors import UsageError
-from roadproof.verdict import ExitCode
-
-if TYPE_CHECKING:
-    from roadproof.witness.compare import Comparison, Direction
 
 SUMMARY = "compare two formulas: equivalent, stronger, weaker or incomparable"
-SCHEMA = "roadproof/compare/1"
 
 _EXAMPLES = """\
 examples:
@@ -41,91 +29,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.spec.compose import taken_from
-    from roadproof.spec.scenarios import read_query
-    from roadproof.witness.ask import Search
-    from roadproof.witness.compare import compare
+    from roadproof.api.comparing import compare
 
-    sets = args.set_names or ["base"]
+    sets = chosen_sets(args)
     if len(sets) > 2:
         raise UsageError(f"--set is given {len(sets)} times: two formulas have at most two spec sets")
-    library = load_library_of(args)
-    home = library.select(sets[0], chosen_options(args))
-    _, first = read_query(home, args.first)
-    _, second = read_query(home.in_set(sets[-1]), args.second)
-    search = Search(home, first, read_setting(args, library), read_means(args))
-    comparison = compare(search, taken_from(home, second, sets[-1]))
+    home = read_definitions(args, sets)
+    found = compare(args.first, args.second, home, **where_asked(args), **how_asked(args))
     if args.out is not None:
-        _write(comparison, args.out)
+        found.save(args.out)
     if args.json:
-        write_json(_as_json(comparison, sets), args.json)
+        write_json(found.as_data(), args.json)
     if args.json != "-":
-        print(_as_text(comparison, sets))
-    return ExitCode.UNKNOWN if comparison.relation == "unknown" else ExitCode.AS_EXPECTED
-
-
-_SENTENCES = {
-    "equivalent": "the two are equivalent",
-    "stronger": "the first is stronger: it implies the second, but not the reverse",
-    "weaker": "the first is weaker: the second implies it, but not the reverse",
-    "incomparable": "the two are incomparable: neither implies the other",
-    "unknown": "not decided",
-}
-
-
-def _as_text(comparison: "Comparison", sets: list[str]) -> str:
-    lines = [
-        f"first   {comparison.first.text}  (set {sets[0]})",
-        f"second  {comparison.second.text}  (set {sets[-1]})",
-        _SENTENCES[comparison.relation],
-    ]
-    for name, direction in _directions(comparison):
-        shown = f"  {name}: {direction.verdict}"
-        shown += " for all time, on every road" if direction.certificate else ""
-        shown += " by a judged drive" if direction.drive else ""
-        shown += f"; {direction.reason}" if direction.reason else ""
-        lines.append(shown)
-    return "\n".join(lines)
-
-
-def _directions(comparison: "Comparison") -> "list[tuple[str, Direction]]":
-    return [
-        ("first implies second", comparison.forward),
-        ("second implies first", comparison.backward),
-    ]
-
-
-def _as_json(comparison: "Comparison", sets: list[str]) -> dict[str, Any]:
-    from roadproof.evidence.certificate import to_json
-
-    directions = [
-        {
-            "claim": direction.claim.text,
-            "verdict": str(direction.verdict),
-            "reason": direction.reason,
-            "certificate": None if direction.certificate is None else to_json(direction.certificate),
-            "drive": None if direction.drive is None else direction.drive.as_data(),
-        }
-        for _, direction in _directions(comparison)
-    ]
-    return {
-        "schema": SCHEMA,
-        "first": {"formula": comparison.first.text, "set": sets[0]},
-        "second": {"formula": comparison.second.text, "set": sets[-1]},
-        "relation": comparison.relation,
-        "forward": directions[0],
-        "backward": directions[1],
-    }
-
-
-def _write(comparison: "Comparison", folder: Path) -> None:
-    from roadproof.evidence.certificate import to_json
-    from roadproof.files import make_folder
-
-    make_folder(folder)
-    for name, direction in _directions(comparison):
-        stem = name.replace(" ", "-")
-        if direction.certificate is not None:
-            write_text(folder / f"{stem}.json", to_json(direction.certificate))
-        elif direction.drive is not None:
-            write_json(direction.drive.as_data(), str(folder / f"not-{stem}.json"))
+        print(found)
+    return found.exit_code

@@ -1,22 +1,21 @@
 """``roadproof list``: what the library holds."""
 
 import argparse
-import re
 from collections.abc import Iterable
-from fractions import Fraction
 from itertools import groupby
 from typing import Any
 
 from roadproof.cli.options import (
     add_json_option,
     add_specification_options,
-    load_library_of,
     select_specification,
     write_json,
 )
 from roadproof.logic.show import decimal
-from roadproof.spec.elaborate import signature
+from roadproof.logic.syntax import Definition, ParameterDeclaration, SetBlock
+from roadproof.spec.elaborate import signatures
 from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import number_in
 from roadproof.verdict import ExitCode
 
 SUMMARY = "list scenarios, definitions, spec sets, options and parameters"
@@ -37,30 +36,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    specification = select_specification(args, load_library_of(args))
-    inventory = take_inventory(specification)
+    specification = select_specification(args)
     if args.json:
-        write_json(inventory, args.json)
+        write_json(take_inventory(specification), args.json)
     if args.json != "-":
-        print(_as_text(inventory))
+        print(_as_text(specification))
     return ExitCode.AS_EXPECTED
 
 
 def take_inventory(specification: Specification) -> dict[str, Any]:
     """What there is to talk about under one spec set and choice of options, as plain data."""
+    from roadproof.evidence.heading import heading
+
     library = specification.library
-    scenarios = [name for name in specification.definitions if re.fullmatch(r"scenario_\d+", name)]
+    scenarios = [name for name in specification.definitions if number_in(name) is not None]
     others = [d for name, d in specification.definitions.items() if name not in scenarios]
     return {
-        "schema": SCHEMA,
+        **heading(SCHEMA, library),
         "set": specification.set_name,
         "scenarios": [
             {
                 "name": name,
-                "arguments": list(signature(specification, name)),
+                "arguments": list(roles),
                 "doc": specification.describe(specification.definitions[name]),
             }
-            for name in scenarios
+            for name, roles in signatures(specification, scenarios).items()
         ],
         "definitions": [
             {
@@ -82,53 +82,56 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
     }
 
 
-def _as_text(inventory: dict[str, Any]) -> str:
-    scenarios = [(f"{s['name']}({', '.join(s['arguments'])})", s["doc"]) for s in inventory["scenarios"]]
-    sets = [(_extends(s), s["doc"]) for s in inventory["sets"]]
-    options = [(f"{o['name']} = {' | '.join(o['values'])}", o["doc"]) for o in inventory["options"]]
-    parameters = [(_value(p), p["doc"]) for p in inventory["parameters"]]
+def _as_text(specification: Specification) -> str:
+    library, described = specification.library, specification.describe
+    names = [name for name in specification.definitions if number_in(name) is not None]
+    scenarios = [
+        (f"{name}({', '.join(roles)})", described(specification.definitions[name]))
+        for name, roles in signatures(specification, names).items()
+    ]
+    others = [d for name, d in specification.definitions.items() if name not in names]
+    options = [(f"{o.name} = {' | '.join(o.values)}", o.doc) for o in library.options.values()]
     return "\n\n".join(
         [
-            _block(f"Scenarios (set {inventory['set']})", scenarios),
-            _block("Definitions", _definitions(inventory["definitions"])),
-            _block("Spec sets", sets),
+            _block(f"Scenarios (set {specification.set_name})", scenarios),
+            _block("Definitions", _definitions(others, specification)),
+            _block("Spec sets", [(_extends(s), s.doc) for s in library.sets.values()]),
             _block("Options (the first value is the default)", options),
-            _block("Parameters", parameters),
+            _block("Parameters", [(_value(p), p.doc) for p in library.parameters.values()]),
         ]
     )
 
 
-def _definitions(definitions: Iterable[dict[str, Any]]) -> list[tuple[str, str]]:
+def _definitions(definitions: Iterable[Definition], specification: Specification) -> list[tuple[str, str]]:
     """One row a definition; those that differ in a number at the end only share a row."""
-    families: dict[str, list[dict[str, Any]]] = {}
+    families: dict[str, list[Definition]] = {}
     for definition in definitions:
-        stem, _, index = definition["name"].rpartition("_")
-        families.setdefault(f"{stem}_i" if index.isdigit() else definition["name"], []).append(definition)
+        stem, _, index = definition.name.rpartition("_")
+        families.setdefault(f"{stem}_i" if index.isdigit() else definition.name, []).append(definition)
     rows: list[tuple[str, str]] = []
     for family, members in families.items():
+        docs = [specification.describe(m) for m in members]
         if len(members) < 3:
-            rows += [(f"{m['name']}({_parameters(m)})", m["doc"]) for m in members]
+            rows += [(f"{m.name}({_parameters(m)})", doc) for m, doc in zip(members, docs, strict=True)]
         else:
-            indices = sorted(int(m["name"].rpartition("_")[2]) for m in members)
-            last = members[-1]["doc"] if len({m["doc"] for m in members}) == 1 else "parts of the template"
+            indices = sorted(int(m.name.rpartition("_")[2]) for m in members)
+            last = docs[-1] if len({*docs}) == 1 else "parts of the template"
             rows.append((family, f"{last}, i = {indices[0]}..{indices[-1]}"))
     return rows
 
 
-def _parameters(definition: dict[str, Any]) -> str:
-    groups = groupby(definition["parameters"], key=lambda parameter: parameter["sort"])
-    return ", ".join(f"{', '.join(p['name'] for p in group)}: {sort}" for sort, group in groups)
+def _parameters(definition: Definition) -> str:
+    groups = groupby(definition.parameters, key=lambda parameter: parameter.sort)
+    return ", ".join(f"{', '.join(p.name for p in group)}: {sort}" for sort, group in groups)
 
 
-def _extends(spec_set: dict[str, Any]) -> str:
-    parent = spec_set["extends"]
-    return f"{spec_set['name']} extends {parent}" if parent else str(spec_set["name"])
+def _extends(spec_set: SetBlock) -> str:
+    return f"{spec_set.name} extends {spec_set.parent}" if spec_set.parent else spec_set.name
 
 
-def _value(parameter: dict[str, Any]) -> str:
-    value = Fraction(parameter["value"])
-    sign = "-" if value < 0 else ""
-    return f"{parameter['name']} = {sign}{decimal(abs(value))} {parameter['unit']}"
+def _value(parameter: ParameterDeclaration) -> str:
+    sign = "-" if parameter.value < 0 else ""
+    return f"{parameter.name} = {sign}{decimal(abs(parameter.value))} {parameter.unit}"
 
 
 def _block(title: str, rows: Iterable[tuple[str, str]]) -> str:

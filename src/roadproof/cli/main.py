@@ -1,7 +1,7 @@
 """``roadproof SUBCOMMAND …``: finds the module of the sub-command, and turns errors into exit codes.
 
-Only the module that is asked for is imported. Each module has ``SUMMARY: str`` (a plain literal),
-``add_arguments(parser)`` and ``run(args) -> int``, where the integer is the exit code.
+A sub-command is a module in this folder with ``SUMMARY: str`` (a plain literal), ``add_arguments(parser)``
+and ``run(args) -> int``, where the integer is the exit code. Only the one that is asked for is imported.
 """
 
 import argparse
@@ -21,23 +21,34 @@ from roadproof.cli.supervising import supervise
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.verdict import ExitCode
 
-COMMANDS = {
-    "list": "roadproof.cli.list",
-    "show": "roadproof.cli.show",
-    "prove": "roadproof.cli.prove",
-    "check": "roadproof.cli.check",
-    "witness": "roadproof.cli.witness",
-    "compare": "roadproof.cli.compare",
-    "monitor": "roadproof.cli.monitor",
-    "evaluate": "roadproof.cli.evaluate",
-    "simulate": "roadproof.cli.simulate",
-    "overlap": "roadproof.cli.overlap",
-    "order": "roadproof.cli.order",
-    "redundancy": "roadproof.cli.redundancy",
-    "coverage": "roadproof.cli.coverage",
-    "classify": "roadproof.cli.classify",
-    "explore": "roadproof.cli.explore",
-}
+_PACKAGE = "roadproof.cli"
+# What --help shows first; other sub-commands follow by name.
+_FIRST = (
+    *("list", "show", "prove", "check", "witness", "compare", "monitor", "evaluate", "simulate", "export"),
+    *("overlap", "order", "redundancy", "coverage", "classify", "explore"),
+)
+
+
+def _summary(file: Path) -> str | None:
+    """The literal ``SUMMARY`` of a module, one line, None where it has none.
+
+    It is read without importing the module: --help has to be quick.
+    """
+    for line in file.read_text("utf-8").splitlines():
+        if line.startswith("SUMMARY = "):
+            text: str = ast.literal_eval(line.partition("=")[2].strip())
+            return text
+    return None
+
+
+def _find_commands(folder: Path) -> dict[str, str]:
+    """The sub-commands with their summaries: the modules in a folder that have one."""
+    found = {x.stem: text for x in folder.glob("[a-z]*.py") if (text := _summary(x)) is not None}
+    places = {name: place for place, name in enumerate(_FIRST)}
+    return {name: found[name] for name in sorted(found, key=lambda x: (places.get(x, len(places)), x))}
+
+
+COMMANDS = _find_commands(Path(__file__).parent)
 TRACEBACK = "ROADPROOF_TRACEBACK"
 
 _EXAMPLES = """\
@@ -111,8 +122,7 @@ def _run(arguments: list[str]) -> int:
 
         raise UsageError(f"{unknown('sub-command', asked, COMMANDS)}\nSee roadproof --help.")
     commands = parser.add_subparsers(dest="command", metavar="SUBCOMMAND", parser_class=_Parser)
-    for name, module in COMMANDS.items():
-        summary = _summary(Path(__file__).with_name(f"{module.rpartition('.')[2]}.py"))
+    for name, summary in COMMANDS.items():
         command = commands.add_parser(
             name,
             help=summary,
@@ -120,7 +130,7 @@ def _run(arguments: list[str]) -> int:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name == asked:
-            import_module(COMMANDS[name]).add_arguments(command)
+            import_module(f"{_PACKAGE}.{name}").add_arguments(command)
     parsed = parser.parse_args(arguments)
     if parsed.version:
         return _print_version()
@@ -128,7 +138,7 @@ def _run(arguments: list[str]) -> int:
         raise UsageError("name a sub-command; see roadproof --help")
     be_quiet(getattr(parsed, "quiet", False))
     _try_paths(getattr(parsed, "json", None), getattr(parsed, "out", None))
-    code: int = import_module(COMMANDS[parsed.command]).run(parsed)
+    code: int = import_module(f"{_PACKAGE}.{parsed.command}").run(parsed)
     return code
 
 
@@ -150,15 +160,6 @@ def _try_paths(target: str | None, out: Path | None) -> None:
         from roadproof.files import cannot_write
 
         raise cannot_write(path, OSError(error, os.strerror(error)))
-
-
-def _summary(file: Path) -> str:
-    """The literal ``SUMMARY`` of a module, one line, read without importing it: --help has to be quick."""
-    for line in file.read_text("utf-8").splitlines():
-        if line.startswith("SUMMARY = "):
-            text: str = ast.literal_eval(line.partition("=")[2].strip())
-            return text
-    raise AssertionError(f"{file} has no SUMMARY")
 
 
 def _print_version() -> int:

@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from roadproof.cli.options import add_quiet_option
 from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
@@ -43,11 +44,12 @@ def read_effort(args: argparse.Namespace) -> "Effort":
     return Effort(args.effort, args.timeout)
 
 
-def add_jobs_option(parser: argparse.ArgumentParser) -> None:
-    """``--jobs``: how many processes."""
+def add_working_options(parser: argparse.ArgumentParser) -> None:
+    """``--jobs``: how many processes; ``--quiet``."""
     parser.add_argument(
         "--jobs", type=whole("--jobs", 1), metavar="N", help="processes (default: one a core)"
     )
+    add_quiet_option(parser)
 
 
 def decimal(option: str) -> Callable[[str], float]:

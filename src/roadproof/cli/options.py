@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import re
 import sys
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
@@ -10,13 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.cli.streams import takes_everything
-from roadproof.errors import InputError, UsageError
+from roadproof.errors import UsageError
 from roadproof.files import whole_file
 
 if TYPE_CHECKING:
     from roadproof.spec.library import Library, Specification
-
-_VALUE = re.compile(r"([+-]?\d{1,30}(?:\.\d{1,30})?(?:/\d{1,30})?)\s*([A-Za-z][A-Za-z/^0-9]*)?")
 
 
 def add_specification_options(
@@ -24,11 +21,11 @@ def add_specification_options(
 ) -> None:
     """``--set``, ``--option`` and ``--spec``; ``set_name`` is the default, None lets the caller choose.
 
-    With ``several``, ``--set`` may be repeated: ``args.set_names`` is a list, or None where none is given.
+    With ``several``, ``--set`` may be repeated and have commas: see ``chosen_sets``.
     """
     default = f" (default: {set_name})" if set_name else ""
     if several:
-        text = f"spec set{default}; may be repeated"
+        text = f"spec set{default}; may be repeated, or have commas"
         parser.add_argument("--set", dest="set_names", metavar="S", action="append", help=text)
     else:
         text = f"spec set{default}"
@@ -58,7 +55,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_parameter_option(parser: argparse.ArgumentParser) -> None:
-    """``--param``, whose values ``parameter_values`` understands."""
+    """``--param``, whose values ``given_values`` reads."""
     parser.add_argument(
         "--param",
         dest="params",
@@ -87,6 +84,15 @@ def _file_name(text: str) -> str:
     return text
 
 
+def chosen_sets(args: argparse.Namespace, usual: str = "base") -> list[str]:
+    """The spec sets of ``--set``, which may be repeated and have commas. Raises ``UsageError``."""
+    texts: list[str] = args.set_names or [usual]
+    names = [name.strip() for text in texts for name in text.split(",")]
+    if not all(names):
+        raise UsageError(f"--set {' '.join(texts)}: write names separated by commas, such as base,ext")
+    return names
+
+
 def load_library_of(args: argparse.Namespace) -> "Library":
     """The bundled library with the files of ``--spec`` on top. Raises ``InputError``."""
     from roadproof.spec.library import load_library
@@ -94,10 +100,9 @@ def load_library_of(args: argparse.Namespace) -> "Library":
     return load_library(args.specs)
 
 
-def select_specification(args: argparse.Namespace, library: "Library | None" = None) -> "Specification":
+def select_specification(args: argparse.Namespace) -> "Specification":
     """The definitions in force under ``--set``, ``--option`` and ``--spec``. Raises ``InputError``."""
-    chosen = library or load_library_of(args)
-    return chosen.select(args.set_name or "base", chosen_options(args))
+    return load_library_of(args).select(args.set_name, chosen_options(args))
 
 
 def chosen_options(args: argparse.Namespace) -> dict[str, str]:
@@ -105,47 +110,11 @@ def chosen_options(args: argparse.Namespace) -> dict[str, str]:
     return dict(_assignments("--option", args.options))
 
 
-def parameter_values(args: argparse.Namespace, library: "Library") -> dict[str, Fraction]:
-    """Every parameter's value in SI units: declared, or given with ``--param``.
+def given_values(args: argparse.Namespace, library: "Library") -> dict[str, Fraction]:
+    """The values of ``--param`` by name, in SI units (``api.definitions.values_of``)."""
+    from roadproof.api.definitions import values_of
 
-    A value without unit is in the unit of the declaration. Raises ``InputError`` for unknown names,
-    values that are no rational, units of another dimension, and values out of the declared bound.
-    """
-    from roadproof.spec.bind import values_with
-    from roadproof.spec.library import unknown
-
-    values: dict[str, Fraction] = {}
-    for name, text in _assignments("--param", args.params):
-        if name not in library.parameters:
-            raise InputError(f"--param {name}={text}: {unknown('parameter', name, library.parameters)}")
-        declared = library.parameters[name]
-        values[name] = read_value("--param", name, text, declared.unit)
-    try:
-        return values_with(library, values)
-    except InputError as error:
-        raise InputError(f"--param {error}") from None
-
-
-def read_value(option: str, name: str, text: str, unit: str) -> Fraction:
-    """A value in SI units; without unit it is in ``unit``. Raises ``InputError`` that names ``option``."""
-    from roadproof.spec.library import unknown
-    from roadproof.units import UNITS
-
-    read = _VALUE.fullmatch(text.strip())
-    if read is None:
-        raise InputError(
-            f"{option} {name}={text}: this is no value; write a decimal or a fraction, with a unit if you "
-            f"like, such as {name}=0.6, {name}=3/5 or '{name}=0.6 {unit}'"
-        )
-    number, given = read[1], read[2] or unit
-    if given not in UNITS:
-        raise InputError(f"{option} {name}={text}: {unknown('unit', given, UNITS)}")
-    if UNITS[given][1] != UNITS[unit][1]:
-        raise InputError(f"{option} {name}={text}: {name} is in {unit}, which {given} does not measure")
-    top, _, bottom = number.partition("/")
-    if bottom and Fraction(bottom) == 0:
-        raise InputError(f"{option} {name}={text}: the denominator is zero")
-    return Fraction(top) / Fraction(bottom or 1) * UNITS[given][0]
+    return values_of(library, dict(_assignments("--param", args.params)), "--param ")
 
 
 def read_seconds(option: str, text: str, or_zero: bool = False) -> Fraction:

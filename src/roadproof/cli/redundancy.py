@@ -1,24 +1,11 @@
 """``roadproof redundancy``: which parts of scenarios could be left out, and what shows the others needed."""
 
 import argparse
-import time
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from roadproof.cli.basis import among, read_basis
-from roadproof.cli.numbers import add_effort_options
-from roadproof.cli.options import (
-    add_json_option,
-    add_parameter_option,
-    add_specification_options,
-    write_json,
-)
-from roadproof.cli.progress import Counter, warn
-from roadproof.cli.working import add_working_options
-from roadproof.verdict import ExitCode, Verdict
-
-if TYPE_CHECKING:
-    from roadproof.analysis.redundancy import Redundancy
+from roadproof.cli.basis import asking, hand_over, read_definitions
+from roadproof.cli.numbers import add_effort_options, add_working_options
+from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
 
 SUMMARY = "which parts of scenarios are redundant, by proof; drives that show the others needed"
 
@@ -49,38 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.analysis.redundancy import name_of
-    from roadproof.report.redundancy import as_text
-    from roadproof.study.frame import conduct
-    from roadproof.study.shelf import write_index
+    from roadproof.api.studies import redundancy
 
-    begun = time.monotonic()
-    study = _study(args)
-    found = conduct(study, args.out, args.jobs, Counter(), "scenarios", warn)
-    seconds = time.monotonic() - begun
-    names = [name_of(number) for number in study.numbers]
-    data = {
-        "schema": study.question.schema,
-        **study.question.said,
-        "view": "dense",
-        "seconds": round(seconds, 1),
-        "verdicts": [verdict for name in names for verdict in found.records[name]["verdicts"]],
-    }
-    if args.json:
-        write_json(data, args.json)
-    if args.out is not None:
-        write_index(args.out, data)
-    findings = {number: found.answers[name_of(number)] for number in study.numbers}
-    if args.json != "-":
-        print(as_text(findings, seconds))
-    doubt = any(x.verdict is Verdict.UNKNOWN for each in findings.values() for x in each)
-    return ExitCode.UNKNOWN if doubt else ExitCode.AS_EXPECTED
-
-
-def _study(args: argparse.Namespace) -> "Redundancy":
-    from roadproof.analysis.redundancy import Redundancy
-    from roadproof.spec.scenarios import numbers_of
-
-    basis = read_basis(args, [args.set_name])
-    numbers = among(args, basis.specification) or numbers_of(basis.specification)
-    return Redundancy(basis, numbers, args.whole)
+    home = read_definitions(args, [args.set_name])
+    return hand_over(args, redundancy(args.among, home, args.whole, **asking(args, args.out)))

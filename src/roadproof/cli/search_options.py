@@ -2,27 +2,43 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from fractions import Fraction
+from typing import TYPE_CHECKING, TypedDict
 
-from roadproof.cli.numbers import add_effort_options, read_effort
-from roadproof.cli.options import (
-    add_parameter_option,
-    add_specification_options,
-    parameter_values,
-    read_seconds,
-)
+from roadproof.cli.numbers import add_effort_options
+from roadproof.cli.options import add_parameter_option, add_specification_options, read_seconds
 
 if TYPE_CHECKING:
-    from roadproof.spec.library import Library
-    from roadproof.witness.question import Means, Setting
+    from roadproof.searching.question import Engine
+
+
+class Where(TypedDict):
+    """Where, with whom and for how long is searched, as ``api.settings.setting`` takes it."""
+
+    road: str | None
+    lanes: dict[str, str]
+    vehicles: dict[str, str]
+    horizon: Fraction
+    dt: Fraction | None
+    reach: Fraction
+    collisions: bool
+
+
+class How(TypedDict):
+    """By whom is searched, and how much work is given."""
+
+    engine: "Engine"
+    solver: str
+    effort: float
+    timeout: float | None
 
 
 def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> None:
-    """Where, with whom, how long and by whom is searched; ``read_setting``, ``read_means``."""
+    """Where, with whom, how long and by whom is searched; see ``where_asked``, ``how_asked``."""
     add_specification_options(parser, several=True)
     add_parameter_option(parser)
     parser.add_argument(
-        "--road", metavar="R", help="a reference road or a .toml file (default: by the formula)"
+        "--road", metavar="R", help="a reference road, or a .toml or .xodr file (default: by the formula)"
     )
     parser.add_argument(
         "--lane",
@@ -53,28 +69,24 @@ def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> 
     add_effort_options(parser, units)
 
 
-def read_setting(args: argparse.Namespace, library: "Library") -> "Setting":
-    """Where, with whom and for how long is searched. Raises ``UsageError``, ``InputError``."""
-    from roadproof.witness.question import Setting
-    from roadproof.world.models import load_road, load_vehicle
+def where_asked(args: argparse.Namespace) -> Where:
+    """What the options say of where, with whom and for how long. Raises ``UsageError``."""
+    from roadproof.spec.scenarios import LANE
 
-    return Setting(
-        road=None if args.road is None else load_road(args.road),
-        lanes=dict(named(args.lanes, "L")),
-        vehicles={name: load_vehicle(model) for name, model in named(args.vehicles, "")},
-        values=parameter_values(args, library),
-        horizon=read_seconds("--horizon", args.horizon),
-        dt=None if args.dt is None else read_seconds("--dt", args.dt),
-        reach=read_seconds("--reach", args.reach),
-        collisions=args.allow_collisions,
-    )
+    return {
+        "road": args.road,
+        "lanes": dict(named(args.lanes, LANE)),
+        "vehicles": dict(named(args.vehicles, "")),
+        "horizon": read_seconds("--horizon", args.horizon),
+        "dt": None if args.dt is None else read_seconds("--dt", args.dt),
+        "reach": read_seconds("--reach", args.reach),
+        "collisions": args.allow_collisions,
+    }
 
 
-def read_means(args: argparse.Namespace) -> "Means":
-    """By whom is searched, and how much work is given."""
-    from roadproof.witness.question import Means
-
-    return Means(engine=args.engine, solver=args.solver, effort=read_effort(args))
+def how_asked(args: argparse.Namespace) -> How:
+    """What the options say of engine, solver and work."""
+    return {"engine": args.engine, "solver": args.solver, "effort": args.effort, "timeout": args.timeout}
 
 
 def named(texts: Sequence[str], usual: str) -> Iterator[tuple[str, str]]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from roadproof.cli.options import add_specification_options, select_specification, write_json
 from roadproof.errors import InputError
+from roadproof.evidence.heading import heading
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.latex import align, latex
@@ -19,6 +20,7 @@ from roadproof.logic.syntax import Binding, Claim, Definition, ParameterDeclarat
 from roadproof.logic.tree import tree
 from roadproof.spec.elaborate import read_claim, signature
 from roadproof.spec.library import Specification, unknown
+from roadproof.spec.scenarios import name_of
 from roadproof.spec.uses import definitions_used, parameters_used
 from roadproof.verdict import ExitCode
 
@@ -65,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _find(specification: Specification, what: str, expand: bool) -> Exhibit:
     """``what``, elaborated before it is shown so that mistakes in it are found. Raises ``InputError``."""
-    named = _NAME.fullmatch(f"scenario_{int(what)}" if re.fullmatch(r"[0-9]{1,4}", what) else what)
+    named = _NAME.fullmatch(name_of(int(what)) if re.fullmatch(r"[0-9]{1,4}", what) else what)
     if named is None or named[0] in ("true", "false"):
         return _find_claim(specification, what, expand)
     if named[2] is not None:
@@ -155,7 +157,7 @@ def _as_latex(exhibit: Exhibit) -> str:
 def _as_json(exhibit: Exhibit, specification: Specification) -> dict[str, Any]:
     claim = exhibit.claim
     return {
-        "schema": SCHEMA,
+        **heading(SCHEMA, specification.library),
         "set": specification.set_name,
         "options": dict(specification.options),
         "formula": None if claim is None else {"text": text(claim), "tree": tree(claim)},

@@ -1,18 +1,15 @@
 """``roadproof simulate``: recordings in the highD format, made of simulated traffic."""
 
 import argparse
-import csv
-import io
 import re
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.cli.numbers import decimal, whole
+from roadproof.cli.numbers import add_working_options, decimal, whole
 from roadproof.cli.progress import note
-from roadproof.cli.working import add_working_options, work_in_order
 from roadproof.errors import InputError, UsageError
 from roadproof.verdict import ExitCode
 
@@ -20,8 +17,6 @@ _NUMBERS = re.compile(r"\d{1,2}(-\d{1,2})?(,\d{1,2}(-\d{1,2})?)*")
 
 if TYPE_CHECKING:
     from roadproof.evidence.drive_file import DriveFile
-    from roadproof.traffic.planting import Truth
-    from roadproof.traffic.simulate import Traffic
 
 SUMMARY = "make recordings in the highD format from simulated traffic"
 
@@ -33,20 +28,10 @@ of matches.csv.
 examples:
   roadproof simulate --out traffic --recordings 2 --seconds 60 --seed 1
   roadproof simulate --out traffic --recordings 60 --jobs 2
+  roadproof simulate --out traffic --seconds 120 --ramp merge
   roadproof simulate --out traffic --seconds 120 --plant 1-8
   roadproof witness 1 2 --set ext --out drives; roadproof simulate --out traffic --plant drives
 """
-
-
-@dataclass(frozen=True)
-class Order:
-    """One recording to make."""
-
-    traffic: "Traffic"
-    seed: int
-    number: int
-    out: Path
-    drives: "tuple[DriveFile, ...]"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -80,6 +65,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="length of the road in m (default: 420)",
     )
     parser.add_argument(
+        "--ramp",
+        choices=("none", "merge", "depart"),
+        default="none",
+        help="an on-ramp or an off-ramp of the lower carriageway, with XX_road.toml (default: none)",
+    )
+    parser.add_argument(
+        "--ramp-flow",
+        metavar="F",
+        type=decimal("--ramp-flow"),
+        default=400.0,
+        help="vehicles an hour on the ramp (default: 400)",
+    )
+    parser.add_argument(
         "--plant",
         metavar="PATH|N,N",
         action="append",
@@ -94,54 +92,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.files import write_whole
-    from roadproof.traffic.planting import PLANTED_COLUMNS, lane_width, rows_of
-    from roadproof.traffic.simulate import Traffic
+    from roadproof.api.simulating import simulate
 
-    _check(args)
+    if args.recordings > 999:
+        raise UsageError(f"--recordings {args.recordings}: between 1 and 999 can be made")
+    if args.plant and args.ramp != "none":
+        raise UsageError(f"--plant with --ramp {args.ramp}: drives are planted on main roads only; drop one")
     drives = tuple(_drives(args.plant, args.plant_set))
-    traffic = Traffic(
-        seconds=args.seconds,
-        lanes=args.lanes,
-        flow=args.flow,
-        truck_share=args.truck_share,
-        section=args.section,
-    )
-    if args.plant:
-        if not drives:
-            raise InputError(f"--plant {' '.join(args.plant)}: no drive that can be planted")
-        traffic = replace(traffic, lane_width=lane_width(drives))
-    orders = [Order(traffic, args.seed, k, args.out, drives) for k in range(1, args.recordings + 1)]
-    truths: list[Truth] = []
-    left_out: dict[str, None] = {}
-    for number, (made, missing) in enumerate(work_in_order(make_one, orders, args.jobs, fresh=True), 1):
-        note(f"[{number}/{args.recordings}] recording {number:02d}")
-        truths += made
-        left_out |= dict.fromkeys(missing)
-    if args.plant:
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(PLANTED_COLUMNS)
-        writer.writerows(rows_of(truths))
-        write_whole(args.out / "planted.csv", out.getvalue().encode())
-        for line in left_out:
-            _warn(f"not planted: {line}")
-        if not truths:
-            raise InputError(
-                "--plant: no drive could be planted; simulate more seconds, or find other drives"
-            )
-    planted = f", {len(truths)} drives planted" if args.plant else ""
+    if args.plant and not drives:
+        raise InputError(f"--plant {' '.join(args.plant)}: no drive that can be planted")
+    road = {"lanes": args.lanes, "flow": args.flow, "truck_share": args.truck_share, "section": args.section}
+    road |= {"ramp": args.ramp, "ramp_flow": args.ramp_flow}
+    made = {"recordings": args.recordings, "seconds": args.seconds, "seed": args.seed}
+    found = simulate(args.out, **made, **road, plant=drives, jobs=args.jobs, tell=note)
+    for line in found.left_out:
+        _warn(f"not planted: {line}")
+    if drives and not found.planted:
+        raise InputError("--plant: no drive could be planted; simulate more seconds, or find other drives")
+    planted = f", {len(found.planted)} drives planted" if drives else ""
     print(f"{args.recordings} recordings of {args.seconds:g} s in {args.out}{planted}")
     return ExitCode.AS_EXPECTED
-
-
-def _check(args: argparse.Namespace) -> None:
-    if not 1 <= args.recordings <= 999:
-        raise UsageError(f"--recordings {args.recordings}: between 1 and 999 can be made")
-    if args.seed < 0:
-        raise UsageError(f"--seed {args.seed}: a seed is 0 or more")
-    if args.jobs is not None and args.jobs < 1:
-        raise UsageError(f"--jobs {args.jobs}: at least one process is needed")
 
 
 def _drives(texts: Sequence[str], set_name: str) -> "Iterator[DriveFile]":
@@ -157,10 +127,10 @@ def _read(path: Path) -> "Iterator[DriveFile]":
     """The drives of a file or a folder."""
     from roadproof.evidence.drive_file import load_drive
     from roadproof.evidence.judged import judge_file
+    from roadproof.simulation.planting import plantable
     from roadproof.spec.library import bundled_library
-    from roadproof.traffic.planting import plantable
 
-    files = sorted(path.glob("*.json")) if path.is_dir() else [path]
+    files = [x for x in sorted(path.glob("*.json")) if _may_be_drive(x)] if path.is_dir() else [path]
     if not files:
         raise InputError(f"--plant {path}: the folder holds no drive files (*.json)")
     for name in files:
@@ -172,18 +142,28 @@ def _read(path: Path) -> "Iterator[DriveFile]":
             yield file
 
 
+def _may_be_drive(path: Path) -> bool:
+    """Whether a file of a folder is no other evidence, as ``roadproof witness`` writes beside drives."""
+    from roadproof.evidence import certificate, journal
+    from roadproof.evidence.strict import read_json
+
+    content = read_json(path)
+    kind = content.get("schema") if isinstance(content, dict) else None
+    return kind not in (certificate.SCHEMA, journal.SCHEMA)
+
+
 def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
     """A drive for each scenario of ``text`` (such as 1-3,7), whose danger lasts up to its horizon.
 
     A recorded trace ends with its last danger, so whatever else the scenario needs has happened then;
     L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (semantics §7).
     """
+    from roadproof.searching.ask import Search, ask
+    from roadproof.searching.question import Setting
     from roadproof.spec import scenarios as s
     from roadproof.spec.bind import default_values
     from roadproof.spec.compose import both
     from roadproof.spec.library import bundled_library
-    from roadproof.witness.ask import Search, ask
-    from roadproof.witness.question import Setting
     from roadproof.world.models import load_road
 
     specification = bundled_library().select(set_name)
@@ -206,19 +186,3 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
 
 def _warn(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
-
-
-def make_one(order: Order) -> "tuple[list[Truth], list[str]]":
-    """Simulate, plant and write one recording; what was planted, and what could not be."""
-    from roadproof.spec.library import bundled_library
-    from roadproof.traffic.planting import plant_drives
-    from roadproof.traffic.synthetic import simulate
-    from roadproof.traffic.write_highd import write_highd
-
-    recording = simulate(order.traffic, order.seed, order.number)
-    truths: list[Truth] = []
-    left_out: list[str] = []
-    if order.drives:
-        recording, truths, left_out = plant_drives(recording, order.drives, bundled_library())
-    write_highd(recording, order.out)
-    return truths, left_out

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import assert_never
 
 from roadproof.encode.circuit import Leaf, nodes
-from roadproof.encode.facts import Quantity, facts_of, sizes_of
+from roadproof.encode.inequalities import Quantity, inequalities_of, sizes_of
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.unroll import Grid
 from roadproof.logic.formula import Compare, Formula, subformulas
@@ -88,6 +88,6 @@ def _polynomials(formula: Formula, vehicles: Mapping[str, Vehicle]) -> Iterator[
     sizes = sizes_of(vehicles)
     for part in subformulas(formula):
         if isinstance(part, Compare):
-            for node in nodes(facts_of(part, sizes)):
+            for node in nodes(inequalities_of(part, sizes)):
                 if isinstance(node, Leaf):
                     yield node.content.polynomial

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, any_of
 from roadproof.encode.motion import Layout
-from roadproof.encode.polynomial import Fact, Polynomial, affine, constant
-from roadproof.encode.problem import ColumnFact
+from roadproof.encode.polynomial import Inequality, Polynomial, affine, constant
+from roadproof.encode.problem import ColumnInequality
 from roadproof.signals import SignalName, SizeName
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.vehicle import Range, Vehicle
@@ -70,7 +70,7 @@ def _inside(small: Rectangle, large: Rectangle) -> bool:
 
 def stay_on_road(
     layout: Layout, road: Road, name: str, vehicle: Vehicle, between: bool, lasting: bool = True
-) -> Circuit[ColumnFact]:
+) -> Circuit[ColumnInequality]:
     """The box is inside one rectangle of the road at each sample.
 
     Where ``between``, it is in the same one at both ends of a step, and so all the way; where
@@ -91,7 +91,7 @@ def stay_on_road(
 
 def _box_inside(
     layout: Layout, name: str, vehicle: Vehicle, place: Rectangle, step: int
-) -> Circuit[ColumnFact]:
+) -> Circuit[ColumnInequality]:
     (from_, to), (right, left) = place
     s, d = layout.state(name, "s", step), layout.state(name, "d", step)
     parts = [_at_least(d, right + vehicle.width), _at_least(d.scaled(Fraction(-1)), -left)]
@@ -102,8 +102,8 @@ def _box_inside(
     return all_of(parts)
 
 
-def _at_least(value: Polynomial[int], bound: Fraction) -> Circuit[ColumnFact]:
-    return Leaf(Fact(value + constant(-bound), False))
+def _at_least(value: Polynomial[int], bound: Fraction) -> Circuit[ColumnInequality]:
+    return Leaf(Inequality(value + constant(-bound), False))
 
 
 def stay_apart(
@@ -112,7 +112,7 @@ def stay_apart(
     second: tuple[str, Vehicle],
     gaps: tuple[Fraction, Fraction],
     between: bool,
-) -> Circuit[ColumnFact]:
+) -> Circuit[ColumnInequality]:
     """One of four sides separates the boxes at each sample; where ``between``, one at both ends of a step.
 
     ``gaps``: what a search keeps free along or across, in m.
@@ -132,13 +132,13 @@ def stay_apart(
 
 def _beyond(
     layout: Layout, signal: SignalName, low: str, high: str, extent: Fraction, gap: Fraction, step: int
-) -> Circuit[ColumnFact]:
+) -> Circuit[ColumnInequality]:
     """``high`` less its own extent is not below ``low``."""
     ends = [
         (layout.column(high, signal, step), Fraction(1)),
         (layout.column(low, signal, step), Fraction(-1)),
     ]
-    return Leaf(Fact(affine(ends, -extent), False, gap))
+    return Leaf(Inequality(affine(ends, -extent), False, gap))
 
 
 def _spells(steps: int, between: bool) -> list[tuple[int, ...]]:
@@ -148,7 +148,7 @@ def _spells(steps: int, between: bool) -> list[tuple[int, ...]]:
 
 def be_in_lane(
     layout: Layout, road: Road, name: str, vehicle: Vehicle, step: int, off_centre: Fraction
-) -> Circuit[ColumnFact]:
+) -> Circuit[ColumnInequality]:
     """At a sample the box is in one lane, at most ``off_centre`` m from its centre line."""
     choices = []
     for lane in road.lanes:
@@ -162,10 +162,10 @@ def be_in_lane(
     return any_of(choices)
 
 
-def move_one_way(layout: Layout, name: str) -> Circuit[ColumnFact]:
+def move_one_way(layout: Layout, name: str) -> Circuit[ColumnInequality]:
     """The vehicle never moves to the left, or never to the right."""
     directions = []
     for sign in (Fraction(1), Fraction(-1)):
         speeds = [layout.state(name, "v_lat", k).scaled(sign) for k in range(layout.grid.steps + 1)]
-        directions.append(all_of(Leaf(Fact(speed, False)) for speed in speeds))
+        directions.append(all_of(Leaf(Inequality(speed, False)) for speed in speeds))
     return any_of(directions)

@@ -84,10 +84,10 @@ def affine(parts: Iterable[tuple[V, Fraction]], rest: Fraction = Fraction(0)) ->
 
 
 @dataclass(frozen=True)
-class Fact(Generic[V]):
+class Inequality(Generic[V]):
     """``polynomial > 0`` where strict, else ``polynomial >= 0``.
 
-    ``margin`` is what a search in floating point keeps in addition; the fact itself is without.
+    ``margin`` is what a search in floating point keeps in addition; the inequality itself is without.
     """
 
     polynomial: Polynomial[V]

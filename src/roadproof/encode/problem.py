@@ -1,4 +1,4 @@
-"""Everything that a solver needs, as plain data: columns, linear rows, and a circuit of facts."""
+"""Everything that a solver needs, as plain data: columns, linear rows, and a circuit of inequalities."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,11 +6,11 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, nodes
-from roadproof.encode.polynomial import Fact, Polynomial
+from roadproof.encode.polynomial import Inequality, Polynomial
 from roadproof.signals import SignalName
 
-# A fact over column numbers.
-ColumnFact: TypeAlias = Fact[int]
+# An inequality over column numbers.
+ColumnInequality: TypeAlias = Inequality[int]
 
 
 @dataclass(frozen=True)
@@ -49,20 +49,20 @@ class Problem:
 
     columns: tuple[Column, ...]
     rows: tuple[Row, ...]
-    circuit: Circuit[ColumnFact]
+    circuit: Circuit[ColumnInequality]
 
-    def also(self, circuit: Circuit[ColumnFact]) -> "Problem":
+    def also(self, circuit: Circuit[ColumnInequality]) -> "Problem":
         """The same problem with one more condition."""
         return Problem(self.columns, self.rows, all_of([self.circuit, circuit]))
 
     def sizes(self) -> dict[str, int]:
-        """Numbers of columns, rows, circuit nodes and distinct facts."""
+        """Numbers of columns, rows, circuit nodes and distinct inequalities."""
         every = list(nodes(self.circuit))
         return {
             "columns": len(self.columns),
             "rows": len(self.rows),
             "nodes": len(every),
-            "facts": sum(isinstance(n, Leaf) for n in every),
+            "inequalities": sum(isinstance(n, Leaf) for n in every),
         }
 
 

@@ -28,10 +28,10 @@ class Atoms:
     names: dict[Formula, str] = field(default_factory=dict)
     named: dict[str, Formula] = field(default_factory=dict)
 
-    def atomise(self, formula: Formula) -> Formula:
+    def abstract(self, formula: Formula) -> Formula:
         """``formula`` with each atom as ``Named(unique text, (), meaning)`` and no other names.
 
-        The body of a quantifier over the road is left as it is, to be atomised at each instance.
+        The body of a quantifier over the road is left as it is, to be abstracted at each instance.
         """
         done: dict[Formula, Formula] = {}
 

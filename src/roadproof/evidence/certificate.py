@@ -14,7 +14,7 @@ from typing import Any
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import Lemma, Site, derive_lemma_queries, derive_query
-from roadproof.evidence.finding import Outcome
+from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.strict import Fields, read_json, text
 from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.elaborate import read_claim
@@ -58,9 +58,9 @@ def certify(
     if not query.written and read_claim(specification, query.text).formula != formula:
         raise InputError(f"the claim's text does not mean what was proved: {query.text}")
     atoms = Atoms()
-    atomised = atoms.atomise(formula)
+    abstracted = atoms.abstract(formula)
     bounds = specification.library.bounds
-    ground = derive_query(atomised, atoms, instances, names, lemmas, bounds, query.lanes)
+    ground = derive_query(abstracted, atoms, instances, names, lemmas, bounds, query.lanes)
     queries = [("claim", ground)]
     for number, lemma in enumerate(lemmas, 1):
         cases = derive_lemma_queries(atoms, lemma.literals, bounds)
@@ -86,10 +86,10 @@ def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str
     ``ask`` answers sat, unsat or unknown to an SMT-LIB script.
     """
     outcome, reason = rule(certificate, library, ask)
-    return None if outcome is Outcome.ACCEPTED else reason
+    return None if outcome is Acceptance.ACCEPTED else reason
 
 
-def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> tuple[Outcome, str]:
+def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> tuple[Acceptance, str]:
     """Whether the certificate proves its claim, and why where it does not.
 
     Unreadable where the library does not have what the claim speaks of; undecided where ``ask`` answers
@@ -99,7 +99,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
         specification = library.select(certificate.set_name, certificate.options)
         query = read_claim(specification, certificate.claim)
     except RoadproofError as error:
-        return Outcome.UNREADABLE, str(error)
+        return Acceptance.UNREADABLE, str(error)
     try:
         derived = certify(
             specification,
@@ -111,17 +111,17 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
             certificate.scenario,
         )
     except RoadproofError as error:
-        return Outcome.REJECTED, f"the query cannot be derived: {error}"
+        return Acceptance.REJECTED, f"the query cannot be derived: {error}"
     difference = _difference(derived, certificate)
     if difference:
-        return Outcome.REJECTED, difference
+        return Acceptance.REJECTED, difference
     for title, script in derived.queries:
         answer = ask(script)
         if answer == "unknown":
-            return Outcome.UNDECIDED, f"the query '{title}' was answered unknown, not unsat"
+            return Acceptance.UNDECIDED, f"the query '{title}' was answered unknown, not unsat"
         if answer != "unsat":
-            return Outcome.REJECTED, f"the query '{title}' was answered {answer}, not unsat"
-    return Outcome.ACCEPTED, ""
+            return Acceptance.REJECTED, f"the query '{title}' was answered {answer}, not unsat"
+    return Acceptance.ACCEPTED, ""
 
 
 def _difference(derived: Certificate, stored: Certificate) -> str:

@@ -8,10 +8,11 @@ from pathlib import Path
 from roadproof.effort import Late
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
 from roadproof.evidence import certificate, drive_file
-from roadproof.evidence.answers.proofs import FindLabel, misnamed, shown
+from roadproof.evidence.answers.proofs import misnamed, shown
+from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.finding import Finding, Outcome
+from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.judge.exact import Judgement
@@ -21,7 +22,7 @@ from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.bind import default_values, values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
-from roadproof.spec.scenarios import Scenario, applied
+from roadproof.spec.scenarios import Scenario, applied, name_of
 
 _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit
 
@@ -48,20 +49,20 @@ class Checker:
         except MissingSolverError:
             raise
         except Late as late:
-            return Finding(str(path), "", Outcome.UNDECIDED, str(late))
+            return Finding(str(path), "", Acceptance.UNDECIDED, str(late))
         except RoadproofError as error:
-            return Finding(str(path), "", Outcome.UNREADABLE, without_place(str(error), path))
+            return Finding(str(path), "", Acceptance.UNREADABLE, without_place(str(error), path))
         except Exception as error:
             # One file must not take the others with it; the exit code says whose fault it is.
-            return Finding(str(path), "", Outcome.FAULT, f"{type(error).__name__}: {error}"[:300])
+            return Finding(str(path), "", Acceptance.FAULT, f"{type(error).__name__}: {error}"[:300])
 
     def _certificate(self, path: Path, file: Certificate) -> Finding:
         outcome, reason = certificate.rule(file, self.library, self.ask)
         label = self.find_label(file.claim, file.set_name)
         told = label_of(file)
-        if outcome is Outcome.ACCEPTED and told is not None and told != label:
-            outcome, reason = Outcome.REJECTED, misnamed("it", told, label)
-        if outcome is Outcome.UNREADABLE:
+        if outcome is Acceptance.ACCEPTED and told is not None and told != label:
+            outcome, reason = Acceptance.REJECTED, misnamed("it", told, label)
+        if outcome is Acceptance.UNREADABLE:
             reason = with_hint(reason, file.claim)
         named = shown(label, file.set_name)
         return Finding(str(path), "certificate", outcome, reason, "PROVED", named, file.claim)
@@ -70,9 +71,9 @@ class Checker:
         file = drive_file.read_drive(content, str(path))
         ruling = judge_file(file, self.library)
         reason = ruling.reason or self._untold(file, content, ruling.judgement)
-        outcome = Outcome.REJECTED if reason else Outcome.ACCEPTED
+        outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
         if not ruling.readable:
-            outcome, reason = Outcome.UNREADABLE, with_hint(reason, file.formula)
+            outcome, reason = Acceptance.UNREADABLE, with_hint(reason, file.formula)
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
         checked, unchecked = ((), ()) if reason else said_of(file, self.library)
         if not reason and "natural" in Fields(content, str(path)).mapping("verdict"):
@@ -90,7 +91,7 @@ class Checker:
         if unsaid:
             return f"it does not say with which {unsaid[0]} it was judged"
         if file.scenario is not None:
-            if f"scenario_{file.scenario}" not in specification.definitions:
+            if name_of(file.scenario) not in specification.definitions:
                 return f"scenario={file.scenario}, but there is none of that number"
             whole = applied(specification, Scenario(file.scenario, file.set_name))
             if whole.formula != query.formula:

@@ -60,7 +60,7 @@ class Lemma:
 
 
 def prefix_form(formula: Formula) -> str:
-    """An atomised formula as text in which nothing is ambiguous."""
+    """An abstracted formula as text in which nothing is ambiguous."""
     match formula:
         case f.Truth(value):
             return str(value).lower()
@@ -81,7 +81,7 @@ def prefix_form(formula: Formula) -> str:
         case f.Some() | f.Every():
             return f"({text(as_syntax(formula, expand=False))})"
         case f.Compare() | f.Occupies():
-            raise ValueError("atomise the formula first")
+            raise ValueError("abstract the formula first")
         case _:
             assert_never(formula)
 
@@ -100,7 +100,7 @@ def derive_query(
     bounds: Mapping[str, str],
     lanes: Collection[str] = (),
 ) -> str:
-    """SMT-LIB script that is unsatisfiable only if ``claim``, atomised by ``atoms``, is valid at time 0.
+    """SMT-LIB script that is unsatisfiable only if ``claim``, abstracted by ``atoms``, is valid at time 0.
 
     ``instances`` lists for each universal the moments (or lanes) to try; ``names`` calls the
     existentials that instances speak of; ``lanes`` are the claim's own. Raises ``InputError`` where an
@@ -231,7 +231,7 @@ class _Derivation:
             case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
                 return self._quantifier(formula, positive, moment)
             case f.Compare() | f.Occupies():
-                raise ValueError("atomise the formula first")
+                raise ValueError("abstract the formula first")
             case _:
                 assert_never(formula)
 
@@ -327,7 +327,7 @@ class _Derivation:
         moment: Moment,
     ) -> str:
         def at_element(element: str) -> str:
-            instance = self.known.atomise(rename(body, variable, element))
+            instance = self.known.abstract(rename(body, variable, element))
             return self.truth(instance, positive, moment)
 
         if isinstance(formula, f.Some) == positive:

@@ -13,6 +13,7 @@ from typing import Any, cast, get_args
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, is_rational, rational, read_json, text
 from roadproof.signals import SIZES, STARTING
+from roadproof.spec.scenarios import LANE
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
@@ -47,8 +48,8 @@ class DriveFile:
 def drive_data(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
     """The file as plain data, in the order in which a reader wants it."""
     data: dict[str, Any] = {"schema": SCHEMA, "scenario": file.scenario, "set": file.set_name}
-    data |= {"formula": file.formula, "horizon": str(file.horizon), "lane": file.lanes.get("L")}
-    if set(file.lanes) - {"L"}:
+    data |= {"formula": file.formula, "horizon": str(file.horizon), "lane": file.lanes.get(LANE)}
+    if set(file.lanes) - {LANE}:
         data["lanes"] = dict(file.lanes)
     if file.overlaps_allowed:
         data["overlaps_allowed"] = True
@@ -127,6 +128,16 @@ def read_drive(content: object, where: str) -> DriveFile:
     )
 
 
+def natural_of(content: object, where: str) -> bool | None:
+    """Whether a drive file says that its drive is natural, None where it says nothing of it.
+
+    Raises ``InputError``.
+    """
+    data = Fields(content, where)
+    said = Fields(data.mapping("verdict") if data.has("verdict") else {}, f"{where}, verdict")
+    return said.flag("natural") if said.has("natural") else None
+
+
 def _few(items: Sized, what: str, where: str) -> None:
     if len(items) > MOST[what]:
         raise InputError(f"{where}: {len(items)} {what}, at most {MOST[what]} are read")
@@ -134,12 +145,12 @@ def _few(items: Sized, what: str, where: str) -> None:
 
 def _lanes(data: Fields) -> dict[str, str]:
     """``lane`` is what L stands for; ``lanes`` is there where there are others, and says the same of L."""
-    lane = {"L": data.text("lane")} if data.has("lane") else {}
+    lane = {LANE: data.text("lane")} if data.has("lane") else {}
     if "lanes" not in data.content:
         return lane
     lanes = data.named_texts("lanes")
-    if lane.get("L") != lanes.get("L"):
-        raise InputError(f"{data.where}: lane={lane.get('L')}, but lanes.L={lanes.get('L')}")
+    if lane.get(LANE) != lanes.get(LANE):
+        raise InputError(f"{data.where}: lane={lane.get(LANE)}, but lanes.{LANE}={lanes.get(LANE)}")
     return lanes
 
 

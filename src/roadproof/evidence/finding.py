@@ -7,7 +7,7 @@ from enum import StrEnum
 from roadproof.verdict import ExitCode
 
 
-class Outcome(StrEnum):
+class Acceptance(StrEnum):
     """ACCEPTED: it shows what it says. UNDECIDED: the solver did not decide. UNREADABLE: nothing can be said,
     since it is damaged, or speaks of definitions that are not at hand. FAULT: ours."""
 
@@ -23,11 +23,11 @@ class Outcome(StrEnum):
 
 
 _EXIT = {
-    Outcome.ACCEPTED: ExitCode.AS_EXPECTED,
-    Outcome.REJECTED: ExitCode.UNEXPECTED,
-    Outcome.UNDECIDED: ExitCode.UNKNOWN,
-    Outcome.UNREADABLE: ExitCode.BAD_INPUT,
-    Outcome.FAULT: ExitCode.OUR_FAULT,
+    Acceptance.ACCEPTED: ExitCode.AS_EXPECTED,
+    Acceptance.REJECTED: ExitCode.UNEXPECTED,
+    Acceptance.UNDECIDED: ExitCode.UNKNOWN,
+    Acceptance.UNREADABLE: ExitCode.BAD_INPUT,
+    Acceptance.FAULT: ExitCode.OUR_FAULT,
 }
 
 
@@ -44,7 +44,7 @@ class Finding:
 
     where: str
     kind: str
-    outcome: Outcome
+    outcome: Acceptance
     reason: str = ""
     verdict: str = ""
     label: str = ""
@@ -54,7 +54,7 @@ class Finding:
 
     def __str__(self) -> str:
         """The finding in a line."""
-        if self.outcome is not Outcome.ACCEPTED:
+        if self.outcome is not Acceptance.ACCEPTED:
             named = f"{self.label}  " if self.label else ""
             return f"{self.outcome:<9} {named}{self.where}: {self.reason}"
         line = f"{self.verdict:<9} {f'{self.label}  ' if self.label else ''}{' '.join(self.claim.split())}"
@@ -70,9 +70,9 @@ def exit_code(findings: Iterable[Finding]) -> ExitCode:
 def summary(findings: Sequence[Finding], solver: str) -> str:
     """How many claims came out how, in a line."""
     counted = [finding for finding in findings if finding.kind != NO_EVIDENCE]
-    accepted = sum(finding.outcome is Outcome.ACCEPTED for finding in counted)
+    accepted = sum(finding.outcome is Acceptance.ACCEPTED for finding in counted)
     line = f"{accepted} of {len(counted)} accepted by {solver} and the exact judge"
-    for outcome in (Outcome.REJECTED, Outcome.UNDECIDED, Outcome.UNREADABLE, Outcome.FAULT):
+    for outcome in (Acceptance.REJECTED, Acceptance.UNDECIDED, Acceptance.UNREADABLE, Acceptance.FAULT):
         count = sum(finding.outcome is outcome for finding in counted)
         line += f", {count} {outcome}" if count else ""
     without = len(findings) - len(counted)

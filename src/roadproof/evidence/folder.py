@@ -10,10 +10,18 @@ from pathlib import Path
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.entry import Entry, mismatch, read_evidence, stray_evidence
-from roadproof.evidence.answers.proofs import FindLabel
-from roadproof.evidence.answers.read import faults_of, index_fields, read_index, read_record, said_of
+from roadproof.evidence.answers.read import (
+    faults_of,
+    index_fields,
+    read_index,
+    read_record,
+    said_of,
+    stands_alone,
+)
+from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.checking import without_place
-from roadproof.evidence.finding import NO_EVIDENCE, Finding, Outcome
+from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
+from roadproof.evidence.heading import library_of
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, read_kept
 from roadproof.evidence.journal import NAME as JOURNAL
 from roadproof.evidence.specifications import read_beside
@@ -22,13 +30,15 @@ from roadproof.evidence.traces import judge_trace
 from roadproof.spec.library import Library
 
 INDEX = "index.json"
+OTHER_LIBRARY = "whether its words meant the same in the other library that its index names"
 
 
 @dataclass
 class Told:
     """What the index and the journal of a folder say of the files in it and below it.
 
-    ``specs`` are the specification files beside them; ``problems`` are found before any file is checked.
+    ``specs`` are the specification files beside them; ``problems`` are found before any file is checked;
+    ``unchecked`` is said of every entry; ``alone``: files that none names stand for themselves.
     """
 
     folder: Path
@@ -38,6 +48,8 @@ class Told:
     entries: list[Entry] = field(default_factory=list)
     named: set[str] = field(default_factory=set)
     problems: list[Finding] = field(default_factory=list)
+    unchecked: tuple[str, ...] = ()
+    alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -62,7 +74,7 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
             continue
         inside, links = _walk(path)
         problems += [
-            Finding(str(x), "", Outcome.REJECTED, "a link is no evidence: copy the file") for x in links
+            Finding(str(x), "", Acceptance.REJECTED, "a link is no evidence: copy the file") for x in links
         ]
         homes = sorted({x.parent for x in inside if x.name in (INDEX, JOURNAL, HEAD)})
         by_home = {home: _read_told(home, given, find_label) for home in homes}
@@ -109,18 +121,21 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> To
             told.index = index_fields(content, str(home / INDEX))
         named = told.index if told.index is not None else said_of(journal.head) if journal else None
         told.library, told.specs = read_beside(named, home, given)
+        told.alone = journal is not None and told.index is None and stands_alone(journal.head)
         if told.index is not None:
+            if library_of(told.index) not in (None, told.library.fingerprint):
+                told.unchecked = (OTHER_LIBRARY,)
             told.entries += _without_twins(told, read_index(told.index, told.library, find_label))
     except RoadproofError as error:
         told.problems.append(_unreadable(home / INDEX, error))
         told.index = None
     if journal is not None and told.library is not None:
-        _add_journal(told, journal, told.library)
+        _add_journal(told, journal, told.library, find_label)
     return told
 
 
 def _unreadable(path: Path, error: RoadproofError) -> Finding:
-    return Finding(str(path), "index", Outcome.UNREADABLE, without_place(str(error), path))
+    return Finding(str(path), "index", Acceptance.UNREADABLE, without_place(str(error), path))
 
 
 def _without_twins(told: Told, entries: Sequence[Entry]) -> Iterator[Entry]:
@@ -129,23 +144,24 @@ def _without_twins(told: Told, entries: Sequence[Entry]) -> Iterator[Entry]:
         first = seen.setdefault(entry.key, entry)
         if first is not entry:
             reason = f"it says again what {first.where} says"
-            told.problems.append(Finding(entry.where, "index", Outcome.REJECTED, reason))
+            told.problems.append(Finding(entry.where, "index", Acceptance.REJECTED, reason))
         yield entry
 
 
-def _add_journal(told: Told, journal: Journal, library: Library) -> None:
+def _add_journal(told: Told, journal: Journal, library: Library, find_label: FindLabel) -> None:
     """The answers of a journal that the index does not hold in the same words; of each the last."""
     kept: dict[tuple[object, ...], Entry] = {}
     for line in journal.lines:
         if line.fault:
-            outcome = Outcome.UNREADABLE if line.record is None else Outcome.REJECTED
+            outcome = Acceptance.UNREADABLE if line.record is None else Acceptance.REJECTED
             told.problems.append(
                 Finding(str(line.path), "journal", outcome, without_place(line.fault, line.path))
             )
         if line.record is None:
             continue
         try:
-            kept |= {entry.key: entry for entry in read_record(journal.head, line.record, library)}
+            entries = read_record(journal.head, line.record, library, find_label)
+            kept |= {entry.key: entry for entry in entries}
         except RoadproofError as error:
             told.problems.append(_unreadable(line.path, error))
     known = {(x.key, x.verdict, x.claim, x.file) for x in told.entries}
@@ -170,13 +186,15 @@ def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Findin
     """The entry's own words, where its evidence shows them."""
     finding = _bound(entry, told, found)
     reason = finding.reason.removeprefix(f"{entry.where}: ").removeprefix(f"{entry.where} ")
-    return replace(finding, reason=reason)
+    if finding.outcome is not Acceptance.ACCEPTED or finding.kind == NO_EVIDENCE:
+        return replace(finding, reason=reason)
+    return replace(finding, unchecked=(*finding.unchecked, *told.unchecked))
 
 
 def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
-    said = Finding(entry.where, "index", Outcome.ACCEPTED, "", verdict, entry.label, entry.claim or "")
-    rejected = replace(said, outcome=Outcome.REJECTED)
+    said = Finding(entry.where, "index", Acceptance.ACCEPTED, "", verdict, entry.label, entry.claim or "")
+    rejected = replace(said, outcome=Acceptance.REJECTED)
     reason = entry.fault or stray_evidence(entry)
     if reason:
         return replace(rejected, reason=reason)
@@ -193,27 +211,27 @@ def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
         return replace(rejected, reason=f"{entry.file} is not there, or another index is about it")
     finding = found[path]
     said = replace(said, where=str(path), kind=finding.kind)
-    if finding.outcome is not Outcome.ACCEPTED:
+    if finding.outcome is not Acceptance.ACCEPTED:
         return replace(said, outcome=finding.outcome, reason=finding.reason)
     try:
         reason = mismatch(entry, read_evidence(path))
     except RoadproofError as error:
         reason = str(error)
     if reason:
-        return replace(said, outcome=Outcome.REJECTED, reason=reason)
+        return replace(said, outcome=Acceptance.REJECTED, reason=reason)
     unchecked = tuple(dict.fromkeys((*finding.unchecked, *entry.unchecked)))
     return replace(said, claim=entry.claim or finding.claim, checked=finding.checked, unchecked=unchecked)
 
 
 def _strays(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:
-    """Files that no entry names. Where the index cannot be read, they stand for themselves."""
+    """Files that no entry names. Where the index cannot be read, or is none, they stand for themselves."""
     mentioned = {entry.file for entry in told.entries}
-    readable = told.entries or told.index is not None
+    readable = (told.entries or told.index is not None) and not told.alone
     for name in sorted(told.named - mentioned):
         finding = found[told.folder / name]
-        if readable and finding.outcome is Outcome.ACCEPTED:
+        if readable and finding.outcome is Acceptance.ACCEPTED:
             reason = "no entry of the index names it"
-            yield replace(finding, outcome=Outcome.REJECTED, reason=reason)
+            yield replace(finding, outcome=Acceptance.REJECTED, reason=reason)
         else:
             yield finding
 
@@ -224,11 +242,11 @@ def _of_whole(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:
     formulas = {
         name: found[told.folder / name].claim
         for name in told.named
-        if found[told.folder / name].outcome is Outcome.ACCEPTED
+        if found[told.folder / name].outcome is Acceptance.ACCEPTED
     }
     where = str(told.folder / INDEX)
     try:
         for fault in faults_of(told.index, told.library, formulas):
-            yield Finding(where, "index", Outcome.REJECTED, fault)
+            yield Finding(where, "index", Acceptance.REJECTED, fault)
     except RoadproofError as error:
-        yield Finding(where, "index", Outcome.UNREADABLE, str(error))
+        yield Finding(where, "index", Acceptance.UNREADABLE, str(error))

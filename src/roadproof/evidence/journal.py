@@ -18,6 +18,7 @@ from typing import Any
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.entry import Entry, evidence_name, mismatch, read_evidence, stray_evidence
 from roadproof.evidence.answers.read import read_record, record_fields
+from roadproof.evidence.answers.reader import FindLabel, without_labels
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json, read_json
 from roadproof.evidence.traces import judge_trace
 from roadproof.files import read_limited
@@ -128,7 +129,7 @@ def _line(
     return Line(name, path, record)
 
 
-def answers_of(journal: Journal, library: Library) -> Iterator[Line]:
+def answers_of(journal: Journal, library: Library, find_label: FindLabel = without_labels) -> Iterator[Line]:
     """The lines with all that can be said without a solver: does each answer say what its evidence says?
 
     Whether a drive holds and a certificate proves is for ``roadproof check``.
@@ -138,7 +139,7 @@ def answers_of(journal: Journal, library: Library) -> Iterator[Line]:
             yield line
             continue
         try:
-            entries = read_record(journal.head, line.record, library)
+            entries = read_record(journal.head, line.record, library, find_label)
             fault = next(filter(None, (_fault_of(entry, journal.path.parent) for entry in entries)), "")
         except RoadproofError as error:
             fault = str(error)

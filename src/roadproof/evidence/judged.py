@@ -68,7 +68,7 @@ class RejectedError(InputError):
 class Judged:
     """A drive file that stands: its formula holds on its drive. Only judging makes one.
 
-    ``natural``: whether it was looked for among natural drives (``encode.build.Manners``), None where it
+    ``natural``: whether it was looked for among natural drives (``encode.build.Assumptions``), None where it
     was not looked for.
     """
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import read_road
-from roadproof.evidence.finding import Outcome
+from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of
 from roadproof.evidence.strict import Fields, rational
 from roadproof.spec.bind import values_with
@@ -18,7 +18,9 @@ _BETWEEN: dict[str, Held] = {
 MOST_INSTANTS = 1000
 
 
-def judge_trace(content: object, specification: Specification, claim: str, where: str) -> tuple[Outcome, str]:
+def judge_trace(
+    content: object, specification: Specification, claim: str, where: str
+) -> tuple[Acceptance, str]:
     """Whether a trace refutes a claim, judged; and why where it does not."""
     try:
         query = read_claim(specification, claim)
@@ -26,8 +28,12 @@ def judge_trace(content: object, specification: Specification, claim: str, where
         values_with(specification.library, trace.parameters)
         fault = fault_of(trace, query.formula, specification.library.bounds)
     except RoadproofError as error:
-        return Outcome.UNREADABLE, str(error)
-    return (Outcome.REJECTED, f"its trace does not refute it: {fault}") if fault else (Outcome.ACCEPTED, "")
+        return Acceptance.UNREADABLE, str(error)
+    return (
+        (Acceptance.REJECTED, f"its trace does not refute it: {fault}")
+        if fault
+        else (Acceptance.ACCEPTED, "")
+    )
 
 
 def read_trace(content: object, where: str) -> Countermodel:

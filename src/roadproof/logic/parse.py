@@ -93,13 +93,13 @@ def _check_depth(body: Expression, at: Position, source: str, text: str) -> None
 
 
 @cache
-def _parser(start: str) -> Lark:
+def _parser() -> Lark:
     grammar = resources.files("roadproof.logic").joinpath("grammar.lark").read_text("utf-8")
     longest_first = sorted(UNITS, key=len, reverse=True)
     grammar = grammar.replace("%UNITS%", "|".join(re.escape(x).replace("/", r"\/") for x in longest_first))
     return Lark(
         grammar,
-        start=start,
+        start=["library", "claim"],
         parser="lalr",
         propagate_positions=True,
         maybe_placeholders=True,
@@ -109,7 +109,7 @@ def _parser(start: str) -> Lark:
 def _parse(text: str, source: str, start: str) -> object:
     try:
         _check_parentheses(text)
-        return _Build().transform(_parser(start).parse(text))
+        return _Build().transform(_parser().parse(text, start=start))
     except UnexpectedInput as error:
         raise _explain(error, text).locate(source, text) from None
     except VisitError as error:

@@ -24,13 +24,13 @@ class Literal_:
 
     value: Fraction | bool
     unit: str = ""
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class Name:
     name: str
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -39,14 +39,14 @@ class Call:
 
     name: str
     arguments: tuple["Expression", ...]
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class Prefix:
     op: Literal["not", "-"]
     body: "Expression"
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Binary:
     op: BinaryOperator
     left: "Expression"
     right: "Expression"
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Chain:
 
     op: Literal["and", "or"]
     parts: tuple["Expression", ...]
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Bounds:
 
     low: "Expression"
     high: "Expression | None"
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Temporal:
     bounds: Bounds | None
     left: "Expression | None"
     right: "Expression"
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Quantified:
     variable: str
     domain: "Name | Call | Group"
     body: "Expression"
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Group:
     """``{A, B}``: a finite set of vehicles."""
 
     members: tuple[Name, ...]
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 Expression: TypeAlias = Literal_ | Name | Call | Prefix | Binary | Chain | Temporal | Quantified
@@ -118,7 +118,7 @@ class Binding:
 
     name: str
     sort: str
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class ParameterDeclaration:
     unit: str
     bound: str
     doc: str
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class OptionDeclaration:
     name: str
     values: tuple[str, ...]
     doc: str
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class Definition:
     parameters: tuple[Binding, ...]
     doc: str
     body: Expression
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ class EachBlock:
     variable: str
     indices: tuple[int, ...]
     definitions: tuple[Definition, ...]
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ class SetBlock:
     parent: str
     doc: str
     definitions: tuple[Definition, ...]
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ class WhenBlock:
     option: str
     value: str
     definitions: tuple[Definition, ...]
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,7 @@ class LaneDeclaration:
     vehicle: str
     scenarios: tuple[int, ...]
     doc: str
-    at: Position = field(default_factory=_nowhere, compare=False)
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
 Statement: TypeAlias = (

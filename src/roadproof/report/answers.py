@@ -6,9 +6,19 @@ Every sentence is made from counts of this run; where the data cannot answer, th
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from roadproof.report.paper import COMPARISON, MARK, RECALL_WITHOUT_FILTER, RESULTS, VIOLATING_PAIRS
-from roadproof.report.traffic import KINDS, METRICS, NONE_FAILED, decimal, missing, percent, rss_row
-from roadproof.traffic.results import Row, Totals
+from roadproof.evaluation.results import Row, Totals
+from roadproof.report.paper import COMPARISON, MARK, RECALL_WITHOUT_FILTER, VIOLATING_PAIRS
+from roadproof.report.traffic import (
+    KINDS,
+    METRICS,
+    NONE_FAILED,
+    decimal,
+    missing,
+    paper_row,
+    percent,
+    rss_row,
+)
+from roadproof.spec.scenarios import DETECTORS
 
 
 def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> str:
@@ -20,6 +30,7 @@ def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) ->
         "## RQ3: precision and recall\n\n" + _precision(totals),
         "## RQ4: does minDanger matter?\n\n" + _min_danger(totals),
         "## RQ5: beside earlier definitions\n\n" + _earlier(totals),
+        *_other_sectors(totals),
         "## Facts checked on this run\n\n" + _facts(totals),
         *_notes(totals),
     ]
@@ -36,7 +47,7 @@ def _left_out(failed: Mapping[str, str]) -> Iterator[str]:
 
 
 def _shown(row: Row) -> str:
-    known = RESULTS.get((row.min_danger, row.set_name))
+    known = paper_row(row)
     theirs = f" [{known.recall}]" if known else ""
     return f"{row.set_name} {percent(row.matching, row.traces)}{theirs} ({row.matching} of {row.traces})"
 
@@ -79,7 +90,7 @@ def _precision(totals: Totals) -> str:
         else f"{outside} matches lie outside the disturbance traces, which must not be."
     ]
     for row in rows:
-        known = RESULTS.get((row.min_danger, row.set_name))
+        known = paper_row(row)
         theirs = f" [{percent(known.matching, VIOLATING_PAIRS)}; {RECALL_WITHOUT_FILTER}]" if known else ""
         lines.append(
             f"Without the filter dangerArises, minDanger {decimal(row.min_danger)}, {row.set_name}: "
@@ -106,14 +117,28 @@ def _earlier(totals: Totals) -> str:
     if row is None or not totals.settings.detectors:
         return "The detectors of earlier works or the set ext were not asked for."
     lines = []
-    for kind, (name, number) in KINDS.items():
+    for kind, number in KINDS.items():
         found = ", ".join(
-            f"{metric} {totals.detected[f'{name}_{end}']} [{COMPARISON[kind][metric]}]"
-            for metric, end in METRICS.items()
+            f"{metric} {totals.detected[DETECTORS[kind][metric]]} [{COMPARISON[kind][metric]}]"
+            for metric in METRICS
         )
         ours = f"{row.scenarios[number]} [{COMPARISON[kind]['RSS']}]"
         lines.append(f"{kind}: {found}; scenario {number} of ext {ours}.")
     return _listed(lines)
+
+
+def _other_sectors(totals: Totals) -> Iterator[str]:
+    """The questions above are about the first road sector: recall in the others."""
+    first, *others = totals.shown.items()
+    lines = [
+        f"{name}, minDanger {decimal(value)}: recall "
+        + ", ".join(_shown(row) for row in rows if row.min_danger == value)
+        + "."
+        for name, rows in others
+        for value in totals.settings.min_danger
+    ]
+    if lines:
+        yield f"## Other road sectors\n\nWhat stands above is about the {first[0]}.\n\n{_listed(lines)}"
 
 
 def _notes(totals: Totals) -> Iterator[str]:

@@ -1,60 +1,88 @@
-"""Classes of scenarios to look at: a table as text, and a picture of which scenarios make up which class."""
+"""Classes of scenarios to look at: a table and a few lines, and a picture of which scenarios make them up."""
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
+from roadproof.analysis.classify.drives import Example
+from roadproof.analysis.classify.shares import Shares
+from roadproof.analysis.classify.study import Classified
+from roadproof.analysis.classify.text import HEADINGS
 from roadproof.report.figures import as_bytes, make_figure
+from roadproof.verdict import Verdict
 
 _DOT, _NO_DOT, _BAR, _DOUBT = "#1f5fbf", "#dddddd", "#3f7d4e", "#b5473c"
+MOST_TOLD = 20
 
 
-def as_table(data: Mapping[str, Any]) -> str:
+@dataclass
+class _Row:
+    """Classes taken together; ``sizes``: their numbers of vehicles."""
+
+    name: str
+    happens: tuple[int, ...]
+    description: str
+    witnessed: int = 0
+    count: int = 0
+    situations: int = 0
+    sizes: set[int] = field(default_factory=set)
+
+    @property
+    def drives(self) -> str:
+        return f"{self.witnessed} of {self.count}"
+
+    @property
+    def told(self) -> str:
+        *most, last = map(str, self.happens)
+        return f"{', '.join(most)} and {last} together" if most else self.description
+
+
+def as_table(examples: Sequence[Example], shares: Shares | None) -> str:
     """A line for each thing that happens, its places added up; below it a line for each place."""
-    happenings = _merged(data["classes"], "happens")
-    shares = data["shares"]
-    rows = [["class", "drives", *(["situations"] if shares else []), "what happens"]]
-    for one in happenings:
-        drives = f"{one['witnessed']} of {one['count']}"
-        rows.append([one["name"], drives, *_share(one, shares), _told(one)])
+    heading = ["situations"] if shares else []
+    rows = [["class", "drives", *heading, "what happens"]]
+    rows += [[x.name, x.drives, *_share(x, shares), x.told] for x in _happenings(examples, shares)]
     lines = _aligned(rows)
-    places = _merged(data["classes"], "where")
+    places = _merged(examples, shares, lambda x: (str(x.one.place), ()))
     if len(places) > 1:
-        rows = [["where", "drives", *(["situations"] if shares else [])]]
-        rows += [
-            [one["name"], f"{one['witnessed']} of {one['count']}", *_share(one, shares)] for one in places
-        ]
+        rows = [["where", "drives", *heading]]
+        rows += [[x.name, x.drives, *_share(x, shares)] for x in places]
         lines += ["", *_aligned(rows)]
     return "\n".join(lines)
 
 
-def _merged(classes: Sequence[Mapping[str, Any]], by: str) -> list[dict[str, Any]]:
-    """Classes of the same vehicles in which ``by`` is the same, or of all vehicles with the same place."""
-    found: dict[object, dict[str, Any]] = {}
-    for x in classes:
-        happens = "_".join(map(str, x["happens"]))
-        name = str(x["where"]) if by == "where" else f"class_{happens}"
-        key = name if by == "where" else (tuple(x["vehicles"]), name)
-        empty = {"name": name, "witnessed": 0, "count": 0, "situations": 0, "of": {}}
-        one = found.setdefault(key, empty | {k: x[k] for k in ("description", "happens", "vehicles")})
-        one["witnessed"] += x["verdict"] == "WITNESSED"
-        one["count"] += 1
-        one["situations"] += x["situations"] or 0
-        one["of"][str(len(x["vehicles"]))] = True
-    return list(found.values())
+def _happenings(examples: Sequence[Example], shares: Shares | None) -> list[_Row]:
+    """Classes of the same vehicles in which the same happens."""
+    return _merged(
+        examples, shares, lambda x: ("_".join(["class", *map(str, x.one.what.holds)]), x.one.vehicles)
+    )
 
 
-def _told(one: Mapping[str, Any]) -> str:
-    *most, last = map(str, one["happens"])
-    return f"{', '.join(most)} and {last} together" if most else str(one["description"])
+def _merged(
+    examples: Sequence[Example],
+    shares: Shares | None,
+    key_of: Callable[[Example], tuple[str, tuple[str, ...]]],
+) -> list[_Row]:
+    """Classes with the same key taken together, under the name that it begins with."""
+    rows: dict[tuple[str, tuple[str, ...]], _Row] = {}
+    for x in examples:
+        key = key_of(x)
+        row = rows.setdefault(key, _Row(key[0], x.one.what.holds, x.one.description))
+        row.witnessed += x.verdict is Verdict.WITNESSED
+        row.count += 1
+        row.situations += 0 if shares is None else shares.situations[x.one.name]
+        row.sizes.add(len(x.one.vehicles))
+    return list(rows.values())
 
 
-def _share(one: Mapping[str, Any], shares: Mapping[str, Any] | None) -> list[str]:
+def _share(row: _Row, shares: Shares | None) -> list[str]:
     """How many situations, and of those with as many vehicles how much."""
-    if not shares:
+    if shares is None:
         return []
-    whole = sum(shares["situations"].get(number, 0) for number in one["of"])
-    part = f"{100 * one['situations'] / whole:5.1f} %" if whole else "      -"
-    return [f"{one['situations']:>5} {part}"]
+    whole = sum(shares.classified[size] for size in row.sizes)
+    part = f"{100 * row.situations / whole:5.1f} %" if whole else "      -"
+    return [f"{row.situations:>5} {part}"]
 
 
 def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
@@ -62,26 +90,58 @@ def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(x.ljust(width) for x, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
-def draw_classes(data: Mapping[str, Any], title: str) -> dict[str, bytes]:
+def summary(found: Classified) -> Iterator[str]:
+    """What is proved, what was found, what is in doubt, and whether recordings agree."""
+    count = len(found.examples)
+    verdicts = Counter(x.verdict for x in found.examples)
+    told = ", ".join(f"{n} {v}" for v, n in verdicts.items())
+    yield f"{count} class{'es' * (count != 1)}: {told}" if told else "no classes"
+    yield from (f"  {Verdict.UNKNOWN}: {x.about}: {x.reason}" for x in found.doubts)
+    yield from (f"  {x.verdict}: {x.claim.query.text}: {x.reason}" for x in found.decisions if not x.holds)
+    for kind, heading in HEADINGS.items():
+        those = Counter(x.verdict for x in found.decisions if x.claim.kind == kind)
+        if those:
+            yield f"{heading}: " + ", ".join(f"{n} {v}" for v, n in those.items())
+    yield from (f"  {x.verdict}: {x.one.name}: {x.reason}" for x in found.examples if x.reason)
+    if found.shares is not None:
+        yield from _of_shares(found.shares)
+
+
+def _of_shares(shares: Shares) -> Iterator[str]:
+    uncovered = shares.all_traces - shares.covered
+    part = f" ({100 * uncovered / shares.all_traces:.1f} %)" if shares.all_traces else ""
+    yield f"on {shares.source}: {shares.all_traces} traces, {uncovered}{part} in none of these scenarios"
+    if shares.repeated:
+        of = f"{shares.repeated} of {shares.all_traces + shares.repeated}"
+        yield f"{of} traces are shown by an earlier recording too, so they are left out"
+    number = sum(shares.classified.values())
+    if shares.broken:
+        told = f"{len(shares.broken)} of {number} situations are not in exactly their own class"
+        yield f"{Verdict.CROSSCHECK_FAILED}: {told}"
+        yield from (f"  {line}" for line in shares.broken[:MOST_TOLD])
+    else:
+        yield f"{number} situations with a scenario, each in exactly one class, which names its scenarios"
+
+
+def draw_classes(examples: Sequence[Example], shares: Shares | None, title: str) -> dict[str, bytes]:
     """Bars of how often each class occurs, over dots for the scenarios in it: ``{"png": …, "svg": …}``.
 
     Places are added up: a column is something that happens, a row a scenario but for its road sector.
     """
-    columns = _merged(data["classes"], "happens")
-    numbers = sorted({number for one in columns for number in one["happens"]})
-    shares = data["shares"]
+    columns = _happenings(examples, shares)
+    numbers = sorted({number for one in columns for number in one.happens})
     heights = [2.2, 0.24 * len(numbers) + 0.6] if shares else [0.24 * len(numbers) + 0.6]
     figure, axes = make_figure(heights, width=max(5.0, 1.6 + 0.42 * len(columns)))
     if shares:
         _bars(axes[0], columns, shares)
     below = axes[-1]
     for x, one in enumerate(columns):
-        rows = [numbers.index(number) for number in one["happens"]]
-        colour = _DOT if one["witnessed"] == one["count"] else _DOUBT
+        rows = [numbers.index(number) for number in one.happens]
+        colour = _DOT if one.witnessed == one.count else _DOUBT
         below.scatter([x] * len(numbers), range(len(numbers)), s=28, color=_NO_DOT, zorder=1)
         below.plot([x, x], [min(rows), max(rows)], color=colour, lw=1.6, zorder=2)
         below.scatter([x] * len(rows), rows, s=34, color=colour, zorder=3)
-    names = [one["name"].removeprefix("class_").replace("_", "+") for one in columns]
+    names = [one.name.removeprefix("class_").replace("_", "+") for one in columns]
     below.set_xticks(range(len(columns)), names, fontsize=7, rotation=45)
     below.set_yticks(range(len(numbers)), [f"scenario {number}" for number in numbers], fontsize=7)
     below.set_ylim(len(numbers) - 0.4, -0.6)
@@ -93,8 +153,8 @@ def draw_classes(data: Mapping[str, Any], title: str) -> dict[str, bytes]:
     return as_bytes(figure)
 
 
-def _bars(axes: Any, columns: Sequence[Mapping[str, Any]], shares: Mapping[str, Any]) -> None:
-    counts = [one["situations"] for one in columns]
+def _bars(axes: Any, columns: Sequence[_Row], shares: Shares) -> None:
+    counts = [one.situations for one in columns]
     axes.bar(range(len(columns)), counts, color=_BAR, width=0.7)
     for x, count in enumerate(counts):
         axes.text(x, count, str(count), fontsize=7, ha="center", va="bottom")
@@ -103,6 +163,6 @@ def _bars(axes: Any, columns: Sequence[Mapping[str, Any]], shares: Mapping[str, 
     axes.set_xticks([])
     axes.set_ylabel("situations", fontsize=7)
     axes.tick_params(labelsize=7)
-    axes.set_title(f"on {shares['source']}", fontsize=8)
+    axes.set_title(f"on {shares.source}", fontsize=8)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)

@@ -14,8 +14,8 @@ from roadproof.judge.truth import TruthSet
 from roadproof.logic.formula import Compare, Formula, subformulas
 from roadproof.report.figures import as_bytes, draw_box, make_figure
 from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
+from roadproof.spec.scenarios import SUBJECT, too_near_ahead
 from roadproof.world.motion import State, state_at
 
 COLOURS = ("#1f5fbf", "#c8641e", "#4b8b3b", "#8a4fa3")
@@ -32,7 +32,7 @@ def draw_drive(file: DriveFile, library: Library, title: str = "") -> dict[str, 
     strips = list(_strips(file, library))[:MOST_STRIPS]
     heights = [0.75] * SNAPSHOTS + [1.5, 1.7, 0.2 + 0.16 * len(strips)]
     figure, axes = make_figure(heights)
-    order = sorted(file.drive.vehicles, key=lambda name: (name != "SV", name))
+    order = sorted(file.drive.vehicles, key=lambda name: (name != SUBJECT, name))
     colours = dict(zip(order, COLOURS * len(order), strict=False))
     for k in range(SNAPSHOTS):
         _snapshot(axes[k], file, colours, file.horizon * k / (SNAPSHOTS - 1))
@@ -127,9 +127,9 @@ def _gaps(axes: Any, file: DriveFile, colours: Mapping[str, str], library: Libra
 
 
 def _rss_margin(file: DriveFile, library: Library, behind: str, ahead: str) -> list[float] | None:
-    """RSS distance less gap at each time, from the library's own dangerAhead; None where it has none."""
+    """RSS distance less gap at each time, from the library's own definition; None where it has none."""
     try:
-        query = read_claim(library.select(file.set_name, file.options), f"dangerAhead({behind}, {ahead})")
+        query = too_near_ahead(library.select(file.set_name, file.options), behind, ahead)
         formula = bind(query.formula, file.road, {}, {**default_values(library), **file.values})
     except RoadproofError:
         return None

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
-from roadproof.analysis.redundancy import Finding, Findings
+from roadproof.analysis.redundancy import ChangeFinding, ChangeFindings
 from roadproof.verdict import Verdict
 
 
-def as_text(findings: Mapping[int, Findings], seconds: float) -> str:
+def as_text(findings: Mapping[int, ChangeFindings], seconds: float) -> str:
     """What is redundant and what is in doubt, by scenario; how the others were told apart, in numbers."""
     every = [(number, x) for number, each in findings.items() for x in each]
     lines = []
@@ -27,6 +27,6 @@ def as_text(findings: Mapping[int, Findings], seconds: float) -> str:
     return "\n".join(lines)
 
 
-def _change(finding: Finding) -> str:
+def _change(finding: ChangeFinding) -> str:
     change = finding.change
     return f"{change.part} in {change.where[-1]} as {str(change.value).lower()}"

@@ -1,35 +1,61 @@
 """The tables of a traffic evaluation, the paper's figures beside ours (semantics §7)."""
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
 
-from roadproof.report.paper import COMPARISON, MARK, RESULTS
+from roadproof.evaluation.results import Row, Totals
+from roadproof.report.paper import COMPARISON, MARK, RESULTS, PaperRow
 from roadproof.report.tables import Table
-from roadproof.traffic.results import Row, Totals
+from roadproof.spec.scenarios import DETECTORS, Metric
 
 NONE_FAILED: Mapping[str, str] = MappingProxyType({})
 OURS = "here"
 PAPER = "paper*"
-METRICS = {"TTC": "ttc", "THW": "thw", "none": "free"}
-"""Danger metrics of earlier works, and how the library's detectors end."""
-KINDS = {"cut-in": ("cutIn", 1), "deceleration": ("decel", 4)}
-"""What is compared: how the detectors begin, and the scenario that stands beside them (paper, RQ5)."""
+METRICS: tuple[Metric, ...] = ("TTC", "THW", "none")
+"""Danger metrics of earlier works."""
+KINDS = {"cut-in": 1, "deceleration": 4}
+"""What detectors detect, and the scenario that stands beside them (paper, RQ5)."""
 
 
-def results_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> Table:
-    """The paper's results table: for each minDanger and set a row of ours and one of the paper's."""
-    scenarios = totals.settings.scenarios
+def results_tables(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> dict[str, Table]:
+    """The paper's results table, one for each road sector that the recordings have, by names for files.
+
+    For each minDanger and set there is a row of ours and, where the paper has one, a row of the paper's.
+    """
+    shown = totals.shown
+    several = len(shown) > 1
+    return {
+        f"results{ending_of(totals, x)}": _results_table(totals, x if several else "", rows, failed)
+        for x, rows in shown.items()
+    }
+
+
+def ending_of(totals: Totals, sector: str) -> str:
+    """What the names of files about a sector end in: nothing for the first one.
+
+    Words of a specification become part of a file's name, so other signs than letters and digits go.
+    """
+    first = next(iter(totals.tables))
+    return "" if sector == first else "-" + re.sub(r"[^a-z0-9]+", "-", sector.lower()).strip("-")
+
+
+def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapping[str, str]) -> Table:
+    scenarios = rows[0].sector.scenarios
     columns = ("minDanger", "set", "data", "traces", "matching", "recall", *(f"s{i}" for i in scenarios))
+    three = rows[0].sector.of_three
     return Table(
-        "Disturbance traces that match a scenario",
+        "Disturbance traces that match a scenario" + (f": {where}" if where else ""),
         columns,
-        tuple(_result_rows(totals)),
+        tuple(_result_rows(rows)),
         (
             f"{OURS}: {_data(totals)}",
-            f"{PAPER}: {MARK}; a comparison of methods, not of the same traffic.",
+            *_papers(rows),
             "A trace is an unordered pair of vehicles, matched when one of its two role assignments is; "
-            "matching and recall are by scenarios of two cars, as in the paper. s2 counts pairs (SV, POV2).",
+            "matching and recall are by scenarios of two cars, as in the paper."
+            + "".join(f" s{i} counts pairs (SV, POV2)." for i in three),
+            *_elsewhere(totals, where),
             _convention(totals),
             *_warnings(failed),
             *_repeats(totals),
@@ -38,13 +64,38 @@ def results_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> Ta
     )
 
 
-def _result_rows(totals: Totals) -> Iterator[tuple[str, ...]]:
-    scenarios = totals.settings.scenarios
-    for row in totals.rows:
+def _papers(rows: Sequence[Row]) -> Iterator[str]:
+    if any(paper_row(row) is not None for row in rows):
+        yield f"{PAPER}: {MARK}; a comparison of methods, not of the same traffic."
+
+
+def paper_row(row: Row) -> PaperRow | None:
+    """What the paper reports of the same; None where it is about other scenarios or parameters."""
+    known = RESULTS.get((row.min_danger, row.set_name))
+    return known if known is not None and {*known.scenarios} & {*row.sector.scenarios} else None
+
+
+def _elsewhere(totals: Totals, where: str) -> Iterator[str]:
+    """What is not in a table: traces that begin in other sectors, and sectors that no road has."""
+    if where:
+        yield f"Traces that begin in this road sector ({where}); those of the others are in their own tables."
+    absent = [name for name in totals.tables if name not in totals.met]
+    if absent and totals.recordings:
+        numbers = [i for name in absent for i in totals.tables[name][0].sector.scenarios]
+        yield f"No recording has a {' or a '.join(absent)}, so {_numbered(numbers)} were not asked."
+
+
+def _numbered(numbers: Sequence[int]) -> str:
+    return f"s{numbers[0]}" if len(numbers) == 1 else f"s{numbers[0]} to s{numbers[-1]}"
+
+
+def _result_rows(rows: Sequence[Row]) -> Iterator[tuple[str, ...]]:
+    for row in rows:
+        scenarios = row.sector.scenarios
         head = (decimal(row.min_danger), row.set_name)
         counts = (str(row.scenarios[i]) for i in scenarios)
         yield (*head, OURS, str(row.traces), str(row.matching), percent(row.matching, row.traces), *counts)
-        known = RESULTS.get((row.min_danger, row.set_name))
+        known = paper_row(row)
         if known is not None:
             theirs = (str(known.scenarios.get(i, "-")) for i in scenarios)
             yield (*head, PAPER, str(known.traces), str(known.matching), known.recall, *theirs)
@@ -53,15 +104,15 @@ def _result_rows(totals: Totals) -> Iterator[tuple[str, ...]]:
 def comparison_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> Table | None:
     """The paper's comparison table; None where the detectors or the set ext were not asked for."""
     ours = rss_row(totals)
-    wanted = {f"{name}_{end}" for name, _ in KINDS.values() for end in METRICS.values()}
-    scenarios = {number for _, number in KINDS.values()}
+    wanted = {name for detectors in DETECTORS.values() for name in detectors.values()}
+    scenarios = set(KINDS.values())
     if ours is None or not (
         wanted <= set(totals.settings.detectors) and scenarios <= set(totals.settings.scenarios)
     ):
         return None
     rows: list[tuple[str, ...]] = []
-    for kind, (name, number) in KINDS.items():
-        found = (str(totals.detected[f"{name}_{end}"]) for end in METRICS.values())
+    for kind, number in KINDS.items():
+        found = (str(totals.detected[DETECTORS[kind][metric]]) for metric in METRICS)
         rows.append((kind, OURS, *found, str(ours.scenarios[number])))
         rows.append((kind, PAPER, *(str(COMPARISON[kind][x]) for x in (*METRICS, "RSS"))))
     limits = ", ".join(f"{name} = {decimal(totals.settings.values[name])}" for name in _thresholds(totals))
@@ -113,7 +164,9 @@ def _thresholds(totals: Totals) -> tuple[str, ...]:
 
 def rss_row(totals: Totals) -> Row | None:
     """The row of ext with the smallest minDanger, which the paper compares with earlier works."""
-    rows = [row for row in totals.rows if row.set_name == "ext"]
+    beside = {*KINDS.values()}
+    rows = [x for each in totals.tables.values() for x in each if beside <= {*x.sector.scenarios}]
+    rows = [row for row in rows if row.set_name == "ext"]
     return min(rows, key=lambda row: row.min_danger) if rows else None
 
 

@@ -3,21 +3,21 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from roadproof.evaluation.results import Totals
 from roadproof.files import cannot_write, write_whole
 from roadproof.report.answers import answer_questions
 from roadproof.report.tables import LOOKS
-from roadproof.report.traffic import comparison_table, results_table
+from roadproof.report.traffic import comparison_table, results_tables
 from roadproof.report.traffic_figures import draw_figures
-from roadproof.traffic.results import Totals
 
 
 def write_report(folder: Path, totals: Totals, failed: Mapping[str, str], pictures: bool = True) -> None:
-    """``results`` and ``comparison`` in four looks, ``answers.md`` and ``figures/``; each file whole.
+    """``results`` of each sector and ``comparison`` in four looks, ``answers.md``, ``figures/``; all whole.
 
     ``failed`` are the recordings that are left out, and why; tables and text say so. Without
     ``pictures`` matplotlib is not needed. Raises ``InputError`` where a file cannot be written.
     """
-    tables = {"results": results_table(totals, failed), "comparison": comparison_table(totals, failed)}
+    tables = {**results_tables(totals, failed), "comparison": comparison_table(totals, failed)}
     for name, table in tables.items():
         for ending, look in LOOKS.items():
             if table is None:  # an earlier run may have had one
@@ -41,6 +41,7 @@ def remove_report(folder: Path) -> None:
     try:
         for path in (
             *(folder / name for name in names),
+            *(path for ending in LOOKS for path in folder.glob(f"results-*.{ending}")),
             *folder.glob("figures/*.png"),
             *folder.glob("figures/*.svg"),
         ):

@@ -1,7 +1,7 @@
 """Certified bounds of polynomials on boxes, and affine conditions on the safe side of them.
 
-``inner``: conditions under which a fact surely holds, so that what a solver finds is a solution of
-the exact problem. ``outer``: conditions that hold wherever the fact does, so that when a solver
+``inner``: conditions under which an inequality surely holds, so that what a solver finds is a solution of
+the exact problem. ``outer``: conditions that hold wherever the inequality does, so that when a solver
 finds nothing there is nothing. Squares are convex: a tangent is below, a secant above on its window;
 a product is the difference of two squares (McCormick's relaxation in other words: Math.
 Programming 10, 1976). All in floating point: solutions are judged exactly elsewhere, and conditions on
@@ -14,8 +14,8 @@ from itertools import pairwise, product
 from typing import Literal, TypeAlias
 
 from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
-from roadproof.encode.polynomial import Fact
-from roadproof.encode.problem import ColumnFact
+from roadproof.encode.polynomial import Inequality
+from roadproof.encode.problem import ColumnInequality
 
 Side: TypeAlias = Literal["inner", "outer"]
 # Lower and upper bound of each column.
@@ -28,7 +28,7 @@ TOLERANCE, ROUNDING = 1e-5, 1e-12
 
 
 class TooNonlinearError(Exception):
-    """A fact has a degree above 2, which no affine bound here covers."""
+    """An inequality has a degree above 2, which no affine bound here covers."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Bound:
     margin: float = 0.0
 
 
-def split_squares(fact: ColumnFact) -> tuple[Affine, tuple[tuple[float, Affine], ...]]:
+def split_squares(inequality: ColumnInequality) -> tuple[Affine, tuple[tuple[float, Affine], ...]]:
     """A polynomial of degree at most 2 as an affine part and multiples of squares of affine forms.
 
     Raises ``TooNonlinearError`` above degree 2.
@@ -80,7 +80,7 @@ def split_squares(fact: ColumnFact) -> tuple[Affine, tuple[tuple[float, Affine],
     terms: dict[int, float] = {}
     constant = 0.0
     squares: list[tuple[float, Affine]] = []
-    for monomial, coefficient in fact.polynomial.terms.items():
+    for monomial, coefficient in inequality.polynomial.terms.items():
         factor = float(coefficient)
         if not monomial:
             constant += factor
@@ -97,12 +97,12 @@ def split_squares(fact: ColumnFact) -> tuple[Affine, tuple[tuple[float, Affine],
     return Affine(tuple(terms.items()), constant), tuple(squares)
 
 
-def approximate(fact: ColumnFact, box: Box, side: Side, pieces: int = 1) -> Circuit[Bound]:
-    """Affine conditions for ``fact`` on ``box``, on the given side of it.
+def approximate(inequality: ColumnInequality, box: Box, side: Side, pieces: int = 1) -> Circuit[Bound]:
+    """Affine conditions for ``inequality`` on ``box``, on the given side of it.
 
     ``pieces``: number of tangents and of secant windows per square; 1 needs no choice between them.
     """
-    linear, squares = split_squares(fact)
+    linear, squares = split_squares(inequality)
     options = [_square(factor, form, box, side, pieces) for factor, form in squares]
     cases = []
     for chosen in product(*options):
@@ -110,7 +110,7 @@ def approximate(fact: ColumnFact, box: Box, side: Side, pieces: int = 1) -> Circ
         totals = [linear]
         for bounds, _ in chosen:
             totals = [total + bound for total in totals for bound in bounds]
-        leaves = [_leaf(total, fact, box, side) for total in totals]
+        leaves = [_leaf(total, inequality, box, side) for total in totals]
         cases.append(all_of([*(Leaf(c) for c in conditions), *leaves]))
     return any_of(cases)
 
@@ -151,23 +151,23 @@ def _square(factor: float, form: Affine, box: Box, side: Side, pieces: int) -> l
     return windows
 
 
-def _leaf(affine: Affine, fact: ColumnFact, box: Box, side: Side) -> Circuit[Bound]:
+def _leaf(affine: Affine, inequality: ColumnInequality, box: Box, side: Side) -> Circuit[Bound]:
     """The condition, or true or false where the box decides it."""
     low, high = affine.range(box)
     if side == "outer":
         slack = affine.looseness(box)
         return All(()) if low >= 0 else AnyOf(()) if high < -slack else Leaf(Bound(affine, -slack))
-    if low > 0 or (low == 0 and not fact.strict):
+    if low > 0 or (low == 0 and not inequality.strict):
         return All(())
-    if high < 0 or (high == 0 and fact.strict):
+    if high < 0 or (high == 0 and inequality.strict):
         return AnyOf(())
-    return Leaf(Bound(affine, float(fact.margin)))
+    return Leaf(Bound(affine, float(inequality.margin)))
 
 
-def value_of(fact: Fact[int], values: Sequence[float]) -> float:
-    """The value of the polynomial of a fact where ``values`` gives that of each column."""
+def value_of(inequality: Inequality[int], values: Sequence[float]) -> float:
+    """The value of the polynomial of an inequality where ``values`` gives that of each column."""
     total = 0.0
-    for monomial, coefficient in fact.polynomial.terms.items():
+    for monomial, coefficient in inequality.polynomial.terms.items():
         term = float(coefficient)
         for column in monomial:
             term *= values[column]

@@ -8,8 +8,8 @@ from typing import Literal, TypeAlias, assert_never
 from roadproof.effort import Effort, Meter
 from roadproof.encode.circuit import All, AnyOf, Leaf, nodes
 from roadproof.encode.polynomial import Polynomial
-from roadproof.encode.problem import ColumnFact, Problem, Row
-from roadproof.solve.smt import Answer, Session
+from roadproof.encode.problem import ColumnInequality, Problem, Row
+from roadproof.solve.smt import Satisfiability, Session
 
 UNIT = 600_000  # of what z3 counts: from 0.05 s in preprocessing to 1.5 s on polynomial arithmetic
 FIRST_TURN = 1.0
@@ -34,7 +34,7 @@ def solve_exactly(problem: Problem, meter: Meter | None = None) -> ExactSolution
     meter = meter or Effort().meter()
     session = Session(UNIT)
     session.tell("\n".join(script(problem)))
-    answer: Answer = "unknown"
+    answer: Satisfiability = "unknown"
     seed, turn = 0, FIRST_TURN
     while answer == "unknown" and not meter.is_out():
         answer = session.check_plainly(meter.part(turn), seed)
@@ -59,8 +59,8 @@ def script(problem: Problem) -> Iterator[str]:
         name = f"n{len(names)}"
         names[id(node)] = name
         match node:
-            case Leaf(fact):
-                body = _fact(fact)
+            case Leaf(inequality):
+                body = _inequality(inequality)
             case All(parts):
                 body = f"(and true {' '.join(names[id(p)] for p in parts)})"
             case AnyOf(parts):
@@ -82,8 +82,8 @@ def _row(row: Row) -> Iterator[str]:
         yield f"(assert (<= {total} {_number(row.high)}))"
 
 
-def _fact(fact: ColumnFact) -> str:
-    return f"({'>' if fact.strict else '>='} {_polynomial(fact.polynomial)} 0.0)"
+def _inequality(inequality: ColumnInequality) -> str:
+    return f"({'>' if inequality.strict else '>='} {_polynomial(inequality.polynomial)} 0.0)"
 
 
 def _polynomial(polynomial: Polynomial[int]) -> str:

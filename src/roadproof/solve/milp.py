@@ -164,14 +164,14 @@ def solve_mixed(
     On the inner side a solution solves the exact problem up to floating point; on the outer side
     ``infeasible`` says that the exact problem has no solution: whatever is no equation is loosened by
     more than the solver's tolerances, and equations leave room to keep them. Raises
-    ``TooNonlinearError`` for facts above degree 2, ``Late``, and as ``find_solver`` does.
+    ``TooNonlinearError`` for inequalities above degree 2, ``Late``, and as ``find_solver`` does.
     """
     known = find_solver(solver)
     meter = meter or Effort().meter()
     if meter.is_out():
         return Solution("unknown")
     box = loosened(box) if side == "outer" else box
-    circuit = replace_leaves(problem.circuit, lambda fact: approximate(fact, box, side, pieces))
+    circuit = replace_leaves(problem.circuit, lambda inequality: approximate(inequality, box, side, pieces))
     tableau = _Tableau(list(box))
     for row in problem.rows:
         affine = Affine(tuple((c, float(k)) for c, k in row.terms.items()), 0.0)

@@ -1,6 +1,6 @@
 """Convex quadratic programs for Clarabel: what is left when every choice has been made.
 
-Facts are replaced by affine conditions on their inner side near a point at which they hold: tangents
+Inequalities are replaced by affine conditions on their inner side near a point at which they hold: tangents
 there, and secants on a narrow window around it.
 """
 
@@ -10,7 +10,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from roadproof.encode.problem import ColumnFact, Row
+from roadproof.encode.problem import ColumnInequality, Row
 from roadproof.errors import MissingSolverError
 from roadproof.solve.bounds import Affine, Bound, Box, split_squares
 
@@ -23,9 +23,9 @@ class Square:
     affine: Affine
 
 
-def near(fact: ColumnFact, point: Sequence[float], box: Box) -> Bound:
-    """An affine condition under which ``fact`` holds in ``box``, exact at ``point`` for convex facts."""
-    total, squares = split_squares(fact)
+def near(inequality: ColumnInequality, point: Sequence[float], box: Box) -> Bound:
+    """An affine condition under which ``inequality`` holds in ``box``; exact at ``point`` for convex ones."""
+    total, squares = split_squares(inequality)
     for factor, form in squares:
         low, high = form.range(box)
         at = form.value(point)
@@ -34,7 +34,7 @@ def near(fact: ColumnFact, point: Sequence[float], box: Box) -> Bound:
         else:
             bound = form.scaled(low + high) + Affine((), -low * high)
         total = total + bound.scaled(factor)
-    return Bound(total, float(fact.margin))
+    return Bound(total, float(inequality.margin))
 
 
 def narrow(box: Box, point: Sequence[float], widths: Sequence[float]) -> list[tuple[float, float]]:

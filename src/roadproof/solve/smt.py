@@ -18,7 +18,7 @@ UNIT_CVC5 = 200_000
 _MOST = 4_000_000_000  # both count in 32 bits
 _NEVER = 4294967295
 
-Answer: TypeAlias = Literal["sat", "unsat", "unknown"]
+Satisfiability: TypeAlias = Literal["sat", "unsat", "unknown"]
 SExpression: TypeAlias = "str | list[SExpression]"
 
 
@@ -49,19 +49,19 @@ class Session:
             raise SolverError(f"z3 refused: {answer.strip()}")
         return answer
 
-    def check(self, assuming: Sequence[str] = (), meter: Meter | None = None) -> Answer:
+    def check(self, assuming: Sequence[str] = (), meter: Meter | None = None) -> Satisfiability:
         """``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
         query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
         return self.answer(query, meter)
 
-    def check_plainly(self, meter: Meter, seed: int = 0) -> Answer:
+    def check_plainly(self, meter: Meter, seed: int = 0) -> Satisfiability:
         """``check-sat`` by z3's SMT core alone, without the strategies that z3 tries before it.
 
         On polynomial arithmetic with many disjunctions those spend most of a minute in vain.
         """
         return self.answer(f"(check-sat-using (using-params smt :random_seed {seed}))", meter)
 
-    def answer(self, commands: str, meter: Meter | None) -> Answer:
+    def answer(self, commands: str, meter: Meter | None) -> Satisfiability:
         """The answer to commands that end in a check, within what ``meter`` has left.
 
         ``unknown`` where the work is used up, or z3 gives up. Raises ``Late``.
@@ -100,14 +100,14 @@ def _limits(meter: Meter, unit: int) -> tuple[int, int]:
     return max(1, min(_MOST, math.ceil(min(meter.left(), _MOST) * unit))), min(_MOST, milliseconds)
 
 
-def _answer(text: str) -> Answer:
+def _answer(text: str) -> Satisfiability:
     words = text.split()
     if "unsat" in words:
         return "unsat"
     return "sat" if "sat" in words else "unknown"
 
 
-def ask(script: str, solver: str = "z3", meter: Meter | None = None) -> Answer:
+def ask(script: str, solver: str = "z3", meter: Meter | None = None) -> Satisfiability:
     """The answer of ``solver`` (z3 or cvc5) to a whole SMT-LIB script that ends in ``check-sat``.
 
     Raises ``MissingSolverError`` where cvc5 is not installed, and ``Late``.
@@ -127,7 +127,7 @@ def solve(script: str, symbols: Sequence[str], meter: Meter) -> Mapping[str, Fra
     return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
 
 
-def _ask_cvc5(script: str, meter: Meter | None) -> Answer:
+def _ask_cvc5(script: str, meter: Meter | None) -> Satisfiability:
     try:
         import cvc5
     except ImportError:

@@ -85,7 +85,7 @@ def with_lane(query: Query, old: str, new: str) -> Query:
     )
 
 
-def in_some_lane(query: Query, lane: str = "L", variable: str = "M") -> Query:
+def in_some_lane(query: Query, lane: str, variable: str = "M") -> Query:
     """``some M in lanes: query`` with the free lane ``lane`` as M."""
     inside = with_lane(query, lane, variable)
     given = tuple(b for b in inside.claim.given if b.name != variable)
@@ -201,3 +201,12 @@ def _in_domain(
             return syntax.Call(name, tuple(_with_names(a, names) for a in arguments), at)
         case syntax.Group(members, at):
             return syntax.Group(tuple(syntax.Name(names.get(m.name, m.name), m.at) for m in members), at)
+
+
+def conjuncts(query: Query) -> tuple[Query, ...]:
+    """What ``query`` joins by ``and``, each by itself; the query where it joins nothing."""
+    match query.formula:
+        case f.And(parts):
+            return tuple(of_parts(query, (part,)) for part in parts)
+        case _:
+            return (query,)

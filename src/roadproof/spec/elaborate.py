@@ -1,5 +1,6 @@
 """Who meets whom: syntax trees to formulas. Names, sorts, arities, units and cycles are checked here."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from roadproof.errors import TextError
@@ -63,10 +64,16 @@ def apply_definition(specification: Specification, name: str, arguments: tuple[s
     return elaborate(specification, syntax.Claim((), syntax.Call(name, tuple(map(syntax.Name, roles)))))
 
 
-def signature(specification: Specification, name: str) -> tuple[str, ...]:
+def signatures(specification: Specification, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """As ``signature``, of many definitions; what several of them use is read once."""
+    walk = Elaborator(specification)
+    return {name: signature(specification, name, walk) for name in names}
+
+
+def signature(specification: Specification, name: str, walk: Elaborator | None = None) -> tuple[str, ...]:
     """Names of the arguments of a definition, a group of vehicles written out as POV or POV1, POV2.
 
-    The size of a group is the smallest that the definitions below accept.
+    The size of a group is the smallest that the definitions below accept. ``walk`` knows what others use.
     """
     if name not in specification.definitions:
         raise TextError(unknown("definition", name, specification.definitions))
@@ -84,7 +91,7 @@ def signature(specification: Specification, name: str) -> tuple[str, ...]:
             roles += names
             scope[binding.name] = Vehicles(names)
         try:
-            elaborator = Elaborator(specification)
+            elaborator = Elaborator(specification) if walk is None else walk.again()
             elaborator.body_of(name, scope)
             return tuple(roles)
         except TextError as error:

@@ -36,6 +36,10 @@ class Elaborator:
     known: dict[tuple[str, str, tuple[Value, ...]], Formula | Quantity] = field(default_factory=dict)
     sizes: Sizes = field(default_factory=Sizes)
 
+    def again(self) -> "Elaborator":
+        """A walk over another claim in the same specification, which knows what this one has made."""
+        return Elaborator(self.specification, known=self.known, sizes=Sizes(self.sizes.known))
+
     # --- names ---------------------------------------------------------------------------------
 
     @property

@@ -4,12 +4,13 @@ A set is a chain of overrides of named definitions; an option value is one more 
 definitions in force for a choice of set and options are a ``Specification``.
 """
 
+import hashlib
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from difflib import get_close_matches
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from importlib import resources
 from pathlib import Path
 from typing import assert_never
@@ -66,6 +67,13 @@ class Library:
     def bounds(self) -> dict[str, str]:
         """The declared bound of every parameter against 0: ``>``, ``>=`` or none ('')."""
         return {name: parameter.bound for name, parameter in self.parameters.items()}
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """A short text that changes with all that is declared; with places and comments it does not."""
+        parts = [x.name for x in fields(self) if x.name not in ("sources", "files")]
+        declared = [repr(sorted(getattr(self, part).items())) for part in parts]
+        return hashlib.sha256("\0".join(declared).encode()).hexdigest()[:16]
 
     def select(self, set_name: str = "base", options: Mapping[str, str] | None = None) -> "Specification":
         """The definitions in force for a spec set and option values (defaults where not given).
@@ -151,10 +159,10 @@ def bundled_library() -> Library:
     return build_library([Source(f.name, f.read_text("utf-8")) for f in files])
 
 
-def load_library(paths: Iterable[Path] = ()) -> Library:
-    """The bundled library, with the users' files on top: their definitions replace or add."""
+def load_library(files: Iterable[Path | Source] = ()) -> Library:
+    """The bundled library, with the users' files or texts on top: their definitions replace or add."""
     library = bundled_library()
-    extra = [read_specification(path) for path in paths]
+    extra = [file if isinstance(file, Source) else read_specification(file) for file in files]
     return replace(build_library(extra, library), files=tuple(extra)) if extra else library
 
 

@@ -7,26 +7,28 @@ whose lane L is come from the specification.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError, UsageError
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
 from roadproof.logic.formula import Formula, transform
 from roadproof.spec.compose import both, either, eventually
-from roadproof.spec.elaborate import apply_definition, read_claim, signature
+from roadproof.spec.elaborate import apply_definition, elaborate, read_claim, signature
 from roadproof.spec.library import Specification, unknown
 from roadproof.spec.query import Query
+from roadproof.world.road import Zone
 
 MIN_SAFE, MIN_DANGER = "minSafe", "minDanger"
 RSS_PARAMETERS = ("rho", "a_max", "b_min", "b_max", "a_max_lat", "b_min_lat")
 SUBJECT, LANE = "SV", "L"
 
-Zone: TypeAlias = Literal["main", "merge", "depart"]
 _ZONES: dict[Zone, str] = {"main": "onMainRoad", "merge": "inMergeZone", "depart": "inDepartZone"}
 _SCENARIO = re.compile(r"scenario_(\d{1,6})")
+_NUMBERS = re.compile(r"(scenario_)?\d[\d,\s-]*")
 _RANGE = re.compile(r"\s*(\d{1,4})\s*(?:-\s*(\d{1,4})\s*)?")
 _COMPONENTS = ("behaviourSV", "behaviourPOV", "initialCondition")
 
@@ -259,3 +261,91 @@ def in_some_zone(specification: Specification, vehicle: str) -> Query:
 
 def _in_set(name: str, scenario: Scenario, home: Specification) -> str:
     return name if scenario.set_name == home.set_name else f"{name}@{scenario.set_name}"
+
+
+# --- what classes are made of --------------------------------------------------------------------
+
+TEMPLATE = "initSafe and roadSector_i and disturb_i"
+
+
+def sector_name(number: int) -> str:
+    """What the definition of a scenario's road sector is called."""
+    return f"roadSector_{number}"
+
+
+def missing_part(specification: Specification, number: int) -> str:
+    """The first definition of a scenario's template that is not there; empty where all are."""
+    names = (sector_name(number), f"disturb_{number}")
+    return next((name for name in names if name not in specification.definitions), "")
+
+
+def happening_words(specification: Specification, number: int) -> str:
+    """What happens in a scenario, in the words of its behaviours, else in its own."""
+    docs = [_words(specification, f"{kind}_{number}") for kind in ("behaviourSV", "behaviourPOV")]
+    own = name_of(number)
+    return ", ".join(filter(None, docs)) or _words(specification, own) or f"scenario {number}"
+
+
+def _words(specification: Specification, name: str) -> str:
+    definition = specification.definitions.get(name)
+    return "" if definition is None else specification.describe(definition)
+
+
+# --- scenarios in what is written ----------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Application:
+    """A scenario applied to the names of vehicles and a lane."""
+
+    scenario: Scenario
+    arguments: tuple[str, ...]
+
+
+def application_in(specification: Specification, said: syntax.Expression) -> Application | None:
+    """The scenario that an expression applies to names; None where it is anything else."""
+    if not isinstance(said, syntax.Call):
+        return None
+    name, _, set_name = said.name.partition("@")
+    number = number_in(name)
+    arguments = tuple(x.name for x in said.arguments if isinstance(x, syntax.Name))
+    if number is None or len(arguments) < len(said.arguments):
+        return None
+    return Application(Scenario(number, set_name or specification.set_name), arguments)
+
+
+def are_numbers(text: str) -> bool:
+    """Whether a text is meant as numbers of scenarios, for ``read_numbers``, and not as a formula."""
+    return _NUMBERS.fullmatch(text) is not None
+
+
+# --- scenarios in recordings ---------------------------------------------------------------------
+
+PAIR, TRIPLE = (SUBJECT, "POV"), (SUBJECT, "POV1", "POV2")
+"""What vehicles are called in scenarios of two and of three."""
+
+Metric: TypeAlias = Literal["TTC", "THW", "none"]
+DETECTORS: Mapping[str, Mapping[Metric, str]] = {
+    "cut-in": {"TTC": "cutIn_ttc", "THW": "cutIn_thw", "none": "cutIn_free"},
+    "deceleration": {"TTC": "decel_ttc", "THW": "decel_thw", "none": "decel_free"},
+}
+"""Detectors of earlier works, by what they detect and their danger metric (paper, RQ5)."""
+COMPARISON = tuple(name for detectors in DETECTORS.values() for name in detectors.values())
+"""The detectors that the paper's comparison table counts, all definitions of (SV, POV, L)."""
+
+
+def roles(vehicles: int) -> tuple[str, ...]:
+    """What so many vehicles are called: SV and POV, or SV, POV1, POV2 and so on."""
+    return PAIR if vehicles == len(PAIR) else (SUBJECT, *(f"POV{k}" for k in range(1, vehicles)))
+
+
+def beside_lane(specification: Specification, vehicle: str, lane: str = LANE) -> Query:
+    """A vehicle occupies a lanelet of a lane beside ``lane``."""
+    beside = syntax.Call("adjacentLanes", (syntax.Name(lane),))
+    inside = syntax.Call("atLane", (syntax.Name(vehicle), syntax.Name("M")))
+    return elaborate(specification, syntax.Claim((), syntax.Quantified("some", "M", beside, inside)))
+
+
+def is_violation(name: str) -> bool:
+    """Whether a definition is the violation of the RSS distances."""
+    return name == "rssViolation"

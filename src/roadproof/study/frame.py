@@ -60,6 +60,16 @@ class Conducted(Generic[Answer]):
     records: Mapping[str, Mapping[str, Any]]
 
 
+def put_away(study: Study[Piece, Answer], answers: Mapping[str, Answer], folder: Path) -> Conducted[Answer]:
+    """The same answers, kept in a folder. Raises ``UsageError`` where it holds those to another question."""
+    shelf = Shelf(folder, study.question)
+    records = {
+        name: shelf.keep(name, study.record(name, answer, shelf), study.is_sure(answer))
+        for name, answer in answers.items()
+    }
+    return Conducted(answers, {name: shelf.with_paths(record) for name, record in records.items()})
+
+
 def conduct(
     study: Study[Piece, Answer],
     folder: Path | None = None,
@@ -67,12 +77,13 @@ def conduct(
     progress: Progress | None = None,
     what: str = "pieces",
     say: Callable[[str], None] | None = None,
+    each: Callable[[str, Answer], None] | None = None,
 ) -> Conducted[Answer]:
     """Ask all pieces that a folder does not have the answers of. ``processes`` None is one a core.
 
     ``what`` is the word for many pieces, for ``progress``; ``say`` is told of kept answers that do not
-    count. Raises ``UsageError`` where the folder holds the answers to another question, and what
-    ``study.settle`` raises.
+    count, ``each`` of every answer with its name: of kept ones first, then of others as they come. Raises
+    ``UsageError`` where the folder holds the answers to another question, and what ``study.settle`` raises.
     """
     shelf = Shelf(folder, study.question)
     records: dict[str, dict[str, Any]] = {}
@@ -87,6 +98,8 @@ def conduct(
                 say(f"asked again, since a kept answer does not count: {error}")
             continue
         records[name], known[name] = dict(record), answer
+        if each is not None:
+            each(name, answer)
     while pieces := study.pieces(known):
         with closing(pool.work(study.settle, pieces, processes, study.doubt, progress, what)) as answered:
             for _, answers in answered:
@@ -94,4 +107,6 @@ def conduct(
                     made = study.record(name, answer, shelf)
                     records[name] = shelf.keep(name, made, study.is_sure(answer))
                     known[name] = answer
+                    if each is not None:
+                        each(name, answer)
     return Conducted(known, {name: shelf.with_paths(record) for name, record in records.items()})

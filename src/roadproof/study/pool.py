@@ -11,6 +11,8 @@ Answer = TypeVar("Answer")
 
 # Told of so many jobs that are done, of so many in all, and of the word for many of them.
 Progress: TypeAlias = Callable[[int, int, str], None]
+# Told what is said in any case, in a line.
+Say: TypeAlias = Callable[[str], None]
 
 
 def work(

@@ -8,18 +8,19 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields
-from importlib.metadata import version
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
-from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.answers.reader import FindLabel, without_labels
+from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data, to_json
+from roadproof.evidence.drive_file import natural_of, read_drive
+from roadproof.evidence.heading import heading
 from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
-from roadproof.files import make_folder, write_whole
+from roadproof.files import json_bytes, make_folder, write_json, write_whole
 from roadproof.spec.library import Library
 
 INDEX = "index.json"
@@ -29,25 +30,25 @@ INDEX = "index.json"
 class Question:
     """What is asked: ``schema`` is that of the index, ``said`` what the index says once for all answers.
 
-    ``more`` is what else an answer depends on.
+    ``more`` is what else an answer depends on. ``find_label`` knows the names of claims, where they have any.
     """
 
     schema: str
     said: Mapping[str, Any]
     more: Mapping[str, str]
     library: Library
+    find_label: FindLabel = without_labels
+
+    @property
+    def heading(self) -> dict[str, Any]:
+        """How the index begins: its kind, the version, the library, and what is said once."""
+        return {**heading(self.schema, self.library), **self.said}
 
     @property
     def fingerprint(self) -> str:
         """A short text that changes with the question, with all that the library says, with the version."""
-        asked = json.dumps([self.schema, dict(self.said), dict(self.more)], sort_keys=True)
-        library = [
-            repr(sorted(getattr(self.library, part.name).items()))
-            for part in fields(self.library)
-            if part.name not in ("sources", "files")
-        ]
-        texts = [version("roadproof"), asked, *library]
-        return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
+        asked = json.dumps([dict(self.more), self.heading], sort_keys=True)
+        return hashlib.sha256(asked.encode()).hexdigest()[:16]
 
 
 class Shelf:
@@ -59,25 +60,31 @@ class Shelf:
     def __init__(self, folder: Path | None, question: Question) -> None:
         self.folder = folder
         self.library = question.library
-        self.question = question.fingerprint
+        self.find_label = question.find_label
+        self.question = "" if folder is None else question.fingerprint
         self.head = head_of(question.schema, self.question, question.said)
         self.written: list[str] = []
         self.names: set[str] = set()
         if folder is not None:
-            make_folder(folder / ANSWERS)
+            for place in (folder, folder / ANSWERS):
+                make_folder(place)
             if not (folder / HEAD).exists():
-                write_whole(folder / HEAD, _text(self.head))
+                write_json(folder / HEAD, self.head)
             keep_specifications(folder, question.library)
 
     # --- evidence ------------------------------------------------------------------------------
 
     def certificate(self, name: str, certificate: Certificate | None) -> str | dict[str, Any] | None:
         """The name of a file with a certificate, or its data."""
-        return None if certificate is None else self._put(name, certificate_data(certificate))
+        if certificate is None or self.folder is None:
+            return None if certificate is None else certificate_data(certificate)
+        return self._put(self.folder, name, to_json(certificate).encode())
 
     def drive(self, name: str, drive: Judged | None) -> str | dict[str, Any] | None:
         """The name of a drive file, or its data."""
-        return None if drive is None else self._put(name, drive.as_data())
+        if drive is None or self.folder is None:
+            return None if drive is None else drive.as_data()
+        return self._put(self.folder, name, json_bytes(drive.as_data()))
 
     def read_certificate(self, kept: object) -> Certificate | None:
         """The inverse of ``certificate``. Raises ``InputError``."""
@@ -85,12 +92,13 @@ class Shelf:
 
     def read_drive(self, kept: object) -> Judged | None:
         """The inverse of ``drive``: judged again. Raises ``InputError``."""
-        return None if kept is None else Judged(read_drive(self._get(kept), str(kept)[:60]), self.library)
+        if kept is None:
+            return None
+        content, where = self._get(kept), str(kept)[:60]
+        return Judged(read_drive(content, where), self.library, natural_of(content, where))
 
-    def _put(self, name: str, data: dict[str, Any]) -> str | dict[str, Any]:
-        if self.folder is None:
-            return data
-        write_whole(self.folder / name, _text(data))
+    def _put(self, folder: Path, name: str, content: bytes) -> str:
+        write_whole(folder / name, content)
         self.written.append(name)
         return name
 
@@ -111,7 +119,7 @@ class Shelf:
             raise UsageError(self._foreign(f"they are not of this version ({error})")) from None
         if kept is None or kept.head.content != self.head:
             raise UsageError(self._foreign("to this one under another library"))
-        for line in answers_of(kept, self.library):
+        for line in answers_of(kept, self.library, self.find_label):
             if line.fault and say is not None:
                 say(f"asked again, since a kept answer does not count: {line.fault}")
             elif not line.fault and line.record is not None:
@@ -132,7 +140,7 @@ class Shelf:
         if self.folder is not None and sure:
             sealed = {"evidence": names, **record}
             sealed["seal"] = seal_of(sealed, self.question, self.folder)
-            write_whole(self.folder / ANSWERS / f"{name}.json", _text(sealed))
+            write_json(self.folder / ANSWERS / f"{name}.json", sealed)
         return record
 
     def with_paths(self, data: Any) -> Any:
@@ -150,7 +158,7 @@ class Shelf:
 
 def write_index(folder: Path, data: Mapping[str, Any]) -> None:
     """The index of a folder; files in it are named as they are from there. Raises ``InputError``."""
-    write_whole(folder / INDEX, _text(inside(dict(data), folder)))
+    write_json(folder / INDEX, inside(dict(data), folder))
 
 
 def inside(data: Any, folder: Path) -> Any:
@@ -179,7 +187,3 @@ def keep_specifications(folder: Path, library: Library) -> None:
     """Copies of the users' specification files in a folder of evidence: ``check`` reads them there."""
     for name, source in zip(specification_names(library), library.files, strict=True):
         write_whole(folder / name, source.text.encode("utf-8"))
-
-
-def _text(data: Mapping[str, Any]) -> bytes:
-    return (json.dumps(data, indent=2, ensure_ascii=False) + "\n").encode("utf-8")

@@ -16,6 +16,7 @@ from typing import Any, cast, get_args
 from roadproof.errors import InputError
 from roadproof.shipped import shipped
 from roadproof.signals import LIMITED
+from roadproof.world.opendrive import read_lanelets
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -28,9 +29,32 @@ def names_of(kind: str) -> tuple[str, ...]:
 
 
 def load_road(name_or_path: str | Path) -> Road:
-    """A bundled road by name, or a user's by path. Raises ``InputError``."""
+    """A bundled road by name, or a user's by path: TOML, or OpenDRIVE in .xodr. Raises ``InputError``."""
+    if Path(name_or_path).suffix == ".xodr":
+        path = Path(name_or_path)
+        lanelets = read_lanelets(path)
+        check_lanelets(lanelets, str(path))
+        return Road(path.stem, lanelets, shared_boundaries(lanelets))
     path, content = _read("roads", name_or_path)
     _only(content, {"lanelet", "adjacent", "name"}, f"{path}")
+    return _road(path, content)
+
+
+def load_recorded_road(path: Path, directions: tuple[int, ...] = ()) -> tuple[Road, int]:
+    """The road of a recording, and its driving direction: one of ``directions``, by default the first.
+
+    Where there are no ``directions``, the file must not name one, and it is 0. Raises ``InputError``.
+    """
+    path, content = _read("roads", path)
+    _only(content, {"lanelet", "adjacent", "name", *(["direction"] if directions else [])}, f"{path}")
+    way = content.get("direction", directions[0] if directions else 0)
+    if directions and (isinstance(way, bool) or way not in directions):
+        shown = " or ".join(map(str, directions))
+        raise InputError(f"{path}: direction={way!r}, but it must be {shown}")
+    return _road(path, content), int(way)
+
+
+def _road(path: Path, content: Mapping[str, Any]) -> Road:
     entries = content.get("lanelet", [])
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{path}: a road needs at least one [[lanelet]]")
@@ -74,6 +98,24 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     return Vehicle(str(content.get("name", path.stem)), **one, **two)  # type: ignore[arg-type]
 
 
+def read_toml(path: Path) -> Mapping[str, Any]:
+    """The content of a file, its numbers exact. Raises ``InputError``."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_MODEL + 1)
+        if len(data) > LARGEST_MODEL:
+            raise InputError(f"the file is larger than {LARGEST_MODEL} bytes")
+        return tomllib.loads(data.decode("utf-8"), parse_float=_exact)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{path} is not UTF-8 text") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as error:
+        raise InputError(f"{path} is no TOML: {error}") from None
+
+
 def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Mapping[str, Any]]:
     path = Path(name_or_path)
     bundled = shipped("models") / kind / f"{name_or_path}.toml"
@@ -81,21 +123,10 @@ def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Mapping[str, Any]]
         if len(path.parts) != 1 or str(name_or_path) not in names_of(kind):
             raise InputError(
                 f"there is no {kind[:-1]} '{name_or_path}'; there are {', '.join(names_of(kind))}, "
-                "or give the path of a .toml file"
+                f"or give the path of a .toml {'or .xodr ' if kind == 'roads' else ''}file"
             )
         path = bundled
-    try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_MODEL + 1)
-        if len(data) > LARGEST_MODEL:
-            raise InputError(f"{path} is larger than {LARGEST_MODEL} bytes")
-        return path, tomllib.loads(data.decode("utf-8"), parse_float=_exact)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8 text") from None
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise InputError(f"{path} is no TOML: {error}") from None
+    return path, read_toml(path)
 
 
 def _exact(text: str) -> Fraction | float:

@@ -9,11 +9,9 @@ partition of the union of the rows, whether or not every one of them can be had.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from roadproof.effort import Effort
-from roadproof.prove.prover import prove
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.verdict import Verdict
+from roadproof.analysis.basis import Basis
+from roadproof.spec.compose import both, equivalence, implication, negation
+from roadproof.spec.query import Query
 
 REFINING = 2.0  # units of work for one proof
 
@@ -25,9 +23,9 @@ class Axis:
     ``parts`` of a row are formulas that follow from it, and may stand for it where the rest says as much.
     """
 
-    context: tuple[str, ...]
-    rows: Mapping[int, str]
-    parts: Mapping[int, tuple[str, ...]]
+    context: tuple[Query, ...]
+    rows: Mapping[int, Query]
+    parts: Mapping[int, tuple[Query, ...]]
 
 
 @dataclass(frozen=True)
@@ -36,37 +34,40 @@ class Cell:
 
     holds: tuple[int, ...]
     said: tuple[int, ...]
-    denied: tuple[str, ...]
+    denied: tuple[Query, ...]
 
 
 @dataclass(frozen=True)
 class Outline:
-    """The rows of each cell, with those that are denied in it; ``empty``: claims why there are no others."""
+    """The rows of each cell, with those that are denied in it; ``empty``: what is proved never to hold."""
 
     cells: tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]
-    empty: tuple[str, ...]
+    empty: tuple[Query, ...]
 
 
-def text_of(axis: Axis, cell: Cell) -> str:
+def whole_cell(axis: Axis, holds: Sequence[int], others: Sequence[int]) -> Cell:
+    """The cell where ``holds`` hold and ``others`` do not, with all of that said."""
+    return Cell(tuple(holds), tuple(holds), tuple(axis.rows[number] for number in others))
+
+
+def query_of(axis: Axis, cell: Cell) -> Query:
     """The formula of a cell, context included."""
-    said = [axis.rows[number] for number in cell.said]
-    return " and ".join([*axis.context, *said, *(f"not {part}" for part in cell.denied)])
+    return both(*axis.context, *(axis.rows[number] for number in cell.said), *map(negation, cell.denied))
 
 
-def outline(axis: Axis, specification: Specification, effort: Effort) -> Outline:
-    """The cells of an axis but for those that are proved empty; ``effort`` is for each proof.
+def outline(axis: Axis, basis: Basis) -> Outline:
+    """The cells of an axis but for those that are proved empty, each with ``basis.proof`` units of work.
 
     Raises ``Late``: a proof that the clock cut off would make other classes.
     """
-    empty: list[str] = []
+    empty: list[Query] = []
 
     def never(holds: Sequence[int], others: Sequence[int] = ()) -> bool:
-        cell = Cell(tuple(holds), tuple(holds), tuple(axis.rows[n] for n in others))
-        claim = f"not ({text_of(axis, cell)})"
-        if not _proves(specification, claim, effort):
+        query = query_of(axis, whole_cell(axis, holds, others))
+        if not basis.proof_of(negation(query)).holds:
             return False
         if len(holds) != 2 or others:  # that two rows exclude each other is said by their cells
-            empty.append(claim)
+            empty.append(query)
         return True
 
     level: list[tuple[int, ...]] = [(number,) for number in sorted(axis.rows) if not never((number,))]
@@ -94,17 +95,15 @@ def _larger(level: Sequence[tuple[int, ...]], possible: set[tuple[int, ...]]) ->
                 yield larger
 
 
-def refine(
-    axis: Axis, specification: Specification, holds: Sequence[int], others: Sequence[int], effort: Effort
-) -> Cell:
+def refine(axis: Axis, basis: Basis, holds: Sequence[int], others: Sequence[int]) -> Cell:
     """The cell where ``holds`` hold and ``others`` do not, without what is proved to follow from the rest.
 
     A part of a row stands in its place where the two are proved to be the same there. Raises ``Late``.
     """
 
-    def follows(said: Sequence[int], denied: Iterable[str], conclusion: str) -> bool:
-        premise = text_of(axis, Cell((), tuple(said), tuple(denied)))
-        return _proves(specification, f"{premise} -> {conclusion}", effort.of(REFINING))
+    def follows(said: Sequence[int], denied: Iterable[Query], conclusion: Query) -> bool:
+        premise = query_of(axis, Cell((), tuple(said), tuple(denied)))
+        return basis.proof_of(implication(premise, conclusion), REFINING).holds
 
     rows = axis.rows
     said, denied = list(holds), {n: rows[n] for n in others}
@@ -114,19 +113,12 @@ def refine(
             said = rest
     for number in others:
         rest_denied = {n: part for n, part in denied.items() if n != number}
-        if follows(said, rest_denied.values(), f"not {rows[number]}"):
+        if follows(said, rest_denied.values(), negation(rows[number])):
             denied = rest_denied
     for number in tuple(denied):
         around = [part for n, part in denied.items() if n != number]
         for part in axis.parts.get(number, ()):
-            if follows(said, around, f"({part} <-> {rows[number]})"):
+            if follows(said, around, equivalence(part, rows[number])):
                 denied[number] = part
                 break
     return Cell(tuple(holds), tuple(said), tuple(denied.values()))
-
-
-def _proves(specification: Specification, claim: str, effort: Effort) -> bool:
-    return prove(specification, read_claim(specification, claim), effort).verdict in (
-        Verdict.PROVED,
-        Verdict.VACUOUS,
-    )

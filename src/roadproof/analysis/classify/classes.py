@@ -15,11 +15,32 @@ from roadproof.analysis.classify.cells import Axis, Cell
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.elaborate import read_claim, signature
+from roadproof.spec.elaborate import apply_definition
 from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import Scenario, likes_of, vehicles_of
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import (
+    LANE,
+    PAIR,
+    TEMPLATE,
+    Scenario,
+    applied,
+    components,
+    disturbance,
+    happening_words,
+    likes_of,
+    missing_part,
+    safe,
+    sector,
+    sector_name,
+    sector_words,
+    vehicles_of,
+)
+from roadproof.spec.scenarios import name_of as scenario_name
+from roadproof.study.shelf import specification_names
 
 SET_NAME = "classes"
+FILE_NAME = "classes.spec"
+ANYBODY = PAIR  # SV and any group of vehicles
 _WORD = re.compile(r"[a-z][a-z0-9]*")
 
 
@@ -35,7 +56,7 @@ class Group:
     @property
     def arguments(self) -> str:
         """What its scenarios are applied to."""
-        return f"({', '.join(self.vehicles)}, L)"
+        return f"({', '.join(self.vehicles)}, {LANE})"
 
     @property
     def disturbances(self) -> tuple[int, ...]:
@@ -45,31 +66,64 @@ class Group:
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be divided; ``sectors``: a word for each road sector by its first scenario."""
+    """What is to be divided: scenarios of the set ``set_name``.
 
+    In words, each by its first scenario, ``sectors``: a name for each road sector; ``places``: what is said
+    of it; ``happenings``: what each disturbance is.
+    """
+
+    set_name: str
     groups: tuple[Group, ...]
     sectors: Mapping[int, str]
+    places: Mapping[int, str]
+    happenings: Mapping[int, str]
 
     @property
     def has_places(self) -> bool:
         """Whether there are several road sectors; if not, scenarios are divided by what happens alone."""
         return len(self.sectors) > 1
 
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """All its scenarios."""
+        return tuple(sorted(number for group in self.groups for number in group.rows))
+
+    def what(self, holds: Sequence[int]) -> str:
+        """The name of a cell of what happens: ``what_4_8``, or ``class_4_8`` where there are no places."""
+        return _joined("what" if self.has_places else "class", holds)
+
+    def place(self, holds: Sequence[int]) -> str:
+        """A name for a cell of road sectors, such as main_merge."""
+        return "_".join(self.sectors[number] for number in holds)
+
+    def where(self, holds: Sequence[int]) -> str:
+        """The name of a cell of road sectors among definitions."""
+        return f"where_{self.place(holds)}"
+
 
 @dataclass(frozen=True)
 class Class:
-    """A class by name: exactly ``scenarios`` hold; ``what`` and ``where`` are the cells it is made of."""
+    """A class by name: exactly ``scenarios`` hold; ``what`` and ``where`` are the cells it is made of.
+
+    In words, ``place`` is where and ``description`` what happens.
+    """
 
     name: str
     vehicles: tuple[str, ...]
     scenarios: tuple[int, ...]
     what: Cell
     where: Cell | None
+    place: str | None
+    description: str
 
     @property
     def formula(self) -> str:
-        """The class applied to its vehicles and L."""
-        return f"{self.name}({', '.join(self.vehicles)}, L)"
+        """The class applied to its vehicles and L, as it is written."""
+        return f"{self.name}({', '.join(self.vehicles)}, {LANE})"
+
+    def query(self, specification: Specification) -> Query:
+        """The class applied to its vehicles and L, in the set of the classes."""
+        return apply_definition(specification, self.name, (*self.vehicles, LANE))
 
 
 @dataclass(frozen=True)
@@ -83,35 +137,37 @@ class Classes:
     def of(self, group: Group) -> tuple[Class, ...]:
         """The classes of a group."""
         what = self.what[self.plan.groups.index(group)]
-        if not self.plan.has_places:
-            return tuple(Class(name_of("class", w), group.vehicles, w.holds, w, None) for w in what)
-        return tuple(
-            Class(
-                f"{name_of('class', w)}_{self.place(place)}",
-                group.vehicles,
-                tuple(
-                    number
-                    for number, (disturbance, sector) in group.rows.items()
-                    if disturbance in w.holds and sector in place.holds
-                ),
-                w,
-                place,
-            )
-            for w, place in product(what, self.where)
-        )
+        places: tuple[Cell | None, ...] = self.where if self.plan.has_places else (None,)
+        return tuple(self._made(group, w, place) for w, place in product(what, places))
 
-    def place(self, cell: Cell) -> str:
-        """A name for a cell of road sectors, such as main_merge."""
-        return "_".join(self.plan.sectors[number] for number in cell.holds)
+    def _made(self, group: Group, what: Cell, where: Cell | None) -> Class:
+        description = "; ".join(self.plan.happenings[number] for number in what.holds)
+        name = _joined("class", what.holds)
+        if where is None:
+            return Class(name, group.vehicles, what.holds, what, None, None, description)
+        place = self.plan.place(where.holds)
+        scenarios = tuple(
+            number
+            for number, (disturbance, sector) in group.rows.items()
+            if disturbance in what.holds and sector in where.holds
+        )
+        return Class(f"{name}_{place}", group.vehicles, scenarios, what, where, place, description)
 
     def all(self) -> tuple[Class, ...]:
         """The classes of all groups."""
         return tuple(one for group in self.plan.groups for one in self.of(group))
 
+    def alike(self) -> tuple[tuple[Class, ...], ...]:
+        """The classes of all groups, those together in which the same happens."""
+        return tuple(
+            tuple(one for one in self.of(group) if one.what.holds == cell.holds)
+            for group, cells in zip(self.plan.groups, self.what, strict=True)
+            for cell in cells
+        )
 
-def name_of(prefix: str, cell: Cell) -> str:
-    """``what_4_8`` for the cell where 4 and 8 hold."""
-    return "_".join([prefix, *map(str, cell.holds)])
+
+def _joined(prefix: str, holds: Sequence[int]) -> str:
+    return "_".join([prefix, *map(str, holds)])
 
 
 def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
@@ -121,19 +177,25 @@ def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
     """
     if specification.set_name == SET_NAME or SET_NAME in specification.library.sets:
         raise UsageError(f"there is a set '{SET_NAME}' already: classify the set that it extends, without it")
+    if FILE_NAME in specification_names(specification.library):
+        raise UsageError(f"--spec: the classes are written to a file {FILE_NAME}: rename that of yours")
     likes = likes_of(specification)
     disturbances: dict[int, int] = {}
     sectors: dict[Formula, int] = {}
     groups: dict[tuple[str, ...], dict[int, tuple[int, int]]] = {}
     for number in numbers:
         vehicles = vehicles_of(specification, Scenario(number, specification.set_name))
-        sector = sectors.setdefault(_sector(specification, number), number)
-        disturbance = disturbances.setdefault(likes[number], number)
-        groups.setdefault(vehicles, {})[number] = (disturbance, sector)
+        first = sectors.setdefault(_sector(specification, number), number)
+        groups.setdefault(vehicles, {})[number] = (disturbances.setdefault(likes[number], number), first)
     for rows in groups.values():
         _check_rows(rows, tuple(sectors.values()))
-    words = _words(specification, tuple(sectors.values()))
-    return Plan(tuple(Group(vehicles, rows) for vehicles, rows in sorted(groups.items(), key=_size)), words)
+    return Plan(
+        specification.set_name,
+        tuple(Group(vehicles, rows) for vehicles, rows in sorted(groups.items(), key=_size)),
+        _names(specification, tuple(sectors.values())),
+        {number: sector_words(specification, number) for number in sectors.values()},
+        {number: happening_words(specification, number) for number in disturbances.values()},
+    )
 
 
 def _size(item: tuple[tuple[str, ...], object]) -> int:
@@ -141,16 +203,17 @@ def _size(item: tuple[tuple[str, ...], object]) -> int:
 
 
 def _sector(specification: Specification, number: int) -> Formula:
-    for name in (f"roadSector_{number}", f"disturb_{number}"):
-        if name not in specification.definitions:
-            raise InputError(
-                f"scenario_{number}: there is no definition {name}; classify needs the template "
-                "initSafe and roadSector_i and disturb_i, so leave the scenario out with --among"
-            )
+    missing = missing_part(specification, number)
+    if missing:
+        raise InputError(
+            f"{scenario_name(number)}: there is no definition {missing}; classify needs the template "
+            f"{TEMPLATE}, so leave the scenario out with --among"
+        )
     try:
-        return without_names(read_claim(specification, f"roadSector_{number}(SV, POV)").formula)
+        return without_names(sector(specification, number, ANYBODY).formula)
     except TextError as error:
-        raise InputError(f"roadSector_{number} must take SV and any group of vehicles: {error}") from None
+        told = f"{sector_name(number)} must take SV and any group of vehicles: {error}"
+        raise InputError(told) from None
 
 
 def _check_rows(rows: Mapping[int, tuple[int, int]], sectors: Sequence[int]) -> None:
@@ -163,9 +226,9 @@ def _check_rows(rows: Mapping[int, tuple[int, int]], sectors: Sequence[int]) -> 
         )
 
 
-def _words(specification: Specification, sectors: Sequence[int]) -> dict[int, str]:
+def _names(specification: Specification, sectors: Sequence[int]) -> dict[int, str]:
     """The first word of each sector's description, or its number where that is no name of its own."""
-    docs = {n: specification.describe(specification.definitions[f"roadSector_{n}"]) for n in sectors}
+    docs = {number: sector_words(specification, number) for number in sectors}
     first = {n: (_WORD.findall(doc.lower()) or [str(n)])[0] for n, doc in docs.items()}
     words = list(first.values())
     return {n: word if words.count(word) == 1 else str(n) for n, word in first.items()}
@@ -173,28 +236,20 @@ def _words(specification: Specification, sectors: Sequence[int]) -> dict[int, st
 
 def what_axis(plan: Plan, group: Group, specification: Specification) -> Axis:
     """What happens: disturbances after initSafe, or whole scenarios where there is one road sector only."""
-    row = "disturb" if plan.has_places else "scenario"
-    safe = [f"initSafe(SV, {other})" for other in group.vehicles[1:]]
+    context = [safe(specification, group.vehicles[0], other) for other in group.vehicles[1:]]
     return Axis(
-        tuple(safe) if plan.has_places else (),
-        {n: f"{row}_{n}{group.arguments}" for n in group.disturbances},
-        {n: tuple(_parts(specification, group, n)) for n in group.disturbances},
+        tuple(context) if plan.has_places else (),
+        {number: _row(plan, group, specification, number) for number in group.disturbances},
+        {n: tuple(components(specification, n, group.vehicles)) for n in group.disturbances},
     )
 
 
-def where_axis(plan: Plan, vehicles: Sequence[str]) -> Axis:
+def _row(plan: Plan, group: Group, specification: Specification, number: int) -> Query:
+    if plan.has_places:
+        return disturbance(specification, number, group.vehicles)
+    return applied(specification, Scenario(number, specification.set_name), group.vehicles)
+
+
+def where_axis(plan: Plan, specification: Specification, vehicles: Sequence[str] = ANYBODY) -> Axis:
     """Which road sectors the vehicles are in at the start."""
-    listed = ", ".join(vehicles)
-    return Axis((), {n: f"roadSector_{n}({listed})" for n in plan.sectors}, {})
-
-
-def _parts(specification: Specification, group: Group, number: int) -> list[str]:
-    """The parts of a disturbance (eq. disturbFormat) that are definitions of the group's vehicles and L."""
-    parts = []
-    for kind in ("behaviourSV", "behaviourPOV", "initialCondition"):
-        name = f"{kind}_{number}"
-        if name in specification.definitions:
-            arguments = signature(specification, name)
-            if {*arguments} <= {*group.vehicles, "L"}:
-                parts.append(f"{name}({', '.join(arguments)})")
-    return parts
+    return Axis((), {number: sector(specification, number, vehicles) for number in plan.sectors}, {})

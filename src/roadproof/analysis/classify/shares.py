@@ -6,26 +6,36 @@ and no further (``clip``): what does not happen on them does not happen.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.analysis.classify.classes import Class, Classes
+from roadproof.evaluation.counting import Counted, without_repeats
+from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.lane_atoms import OTHER_LANE
+from roadproof.evaluation.questions import (
+    ROLES,
+    START,
+    MonitorKey,
+    Questions,
+    Settings,
+    ask,
+    of_three,
+)
+from roadproof.formats.recording import Recording
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.monitor.compiled import compile
-from roadproof.spec.elaborate import read_claim
+from roadproof.monitoring.compiled import compile
+from roadproof.searching.impossible import parts
+from roadproof.spec.elaborate import apply_definition
 from roadproof.spec.library import Specification
-from roadproof.traffic.evaluate import Findings, evaluate_recording
-from roadproof.traffic.questions import PAIR, START, TRIPLE, Asked, Questions, Role, Settings, ask, of_three
-from roadproof.traffic.recording import Recording
+from roadproof.spec.scenarios import LANE, PAIR, TRIPLE, disturbance, name_of, number_in
 
 Situation: TypeAlias = tuple[str, int, int, int | None, str]
 """Recording, SV, POV, POV2 or None, lane."""
-PAIRS_OF_ROLES: tuple[tuple[Role, str, str], ...] = (("first", "SV, POV", "POV"), ("second", "POV, SV", "SV"))
-MOST_TOLD = 20
 
 
 @dataclass
@@ -33,7 +43,8 @@ class Shares:
     """Counts over recordings. By class ``situations`` and ``traces``; ``classified`` by number of vehicles.
 
     ``all_traces``: traces in which danger arises; ``covered``: those with a class; ``broken``: situations in
-    which classes are not what they are proved to be.
+    which classes are not what they are proved to be; ``repeated``: traces that an earlier recording shows
+    too, which are left out. ``source`` says in words what was counted.
     """
 
     recordings: list[str] = field(default_factory=list)
@@ -43,6 +54,8 @@ class Shares:
     traces: Counter[str] = field(default_factory=Counter)
     classified: Counter[int] = field(default_factory=Counter)
     broken: list[str] = field(default_factory=list)
+    repeated: int = 0
+    source: str = ""
 
 
 def count_shares(
@@ -51,12 +64,14 @@ def count_shares(
     values: Mapping[str, Fraction],
     recordings: Iterable[Recording],
     kinds: Sequence[str] = ("Car",),
+    source: str = "",
 ) -> Shares:
     """Count the classes in ``recordings``; ``specification`` is the set of the classes.
 
-    ``values``: parameters in SI units; ``kinds``: the vehicles that are looked at. Raises ``InputError``.
+    ``values``: parameters in SI units; ``kinds``: the vehicles that are looked at. What an earlier recording
+    has shown is left out. Raises ``InputError``.
     """
-    shares = Shares()
+    shares, counted = Shares(source=source), Counted()
     settings = Settings(
         specification.library,
         specification.options,
@@ -71,30 +86,35 @@ def count_shares(
     for recording in recordings:
         if recording.rate not in known:
             known[recording.rate] = questions_of(classes, specification, settings, recording.rate)
-        add_shares(shares, classes, evaluate_recording(recording, known[recording.rate]))
+        found = without_repeats(evaluate_recording(recording, known[recording.rate]), counted)
+        add_shares(shares, classes, found)
+    shares.repeated = sum(repeat.what == "trace" for repeat in counted.repeats)
     return shares
 
 
 def questions_of(classes: Classes, specification: Specification, settings: Settings, rate: int) -> Questions:
     """Every scenario and class, asked in both roles and for the lanes of both vehicles."""
-    pairs: dict[Asked, Formula] = {}
-    triples: dict[Asked, Formula] = {}
+    pairs: dict[MonitorKey, Formula] = {}
+    triples: dict[MonitorKey, Formula] = {}
     starts: list[Formula] = []
 
-    def read(text: str) -> Formula:
-        return with_values(read_claim(specification, text).formula, settings.values)
+    def applied(name: str, vehicles: tuple[str, ...], lane: str = LANE) -> Formula:
+        query = apply_definition(specification, name, (*vehicles, lane))
+        return with_values(query.formula, settings.values)
 
     for group in classes.plan.groups:
-        names = [*(f"scenario_{number}" for number in group.rows), *(one.name for one in classes.of(group))]
+        names = [*map(name_of, group.rows), *(one.name for one in classes.of(group))]
         if group.vehicles == PAIR:
             for name in names:
-                for role, vehicles, _ in PAIRS_OF_ROLES:
-                    for lane in ("L", "L1"):
-                        pairs[Asked(name, 0, role, lane)] = read(f"{name}({vehicles}, {lane})")
+                for role, vehicles in ROLES.items():
+                    for lane in (LANE, OTHER_LANE):
+                        pairs[MonitorKey(name, 0, role, lane)] = applied(name, vehicles, lane)
         elif group.vehicles == TRIPLE:
-            starts += [read(f"disturb_{number}{group.arguments}") for number in group.disturbances]
+            for number in group.disturbances:
+                happens = disturbance(specification, number, group.vehicles).formula
+                starts.append(with_values(happens, settings.values))
             for name in names:
-                triples[of_three(name, 0)] = read(f"{name}{group.arguments}")
+                triples[of_three(name, 0)] = applied(name, group.vehicles)
     return replace(
         ask(settings, rate),
         pairs=(compile(pairs),) if pairs else (),
@@ -105,18 +125,7 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
 
 def _at_start(formula: Formula) -> Formula:
     """What ``formula`` asks of its first instant: its state conjuncts; true where there is none."""
-    return f.conjunction(*(part for part in _conjuncts(formula) if f.is_state(part)))
-
-
-def _conjuncts(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case f.Named(_, _, body) if not f.is_state(formula):
-            yield from _conjuncts(body)
-        case f.And(every):
-            for part in every:
-                yield from _conjuncts(part)
-        case _:
-            yield formula
+    return f.conjunction(*(part for part in parts(formula) if f.is_state(part)))
 
 
 def add_shares(shares: Shares, classes: Classes, findings: Findings) -> None:
@@ -127,10 +136,11 @@ def add_shares(shares: Shares, classes: Classes, findings: Findings) -> None:
     for match in findings.matches:
         situation = (findings.recording, match.sv, match.pov, match.pov2, match.lane)
         where[situation] = match.pair
-        if match.set_name.startswith("scenario_"):
-            scenarios[situation].add(int(match.set_name.removeprefix("scenario_")))
-        else:
+        number = number_in(match.set_name)
+        if number is None:
             found[situation].add(match.set_name)
+        else:
+            scenarios[situation].add(number)
     by_name = {one.name: one for one in classes.all()}
     shares.recordings.append(findings.recording)
     shares.all_traces += len(findings.traces)

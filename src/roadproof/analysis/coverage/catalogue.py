@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
+from roadproof.spec.scenarios import PAIR
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
@@ -63,12 +64,9 @@ def catalogue(road: Road, vehicle: Vehicle) -> Iterator[Drive]:
             continue
         if between is not None and not (all(moves) and abs(mine[0] - theirs[0]) > between + vehicle.width):
             continue
-        yield Drive(
-            {
-                "SV": _motion(vehicle, mine, ZERO, CRUISE + along.faster, along.speeds_up, Fraction(2)),
-                "POV": _motion(vehicle, theirs, along.gap, CRUISE, along.slows_down, Fraction(-3)),
-            }
-        )
+        subject = _motion(vehicle, mine, ZERO, CRUISE + along.faster, along.speeds_up, Fraction(2))
+        other = _motion(vehicle, theirs, along.gap, CRUISE, along.slows_down, Fraction(-3))
+        yield Drive(dict(zip(PAIR, (subject, other), strict=True)))
 
 
 def _alongs() -> Iterator[Along]:

@@ -7,9 +7,9 @@ from fractions import Fraction
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.judge.replay import first_breach, first_overlap
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.bind import bind, values_with
 from roadproof.spec.library import Library
+from roadproof.spec.query import Query
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import starts_of
@@ -18,17 +18,16 @@ from roadproof.world.road import Road
 ZERO = Fraction(0)
 
 
-def simplest(file: DriveFile, library: Library, model: str = "car") -> DriveFile:
-    """The drive with fewer accelerations and rounder numbers, on which the file's formula still holds.
+def simplest(file: DriveFile, query: Query, library: Library) -> DriveFile:
+    """The drive with fewer accelerations and rounder numbers, on which ``query`` still holds.
 
     Tried for each vehicle, and kept where the judge agrees, the vehicle stays on the road and within
-    the limits of ``model``, and its speed across is 0 in the end: no acceleration along or across at all,
+    the limits of a car, and its speed across is 0 in the end: no acceleration along or across at all,
     none along in one piece, two neighbouring pieces with their mean, round numbers.
     """
-    limits = load_vehicle(model)
+    limits = load_vehicle("car")
     current = dict(file.drive.vehicles)
-    query = read_claim(library.select(file.set_name, file.options), file.formula)
-    formula = bind(query.formula, file.road, file.lanes, {**default_values(library), **file.values})
+    formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
 
     def good(name: str, motion: Motion) -> bool:
         drive = Drive({**current, name: motion})

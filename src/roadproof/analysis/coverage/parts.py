@@ -8,14 +8,15 @@ part out means putting true in its place, so that what is left holds wherever th
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from roadproof.analysis.requests import applied
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.spec.elaborate import read_claim
+from roadproof.logic.syntax import Claim
+from roadproof.spec.elaborate import elaborate
 from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import Scenario, vehicles_of
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import Scenario, applied, is_disturbance
 
 Rebuild = Callable[[Formula], Formula]
 
@@ -26,15 +27,15 @@ class Part:
 
     ``component``: the definition that the template names, such as ``behaviourPOV_4``, and in words
     ``description``. ``condition``: which of its conditions, as text; the whole component where it is
-    empty. ``without``: the scenario without the part, as text about SV, POV and L. ``finest``: whether it
-    has no parts itself.
+    empty. ``without``: the scenario without the part, about SV, POV and L. ``finest``: whether it has no
+    parts itself.
     """
 
     scenario: int
     component: str
     description: str
     condition: str
-    without: str
+    without: Query
     finest: bool
 
     @property
@@ -48,34 +49,31 @@ def parts_of(specification: Specification, number: int) -> tuple[Part, ...]:
 
     A component with one condition only is a part, its condition is no second one.
     """
-    node = Scenario(number, specification.set_name)
-    written = applied(node, specification, vehicles_of(specification, node))
-    whole = read_claim(specification, written).formula
+    whole = applied(specification, Scenario(number, specification.set_name)).formula
     found: list[Part] = []
     for component, rebuild in _components(whole, number):
         if _body(component) == f.TRUE:
             continue
         description = specification.describe(specification.definitions[component.name])
-
         leaves = list(_conditions(component.body, rebuild, "", None))
         if len(leaves) > 1:
             leaves.insert(0, ("", rebuild))
         else:
             leaves = [("", rebuild)]
         for shown, put in leaves:
-            without = text(as_syntax(put(f.TRUE)))
+            without = elaborate(specification, Claim((), as_syntax(put(f.TRUE))))
             finest = bool(shown) or len(leaves) == 1
             found.append(Part(number, component.name, description, shown, without, finest))
     return tuple(found)
 
 
 def _components(whole: Formula, number: int) -> Iterator[tuple[f.Named, Rebuild]]:
-    """The conjuncts of ``disturb_…``, each with what puts another formula in its place."""
+    """The conjuncts of the disturbance, each with what puts another formula in its place."""
 
     def walk(current: Formula, rebuild: Rebuild, inside: bool) -> Iterator[tuple[f.Named, Rebuild]]:
         match current:
             case f.Named(name, _, body) if not inside:
-                yield from walk(body, rebuild, name == f"disturb_{number}")
+                yield from walk(body, rebuild, is_disturbance(name, number))
             case f.Named():
                 yield current, rebuild
             case f.And(parts):

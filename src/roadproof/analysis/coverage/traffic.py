@@ -1,30 +1,41 @@
 """Gaps of a spec set among the disturbances of recorded traffic, in the classes of the survey.
 
 A disturbance (dangerArises of a pair) is read as samples that stay as the last one is for ever, so that
-the end of a trace leaves nothing undecided.
+the end of a trace leaves nothing undecided. What several windows of one recording show counts once.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from roadproof.analysis.coverage.claims import missed, numbers_on
-from roadproof.analysis.coverage.classes import Classes
-from roadproof.analysis.requests import Asked
-from roadproof.monitor.batch import Array, Batch
-from roadproof.monitor.compiled import Monitor, compile
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.coverage.classes import GapClasses
+from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic
+from roadproof.errors import InputError
+from roadproof.evaluation.counting import Counted, without_repeats
+from roadproof.evaluation.evaluate import evaluate_recording
+from roadproof.evaluation.one_trace import OneTrace, cut_trace
+from roadproof.evaluation.questions import Settings, ask
+from roadproof.formats.recording import Recording
+from roadproof.formats.source import RecordingSource
+from roadproof.formats.sources import copies_among, find_sources
+from roadproof.monitoring.batch import Array, Batch
+from roadproof.monitoring.compiled import Monitor, compile
 from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import read_claim
-from roadproof.traffic.evaluate import evaluate_recording
-from roadproof.traffic.one_trace import OneTrace, cut_trace
-from roadproof.traffic.questions import Settings, ask
-from roadproof.traffic.recording import Recording
-from roadproof.traffic.sources import find_sources
+from roadproof.spec.scenarios import MIN_DANGER, PAIR
 from roadproof.world.road import Road
 
 TAIL = 3.0  # seconds, more than the windows of a scenario reach together
+
+
+@dataclass(frozen=True)
+class Recordings:
+    """The recordings of a folder."""
+
+    folder: Path
+    sources: tuple[RecordingSource, ...]
 
 
 @dataclass(frozen=True)
@@ -34,52 +45,64 @@ class Missed:
     without: str | None = None
 
 
-@dataclass(frozen=True)
-class Trace:
-    """A disturbance between two vehicles of a recording; ``missed``: no scenario, any lane, either role.
-
-    ``classes``: the keys of the parts without which a scenario would hold.
-    """
-
-    recording: str
-    first: int
-    second: int
-    frames: tuple[int, int]
-    missed: bool
-    classes: tuple[str, ...]
+def recordings_in(folder: Path) -> Recordings:
+    """The recordings of a folder. Raises ``InputError``, also where two have the same content."""
+    sources = find_sources(folder)
+    for fault in copies_among(sources, {source.name: source.digests() for source in sources}).values():
+        raise InputError(fault)
+    return Recordings(folder, sources)
 
 
-def disturbances_in(asked: Asked, folder: Path) -> Iterator[Trace]:
-    """The disturbances of all recordings of a folder, with ``minDanger`` and the other values of ``asked``.
+def count_in_traffic(basis: Basis, recordings: Recordings, say: Callable[[str], None]) -> GapTraffic:
+    """The disturbances of all recordings, and those that are missed; ``say`` is told how many so far."""
+    counted = Counted()
+    disturbances = 0
+    missed: list[GapTrace] = []
+    for disturbances, trace in enumerate(disturbances_in(basis, recordings, counted), 1):
+        missed += [trace] if trace.missed else []
+        say(f"{disturbances} disturbances in traffic, {len(missed)} of them missed")
+    repeats = sum(repeat.what == "trace" for repeat in counted.repeats)
+    return GapTraffic(recordings.folder, disturbances, tuple(missed), repeats)
+
+
+def disturbances_in(
+    basis: Basis, recordings: Recordings, counted: Counted | None = None
+) -> Iterator[GapTrace]:
+    """The disturbances of all recordings; ``counted`` is told of those that are repeated.
 
     Raises ``InputError`` for what is no recording.
     """
-    library, specification = asked.load()
-    classes = Classes(asked)
+    classes = GapClasses(basis)
     settings = Settings(
-        library,
-        asked.options,
+        basis.library,
+        basis.specification.options,
         classes.values,
-        asked.sets,
-        (classes.values["minDanger"],),
+        (basis.specification.set_name,),
+        (classes.values[MIN_DANGER],),
     )
-    for source in find_sources(folder):
+    known = counted or Counted()
+    for source in recordings.sources:
         recording = source.read()
         place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
         monitors: dict[Road, Monitor[Missed]] = {}
-        for trace in evaluate_recording(recording, ask(settings, recording.rate)).traces:
-            pair = {"SV": place[trace.first], "POV": place[trace.second]}
-            cut = _cut(recording, pair, (trace.start_frame, trace.end_frame))
+        findings = without_repeats(evaluate_recording(recording, ask(settings, recording.rate)), known)
+        for trace in findings.traces:
+            frames = (trace.start_frame, trace.end_frame)
+            pair = dict(zip(PAIR, (place[trace.first], place[trace.second]), strict=True))
+            cut = _cut(recording, pair, frames)
             if cut.road not in monitors:
-                query = read_claim(specification, missed(numbers_on(specification, cut.road)))
-                gap = bind(query.formula, cut.road, {}, classes.values)
-                near = {Missed(key): formula for key, formula in classes.bind(cut.road).items()}
-                monitors[cut.road] = compile({Missed(): gap, **near})
+                monitors[cut.road] = _monitor(classes, cut.road)
             answers = monitors[cut.road].evaluate(cut.batch, "clip").answers
             true = [missed.without for missed, answer in answers.items() if answer.true[0]]
-            frames = (trace.start_frame, trace.end_frame)
             keys = tuple(key for key in true if key is not None)
-            yield Trace(recording.name, trace.first, trace.second, frames, None in true, keys)
+            alone = None in true and classes.has(None, keys)
+            yield GapTrace(recording.name, trace.first, trace.second, frames, None in true, keys, alone)
+
+
+def _monitor(classes: GapClasses, road: Road) -> Monitor[Missed]:
+    gap = bind(classes.missed(classes.numbers_on(road)).formula, road, {}, classes.values)
+    near = {Missed(key): formula for key, formula in classes.bind(road).items()}
+    return compile({Missed(): gap, **near})
 
 
 def _cut(recording: Recording, pair: dict[str, int], frames: tuple[int, int]) -> OneTrace:

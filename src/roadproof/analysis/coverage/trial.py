@@ -3,15 +3,13 @@
 from collections.abc import Sequence
 from itertools import combinations
 
-from roadproof.analysis.coverage.claims import missed, numbers_on, replaced_in
-from roadproof.analysis.requests import Asked
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.coverage.claims import missed, numbers_on, replaced_in, sectors_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.logic.formula import Formula, transform
-from roadproof.logic.show import text
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Source, build_library
+from roadproof.spec.bind import bind
+from roadproof.spec.library import Specification
 from roadproof.world.road import Road
 
 TRIAL = "trial"
@@ -21,19 +19,12 @@ MOST_COMBINED = 4
 class Trials:
     """Judges drives under the sets ``wider`` (each extends the one before) and under choices from them."""
 
-    def __init__(self, asked: Asked, wider: Sequence[str]) -> None:
-        self.asked = asked
+    def __init__(self, basis: Basis, wider: Sequence[str]) -> None:
+        self.specification = basis.specification
+        self.sectors = sectors_of(basis.specification)
         self.wider = tuple(wider)
-        self.library, self.specification = asked.load()
-        self.values = {**default_values(self.library), **asked.values}
-        self.numbers: dict[Road, tuple[int, ...]] = {}
+        self.values = basis.all_values()
         self.bound: dict[tuple[str, tuple[str, ...] | None, Road], Formula] = {}
-
-    def numbers_on(self, road: Road) -> tuple[int, ...]:
-        """The scenarios whose sector's zones the road has; the others cannot hold on it."""
-        if road not in self.numbers:
-            self.numbers[road] = numbers_on(self.specification, road)
-        return self.numbers[road]
 
     def first(self, file: DriveFile) -> str:
         """The first of the wider sets that catches the drive; empty where none does."""
@@ -51,21 +42,17 @@ class Trials:
                 return catching
         return (names,)
 
-    def written(self, wide: str, names: Sequence[str]) -> str:
-        """The text of the trial set: the first set with the definitions ``names`` of ``wide``."""
-        definitions = self.specification.in_set(wide).definitions
-        body = "\n".join(f"  {text(definitions[name])}" for name in names)
-        return f"set {TRIAL} extends {self.asked.sets[0]} {{\n{body}\n}}\n"
+    def trial(self, wide: str, names: Sequence[str]) -> Specification:
+        """The trial set: the set with the definitions ``names`` of ``wide`` in place of its own."""
+        narrow, other = self.specification, self.specification.in_set(wide)
+        taken = {name: other.definitions[name] for name in names}
+        return Specification(narrow.library, TRIAL, narrow.options, {**narrow.definitions, **taken})
 
     def misses(self, file: DriveFile, wide: str, names: tuple[str, ...] | None) -> bool:
         """Whether the drive is a gap of ``wide``, or of the trial set with its definitions ``names``."""
         key = (wide, names, file.road)
         if key not in self.bound:
-            specification = self.specification.in_set(wide)
-            if names is not None:
-                library = build_library([Source("trial.spec", self.written(wide, names))], self.library)
-                specification = library.select(TRIAL, self.asked.options)
-            query = read_claim(specification, missed(self.numbers_on(file.road)))
-            bound = bind(query.formula, file.road, {}, self.values)
-            self.bound[key] = transform(bound, lambda part: part)
+            tried = self.specification.in_set(wide) if names is None else self.trial(wide, names)
+            gap = missed(tried, numbers_on(file.road, self.specification, self.sectors))
+            self.bound[key] = transform(bind(gap.formula, file.road, {}, self.values), lambda part: part)
         return judge(self.bound[key], file.drive).holds

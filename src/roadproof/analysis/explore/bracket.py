@@ -2,8 +2,8 @@
 
 from fractions import Fraction
 
+from roadproof.analysis.explore.answer import PointFinding
 from roadproof.analysis.explore.knobs import between
-from roadproof.analysis.explore.values import Finding
 from roadproof.verdict import Verdict
 
 PATIENCE = 2  # doubts in a row before one is taken for the end
@@ -16,18 +16,18 @@ class Bracket:
     is taken for the end.
     """
 
-    def __init__(self, sign: int, precision: Fraction, best: Finding, end: Fraction | None) -> None:
+    def __init__(self, sign: int, precision: Fraction, best: PointFinding, end: Fraction | None) -> None:
         self.sign = sign
         self.precision = precision
         self.best = best
-        self.sure: Finding | None = None
-        self.doubts: list[Finding] = []
+        self.sure: PointFinding | None = None
+        self.doubts: list[PointFinding] = []
         self.end = end
         self.leap = max(precision, Fraction(1))
         self.patience = PATIENCE
 
     @property
-    def missed(self) -> Finding | None:
+    def missed(self) -> PointFinding | None:
         """The nearest value that was not found."""
         known = [*self.doubts, *([self.sure] if self.sure is not None else [])]
         return min(known, key=lambda finding: self.distance(finding.at[0]), default=None)
@@ -40,10 +40,10 @@ class Bracket:
         """How far ``value`` is beyond the best one."""
         return (self.best.at[0] - value) * self.sign
 
-    def reached(self, found: Finding, value: Fraction) -> bool:
+    def reached(self, found: PointFinding, value: Fraction) -> bool:
         return (found.at[0] - value) * self.sign <= 0
 
-    def hold(self, found: Finding) -> None:
+    def hold(self, found: PointFinding) -> None:
         self.best = found
         self.leap *= 2
         self.patience = PATIENCE
@@ -51,7 +51,7 @@ class Bracket:
         if self.sure is not None and self.distance(self.sure.at[0]) <= 0:
             self.sure = None  # there was none on that grid, but there is one on a finer one
 
-    def miss(self, missed: Finding) -> None:
+    def miss(self, missed: PointFinding) -> None:
         if missed.verdict is Verdict.UNKNOWN or self.doubts:
             self.patience -= 1
         if missed.verdict is Verdict.UNKNOWN:

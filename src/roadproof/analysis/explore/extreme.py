@@ -7,50 +7,49 @@ found for, with what is known of it. No optimum is claimed.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
+from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, PointFinding, say_nothing
 from roadproof.analysis.explore.bracket import Bracket
 from roadproof.analysis.explore.knobs import Knob, Point, stated, with_point
 from roadproof.analysis.explore.measure import Measure
+from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.explore.range import range_of, starting_ranges
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
     PLAIN_FIRST,
-    Pool,
+    DriveClaim,
     Reply,
-    Shown,
+    SearchTask,
     Stage,
-    Task,
+    Stock,
     claim_of,
+    dt_of,
     made_for,
+    values_of,
 )
-from roadproof.analysis.explore.text import conjoin
-from roadproof.analysis.explore.values import (
-    PROOF,
-    QUICK_PROOF,
-    Finding,
-    LookAll,
-    Say,
-    look_one_by_one,
-)
-from roadproof.analysis.requests import Request
+from roadproof.analysis.explore.values import PROOF, QUICK_PROOF, LookAll, look_one_by_one
+from roadproof.effort import Late
 from roadproof.encode.along import names_places
 from roadproof.errors import InputError
-from roadproof.evidence.drive_file import DriveFile, read_drive
-from roadproof.evidence.judged import judge_file
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged, judge_file
 from roadproof.judge.signals import Courses, DriveSignals
 from roadproof.logic import formula as f
 from roadproof.logic.terms import Term, number
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import load_library
+from roadproof.searching.ask import Search
+from roadproof.searching.impossible import show_impossible
+from roadproof.searching.question import pose
+from roadproof.spec.bind import bind
+from roadproof.spec.query import Query
+from roadproof.study.pool import Say
 from roadproof.verdict import Verdict
-from roadproof.witness.impossible import show_impossible
 from roadproof.world.road import Road
 
 MOST_SEARCHES = 24
 GRAIN = Fraction(1, 1000)  # of values at a moment, which are found by halving
 WITHOUT_END = Fraction(10**6)
+PRECISION = Fraction(1, 10)  # of a measure, where none is given
 
 
 FindAll: TypeAlias = Callable[[Sequence["Sought"]], Iterable["Extreme"]]
@@ -58,43 +57,43 @@ FindAll: TypeAlias = Callable[[Sequence["Sought"]], Iterable["Extreme"]]
 
 @dataclass(frozen=True)
 class Sought:
-    """What ``measure`` is sought for: drives of ``request.what`` with ``knobs`` at ``point``.
+    """What ``measure`` is sought for: drives of the query of ``search`` with ``knobs`` at ``point``.
 
-    ``seeds``: drive files' data that may serve here too.
+    ``seeds``: drives that may serve here too.
     """
 
-    request: Request
+    search: Search
     measure: Measure
     precision: Fraction
     knobs: tuple[Knob, ...] = ()
     point: Point = ()
-    seeds: tuple[Mapping[str, Any], ...] = ()
+    seeds: tuple[Judged, ...] = ()
+
+    def query(self, value: Fraction | None) -> Query:
+        """The formula with the measure at ``value`` or better, limits stated."""
+        limits = stated(self.search, self.knobs, self.point)
+        return with_parts(self.search.query, [*limits, *self.measure.bound(self.search, value)])
 
 
-@dataclass(frozen=True)
-class Extreme:
-    """``best``: a judged drive that reaches ``best.at``; ``missed``: the nearest value it was not found for.
-
-    ``surely``: the nearest value for which it is said that there is none, if any. ``endless``: the drive
-    passes any value that is asked for. Where there is no drive at all, ``best`` is None.
-    """
-
-    measure: Measure
-    best: Finding | None
-    missed: Finding | None
-    surely: Finding | None
-    searches: int
-    endless: bool = False
+def soughts_of(asked: Explorable, explored: Explored, measure: Measure) -> list[Sought]:
+    """A measure at every point that has a drive; at the one that there is where nothing is varied."""
+    if asked.knobs:
+        return [Sought(asked.search, measure, PRECISION, asked.knobs, point) for point in explored.held]
+    return [Sought(asked.search, measure, asked.precision or PRECISION)]
 
 
-def find_extreme(
-    sought: Sought, look_all: LookAll = look_one_by_one, say: Say = lambda text: None
-) -> Extreme:
+def find_extreme(sought: Sought, look_all: LookAll = look_one_by_one, say: Say = say_nothing) -> Extreme:
     """Leap from drive to drive, then halve, until the bracket is as narrow as the precision.
 
     Raises ``InputError``, ``UsageError``, ``MissingSolverError``.
     """
     return _Seeking(sought, look_all, say).run()
+
+
+def unsought(sought: Sought, reason: str) -> Extreme:
+    """What is said of an extreme that nothing is known of."""
+    missed = PointFinding((), Verdict.UNKNOWN, sought.query(None), reason)
+    return Extreme(sought.measure, sought.point, None, missed, None, 0, late=True)
 
 
 class _Seeking:
@@ -103,21 +102,21 @@ class _Seeking:
         self.measure = sought.measure
         self.look_all = look_all
         self.say = say
-        self.request = with_point(sought.request, sought.knobs, sought.point)
-        self.library = load_library(self.request.specs)
-        self.specification = self.library.select(self.request.set_name, self.request.options)
+        self.search = with_point(sought.search, sought.knobs, sought.point)
+        self.library = self.search.specification.library
         self.searches = 0
+        self.late = False
 
     def run(self) -> Extreme:
         first = self.best_of(self.sought.seeds)
         if first is None:
-            proved = self.proved((), self.text(None), QUICK_PROOF)
+            proved = self.proved((), None, QUICK_PROOF)
             if proved is not None:
-                return Extreme(self.measure, None, proved, proved, 0)
+                return self.extreme(None, proved, proved)
             reply = self.look(None, NATURAL_FIRST)
             first = self.best_of(reply.drives)
             if first is None:
-                return Extreme(self.measure, None, self.missed((), None, reply), None, self.searches)
+                return self.extreme(None, self.missed((), None, reply), None)
         bracket = Bracket(self.measure.sign, self.sought.precision, first, self.range_end())
         if first.at[0] * self.measure.sign > 0 and (zero := self.impossible(Fraction(0))) is not None:
             bracket.miss(zero)
@@ -131,22 +130,31 @@ class _Seeking:
                 bracket.miss(self.missed((value,), value, reply))
             best = float(bracket.best.at[0])
             self.say(f"{self.measure.sense} so far: {best:g}, {self.searches} searches")
-        return self.extreme(bracket)
+        return self.ended(bracket)
 
-    def extreme(self, bracket: "Bracket") -> Extreme:
+    def ended(self, bracket: Bracket) -> Extreme:
         best, missed, surely = bracket.best, bracket.missed, bracket.sure
         if self.endless(best):
-            return Extreme(self.measure, best, None, None, self.searches, endless=True)
+            return replace(self.extreme(best, None, None), endless=True)
         if missed is not None and missed.certificate is None:
             proved = self.impossible(missed.at[0])
             missed, surely = (proved, proved) if proved is not None else (missed, surely)
-        return Extreme(self.measure, best, missed, surely, self.searches)
+        return self.extreme(best, missed, surely)
+
+    def extreme(
+        self, best: PointFinding | None, missed: PointFinding | None, surely: PointFinding | None
+    ) -> Extreme:
+        point = self.sought.point
+        return Extreme(self.measure, point, best, missed, surely, self.searches, late=self.late)
 
     def range_end(self) -> Fraction | None:
         """The best value that any drive could start with, where that is known."""
         if self.measure.when:
             return None
-        question = self.request.question()
+        # Only the start counts here, for which any grid does.
+        dt = dt_of(self.search.setting)
+        setting = replace(self.search.setting, horizon=dt, dt=dt)
+        question = pose(self.library, self.search.query, setting)
         try:
             term = self.bound_term(question.road, {})
             if names_places(f.Compare(term, ">", number(0)), question.vehicles):
@@ -156,55 +164,57 @@ class _Seeking:
             return None
         return low if self.measure.sense == "least" else high
 
-    def endless(self, best: Finding) -> bool:
+    def endless(self, best: PointFinding) -> bool:
         return -best.at[0] * self.measure.sign >= WITHOUT_END
-
-    def text(self, value: Fraction | None) -> str:
-        """The formula with the measure at ``value`` or better, limits stated."""
-        limits = stated(self.sought.knobs, self.sought.point)
-        return conjoin(self.request.what, [*limits, *self.measure.bound(value)])
 
     def look(self, value: Fraction | None, stages: tuple[Stage, ...] = PLAIN_FIRST) -> Reply:
         self.searches += 1
-        what = conjoin(self.request.what, self.measure.bound(value))
-        [reply] = self.look_all([Task(replace(self.request, what=what), stages)])
+        query = with_parts(self.search.query, self.measure.bound(self.search, value))
+        [reply] = self.look_all([SearchTask(replace(self.search, query=query), stages)])
+        self.late |= reply.late
         return reply
 
-    def missed(self, at: Point, value: Fraction | None, reply: Reply) -> Finding:
+    def missed(self, at: Point, value: Fraction | None, reply: Reply) -> PointFinding:
         verdict = reply.verdict if reply.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
         reason = reply.reason or "the drive that was found is rejected by the judge"
-        return Finding(at, verdict, self.text(value), reason)
+        return PointFinding(at, verdict, self.sought.query(value), reason)
 
-    def impossible(self, value: Fraction) -> Finding | None:
+    def impossible(self, value: Fraction) -> PointFinding | None:
         """A proof that no drive, of any kind, reaches ``value``."""
-        return self.proved((value,), self.text(value))
+        return self.proved((value,), value)
 
-    def proved(self, at: Point, text: str, units: float = PROOF) -> Finding | None:
-        shown = show_impossible(
-            self.specification, read_claim(self.specification, text), self.request.means.effort.of(units)
-        )
+    def proved(self, at: Point, value: Fraction | None, units: float = PROOF) -> PointFinding | None:
+        query, effort = self.sought.query(value), self.search.search_options.effort.of(units)
+        try:
+            shown = show_impossible(self.search.specification, query, effort)
+        except Late:
+            self.late = True
+            return None
         if shown is None:
             return None
         reason = f"proved for all time; core: {' and '.join(shown.told)}"
-        return Finding(at, Verdict.IMPOSSIBLE, text, reason, certificate=shown.as_data()["certificate"])
+        return PointFinding(at, Verdict.IMPOSSIBLE, query, reason, certificate=shown.certificate)
 
-    def best_of(self, drives: Sequence[Mapping[str, Any]]) -> Finding | None:
+    def best_of(self, drives: Sequence[Judged]) -> PointFinding | None:
         """The best value that is judged on one of the drives."""
-        found: list[Finding] = []
-        for data in drives:
-            file = read_drive(dict(data), "drive")
-            value = self.at_start(file) if not self.measure.when else self.at_moment(file)
-            shown = None if value is None else self.shown(file, value)
+        found: list[PointFinding] = []
+        for drive in drives:
+            value = self.at_moment(drive.file) if self.measure.when else self.at_start(drive.file)
+            shown = None if value is None else self.shown(drive, value)
             if value is not None and shown is not None:
-                finding = Finding((value,), Verdict.WITNESSED, self.text(value), drive=shown.data)
-                found.append(finding)
+                found.append(PointFinding((value,), Verdict.WITNESSED, self.sought.query(value), drive=shown))
         return min(found, key=lambda finding: finding.at[0] * self.measure.sign, default=None)
 
-    def shown(self, file: DriveFile, value: Fraction) -> Shown | None:
-        """The drive as a file that says that ``value`` is reached, if that is judged so."""
-        alone = Pool(self.library)
-        alone.files.append(file)
-        return alone.show(claim_of(self.request, self.text(value), self.library))
+    def claim(self, value: Fraction) -> DriveClaim:
+        """That ``value`` is reached."""
+        return claim_of(self.search, self.sought.query(value))
+
+    def shown(self, drive: Judged, value: Fraction) -> Judged | None:
+        """The drive as one on which ``value`` is reached, if that is judged so."""
+        alone = Stock(self.library)
+        alone.add([drive])
+        shown = alone.show(self.claim(value))
+        return None if shown is None else shown.drive
 
     def at_start(self, file: DriveFile) -> Fraction | None:
         """The measure at time 0, exactly."""
@@ -214,8 +224,7 @@ class _Seeking:
 
     def bound_term(self, road: Road, lanes: Mapping[str, str]) -> Term:
         """The term with values for its parameters."""
-        values = {**default_values(self.library), **self.request.values}
-        compare = bind(f.Compare(self.measure.term, "<=", number(0)), road, lanes, values)
+        compare = bind(f.Compare(self.measure.term, "<=", number(0)), road, lanes, values_of(self.search))
         assert isinstance(compare, f.Compare)
         return compare.left
 
@@ -247,8 +256,7 @@ class _Seeking:
         return reached
 
     def reaches(self, file: DriveFile, value: Fraction) -> bool:
-        claim = claim_of(self.request, self.text(value), self.library)
-        ruling = judge_file(made_for(file, claim), self.library)
+        ruling = judge_file(made_for(file, self.claim(value)), self.library)
         if ruling.judgement is None:
             raise InputError(ruling.reason)
         return ruling.accepted
@@ -265,9 +273,21 @@ def find_extremes(soughts: Sequence[Sought], find_all: FindAll) -> list[Extreme]
     for k, (sought, extreme) in enumerate(zip(soughts, found, strict=True)):
         if extreme.best is None or extreme.endless:
             continue
-        others = _Seeking(sought, look_one_by_one, lambda text: None).best_of(drives)
-        if others is not None and (others.at[0] - extreme.best.at[0]) * sought.measure.sign < 0:
-            again[k] = replace(sought, seeds=(others.drive or {},))
+        others = _Seeking(sought, look_one_by_one, say_nothing).best_of(drives)
+        further = others is not None and (others.at[0] - extreme.best.at[0]) * sought.measure.sign < 0
+        if further and others is not None and others.drive is not None:
+            again[k] = replace(sought, seeds=(others.drive,))
     for k, extreme in zip(again, find_all(list(again.values())), strict=True):
-        found[k] = replace(extreme, searches=extreme.searches + found[k].searches)
+        found[k] = _together(found[k], extreme)
     return found
+
+
+def _together(first: Extreme, again: Extreme) -> Extreme:
+    """What is known after an extreme was sought again, from a drive; where that was lost, with the doubt."""
+    searches = first.searches + again.searches
+    if again.best is not None:
+        return replace(again, searches=searches, late=first.late or again.late)
+    missed = first.missed
+    if missed is not None and again.missed is not None:
+        missed = replace(again.missed, at=missed.at, query=missed.query)
+    return replace(first, missed=missed, searches=searches, late=True)

@@ -3,11 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
-from roadproof.analysis.explore.text import always, compared, expression
-from roadproof.analysis.requests import Request
-from roadproof.logic.syntax import Expression
+from roadproof.analysis.explore.parts import compared
+from roadproof.logic import syntax
+from roadproof.searching.ask import Search
+from roadproof.spec.compose import always
+from roadproof.spec.query import Query
 from roadproof.units import UNITS
 
 # A value for each knob, in order, in SI units.
@@ -33,31 +35,27 @@ class Knob:
         return tuple(self.low + (self.high - self.low) * k / (steps - 1) for k in range(steps))
 
 
-def with_point(request: Request, knobs: Sequence[Knob], point: Point) -> Request:
-    """``request`` with every knob at its value."""
-    values = dict(request.values)
-    limits = {vehicle: dict(ends) for vehicle, ends in request.limits.items()}
+def with_point(search: Search, knobs: Sequence[Knob], point: Point) -> Search:
+    """``search`` with every knob at its value."""
+    values = dict(search.setting.values)
+    limits = {vehicle: dict(ends) for vehicle, ends in search.setting.limits.items()}
     for knob, value in zip(knobs, point, strict=True):
         if not knob.limit:
             values[knob.name] = value
         for vehicle in knob.vehicles:
             limits.setdefault(vehicle, {})[knob.limit] = value
-    return replace(request, values=values, limits=limits)
+    return replace(search, setting=replace(search.setting, values=values, limits=limits))
 
 
-def stated(knobs: Sequence[Knob], point: Point) -> list[Expression]:
+def stated(search: Search, knobs: Sequence[Knob], point: Point) -> list[Query]:
     """The limits at a point as formulas, so that a drive file says them and whoever judges it checks them."""
-    parts: list[Expression] = []
+    parts: list[Query] = []
     for knob, value in zip(knobs, point, strict=True):
         signal, _, end = knob.limit.partition(".")
         for vehicle in knob.vehicles:
-            kept = compared(
-                expression(f"{signal}({vehicle})"),
-                ">=" if end == "min" else "<=",
-                value,
-                UNITS[knob.unit][1],
-            )
-            parts.append(always(kept))
+            left = syntax.Call(signal, (syntax.Name(vehicle),))
+            op: Literal[">=", "<="] = ">=" if end == "min" else "<="
+            parts.append(always(compared(search, left, op, value, UNITS[knob.unit][1])))
     return parts
 
 

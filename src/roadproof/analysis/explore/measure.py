@@ -4,52 +4,65 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.analysis.explore.text import compared, eventually, expression
+from roadproof.analysis.explore.parts import compared
 from roadproof.errors import UsageError
-from roadproof.logic.syntax import Expression
+from roadproof.logic import syntax
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.show import text as shown
+from roadproof.logic.syntax import Binding, Expression
 from roadproof.logic.terms import Dimension, Inverse, Signal, Term, leaves
+from roadproof.searching.ask import Search
+from roadproof.spec.compose import both, eventually
 from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
 
 Sense: TypeAlias = Literal["least", "greatest"]
 
 
 @dataclass(frozen=True)
 class Measure:
-    """The ``sense`` value of ``text``, at time 0 or at some moment at which ``when`` holds."""
+    """The ``sense`` value of ``term``, at time 0 or at some ``moment`` at which that holds.
+
+    ``text`` and ``when`` are how a user wrote term and moment; ``said`` is the term as a tree.
+    """
 
     sense: Sense
     text: str
+    said: Expression
     term: Term
     dimension: Dimension
     when: str = ""
+    moment: Query | None = None
 
     @property
     def sign(self) -> int:
         """What turns a better value into a smaller one."""
         return 1 if self.sense == "least" else -1
 
-    def bound(self, value: Fraction | None) -> list[Expression]:
+    def bound(self, search: Search, value: Fraction | None) -> list[Query]:
         """That the measure is ``value`` or better (None: that there is a moment for it), as parts."""
         op: Literal["<=", ">="] = "<=" if self.sense == "least" else ">="
-        here = [] if value is None else [compared(expression(self.text), op, value, self.dimension)]
-        if not self.when:
-            return here
-        return [eventually([expression(self.when), *here])]
+        here = [] if value is None else [compared(search, self.said, op, value, self.dimension)]
+        return here if self.moment is None else [eventually(both(self.moment, *here))]
 
 
 def read_measure(
-    specification: Specification, sense: Sense, text: str, when: str = "", given: str = ""
+    specification: Specification,
+    sense: Sense,
+    text: str,
+    when: str = "",
+    given: tuple[Binding, ...] = (),
 ) -> Measure:
-    """A measure from what the user wrote; ``given`` declares names in front of it.
+    """A measure from what the user wrote, in the names that a formula has in its ``given``.
 
     Raises ``TextError``, and ``UsageError`` for what no drive changes.
     """
-    term, dimension = read_term(specification, given + text, f"--{sense}")
+    head = shown(syntax.Claim(given, syntax.Literal_(True))).removesuffix("true") if given else ""
+    term, dimension = read_term(specification, head + text, f"--{sense}")
     if isinstance(term, Inverse):
         raise UsageError(f"--{sense} '{text}': 1/x may be infinite; ask for the other extreme of x")
     if not any(isinstance(leaf, Signal) for leaf in leaves(term)):
         raise UsageError(f"--{sense} '{text}': no drive changes this; name a signal, such as v_lon(SV)")
-    if when:
-        read_claim(specification, given + when, "--when")
-    return Measure(sense, text, term, dimension, when)
+    moment = read_claim(specification, head + when, "--when") if when else None
+    return Measure(sense, text, parse_claim(head + text).body, term, dimension, when, moment)

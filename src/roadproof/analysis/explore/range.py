@@ -8,21 +8,21 @@ from typing import TypeAlias, assert_never
 from roadproof.encode.place import span
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Term
+from roadproof.searching.question import Posed
 from roadproof.signals import LIMITED
-from roadproof.witness.question import Question
 
 Range: TypeAlias = tuple[Fraction, Fraction]
 Ranges: TypeAlias = Mapping[tuple[str, str], Range]
 
 
-def starting_ranges(question: Question) -> dict[tuple[str, str], Range]:
+def starting_ranges(question: Posed) -> dict[tuple[str, str], Range]:
     """What the signals of every vehicle can be at time 0, by vehicle and signal; sizes too.
 
     Places along the road are told from the front of the first vehicle, so for a term that names places
     (``encode.along``) they are none.
     """
     right, left = span(question.road)
-    reach = question.manners.reach
+    reach = question.assumptions.reach
     ranges: dict[tuple[str, str], Range] = {}
     for k, (name, vehicle) in enumerate(question.vehicles.items()):
         ranges[name, "s"] = (-reach, reach) if k else (Fraction(0), Fraction(0))

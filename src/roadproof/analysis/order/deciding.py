@@ -20,13 +20,13 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
 from roadproof.judge.exact import judge
+from roadproof.searching.ask import ask
+from roadproof.searching.question import usual_road
 from roadproof.spec.bind import bind
 from roadproof.spec.compose import both, implication, negation
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, applied, vehicles_of
 from roadproof.verdict import Verdict
-from roadproof.witness.ask import ask
-from roadproof.witness.question import usual_road
 from roadproof.world.drive import Drive
 
 FAR = Fraction(2000)
@@ -52,7 +52,7 @@ class Refuting:
 
 
 @dataclass(frozen=True)
-class Doubt:
+class OrderDoubt:
     """An implication of which no reading was proved, and those in ``open`` were not refuted either.
 
     A reading is the two scenarios applied to vehicles and a lane. ``late``: why the search was cut off,
@@ -80,7 +80,7 @@ class Decided:
 
     edges: tuple[Edge, ...] = ()
     drives: tuple[Refuting, ...] = ()
-    doubts: tuple[Doubt, ...] = ()
+    doubts: tuple[OrderDoubt, ...] = ()
     again: bool = False
 
 
@@ -96,7 +96,7 @@ def settle_doubts(basis: Basis, decided: Decided, drives: Sequence[Judged]) -> D
     """
     distinct = {repr(x.file.drive): x.file for x in drives}.values()
     refuting = list(decided.drives)
-    doubts: list[Doubt] = []
+    doubts: list[OrderDoubt] = []
     for doubt in decided.doubts:
         shown = [_refuted_by(basis, distinct, *reading) for reading in doubt.open]
         if None in shown or not shown:
@@ -141,7 +141,7 @@ class _Deciding:
         self.queries: dict[Cast, Query] = {}
         self.edges: list[Edge] = []
         self.drives: list[Refuting] = []
-        self.doubts: list[Doubt] = []
+        self.doubts: list[OrderDoubt] = []
         self.vain: set[int] = set()  # what kinds are like that no drive was found against
         # By kind and kind: the readings of the second that no drive has refuted yet.
         self.open: dict[tuple[Scenario, Scenario], set[Reading]] = {}
@@ -164,7 +164,7 @@ class _Deciding:
 
     def _doubt(self, kind: Kind, target: Kind, late: str = "") -> None:
         still = [(self._query(a), self._query(b)) for a, b in self._still_open(kind, target)]
-        self.doubts.append(Doubt(kind.node, target.node, tuple(still), late))
+        self.doubts.append(OrderDoubt(kind.node, target.node, tuple(still), late))
 
     def _still_open(self, kind: Kind, target: Kind) -> list[Reading]:
         return sorted(self.open[kind.node, target.node], key=lambda x: (x[0].vehicles, x[1].vehicles))

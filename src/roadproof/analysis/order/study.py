@@ -8,8 +8,8 @@ from typing import Any
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.deciding import (
     Decided,
-    Doubt,
     Edge,
+    OrderDoubt,
     Refuting,
     decide_family,
     settle_doubts,
@@ -54,7 +54,7 @@ class Order:
     edges: tuple[Edge, ...]
     missing: tuple[tuple[Scenario, Scenario, tuple[int, ...]], ...]
     drives: tuple[Refuting, ...]
-    doubts: tuple[Doubt, ...]
+    doubts: tuple[OrderDoubt, ...]
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class Ordering:
         match piece:
             case Family(kinds):
                 pairs = [(a.node, b.node) for a in kinds for b in self.kinds if a != b]
-                doubts = tuple(Doubt(above, below, (), reason) for above, below in pairs)
+                doubts = tuple(OrderDoubt(above, below, (), reason) for above, below in pairs)
                 return {name_of(kinds): Decided(doubts=doubts, again=True)}
             case Doubtful(family, decided, _):
                 return {name_of(family): Decided(decided.edges, decided.drives, decided.doubts, again=True)}
@@ -185,15 +185,14 @@ class Ordering:
             if (str(above), str(below)) not in implied and (above, below) not in doubtful
         )
 
-    def as_data(self, order: Order, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def index(self, order: Order, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
         every = [records[name] for name in self.families]
         proved = [edge for record in every for edge in record["proved"]]
         reduced = {(str(edge.above), str(edge.below)) for edge in order.edges}
         doubts = {(str(x.above), str(x.below)) for x in order.doubts}
         return {
-            "schema": SCHEMA,
-            **self.question.said,
+            **self.question.heading,
             "view": "dense",
             "kinds": [[str(node) for node in kind.nodes] for kind in order.kinds],
             "proved": proved,
@@ -207,6 +206,7 @@ class Ordering:
                 for number, drive in enumerate((x for record in every for x in record["drives"]), 1)
             ],
             "doubts": [x for record in every for x in record["doubts"] if (x["from"], x["to"]) in doubts],
+            "seconds": round(seconds, 1),
         }
 
 

@@ -1,16 +1,19 @@
 """The index and the journal of ``roadproof coverage``: classes of gaps, and claims that there are none."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.proofs import unchecked_of
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 from roadproof.spec.compose import both, either, eventually, implication
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import (
+    PAIR,
+    SUBJECT,
     Scenario,
     applied,
     danger,
@@ -23,10 +26,8 @@ from roadproof.spec.scenarios import (
 )
 
 SCHEMA = "roadproof/coverage/1"
-SAID = ("set", "wider", "options", "parameters", "specs")
-FIELDS = ("schema", *SAID, "view", "verdict", "claims", "classes", "gaps", "needs", "traffic", "seconds")
 _CLASS = ("scenario", "component", "description", "condition", "verdict", "gaps", "claim", "certificate")
-_CLASS_MORE = ("reason", "none_for", "in_traffic")
+_CLASS_MORE = ("reason", "none_for", "in_traffic", "trace")
 _GAP = ("number", "road", "formula", "first", "caught_by", "classes", "drive", "elsewhere")
 _NEED = ("definition", "extends", "verdict", "road", "formula", "drive")
 
@@ -75,14 +76,23 @@ def read_gaps(common: Common, records: Sequence[object], where: str) -> Iterator
             )  # fmt: skip
 
 
-def read_rest(data: Fields, common: Common) -> Iterator[Entry]:
-    """The claims that together say that there is no gap, and the definitions that are needed for it."""
-    claims = [
-        Fields(x, data.where, ("claim", "verdict", "certificate", "reason")) for x in data.items("claims")
-    ]
-    for number, line in enumerate(claims, 1):
+def read_record(record: Fields, background: Background) -> Iterator[Entry]:
+    """An answer that was kept: to a claim, on a definition, or on the classes of a component."""
+    common = background.at(background.said.text("set"))
+    if record.has("claim"):
+        yield from read_claims(common, [record.get("claim")])
+    elif record.has("need"):
+        yield from read_needs(common, [record.get("need")])
+    else:
+        yield from read_classes(common, record.items("classes"))
+
+
+def read_claims(common: Common, records: Sequence[object]) -> Iterator[Entry]:
+    """The claims that together say that there is no gap."""
+    for number, content in enumerate(records, 1):
+        where = f"{common.where}, claim {number}"
+        line = Fields(content, where, ("claim", "verdict", "certificate", "reason"))
         verdict, claim = line.text("verdict"), line.text("claim")
-        where = f"{data.where}, claim {number}"
         shows = shows_of_claim(verdict, where)
         file = evidence_name(line, "certificate")
         yield Entry(
@@ -98,8 +108,12 @@ def read_rest(data: Fields, common: Common) -> Iterator[Entry]:
             None,
             unchecked_of(verdict),
         )
-    for number, content in enumerate(data.items("needs"), 1):
-        line = Fields(content, f"{data.where}, need {number}", _NEED)
+
+
+def read_needs(common: Common, records: Sequence[object]) -> Iterator[Entry]:
+    """The definitions that are needed for there to be no gap."""
+    for number, content in enumerate(records, 1):
+        line = Fields(content, f"{common.where}, need {number}", _NEED)
         verdict, name = line.text("verdict"), line.text("definition")
         drive = verdict == "WITNESSED"
         yield Entry(
@@ -113,7 +127,16 @@ def read_rest(data: Fields, common: Common) -> Iterator[Entry]:
             evidence_name(line, "drive"),
             unchecked=("that the formula is the set without the definition",) if drive else (),
         )
+
+
+def read_index(data: Fields, background: Background) -> Iterator[Entry]:
+    """The entries of an index. Raises ``InputError``."""
+    common = background.at(data.text("set"))
+    yield from read_claims(common, data.items("claims"))
+    yield from read_needs(common, data.items("needs"))
     yield from _numbered(data)
+    yield from read_classes(common, data.items("classes"))
+    yield from read_gaps(common, data.items("gaps"), data.where)
 
 
 def _numbered(data: Fields) -> Iterator[Entry]:
@@ -125,8 +148,9 @@ def _numbered(data: Fields) -> Iterator[Entry]:
     yield from ()
 
 
-def faults(data: Fields, common: Common) -> Iterator[str]:
+def faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """What the verdict on the set says beyond what its entries show."""
+    common = background.at(data.text("set"))
     verdict = data.text("verdict")
     lines = [Fields(x, data.where) for x in data.items("claims")]
     proved = all(x.text("verdict") in PROOFS for x in lines)
@@ -146,19 +170,29 @@ def _claims(specification: Specification) -> list[Formula]:
     sectors: dict[Formula, list[int]] = {}
     for number in numbers_of(specification):
         if len(vehicles_of(specification, Scenario(number, specification.set_name))) == 2:
-            meaning = without_names(sector(specification, number, ("SV", "POV")).formula)
+            meaning = without_names(sector(specification, number, PAIR).formula)
             sectors.setdefault(meaning, []).append(number)
-    pair = ("SV", "POV")
     claims: list[Formula] = []
     for numbers in sectors.values():
-        starts = (safe(specification, *pair), eventually(danger(specification, *pair)))
-        premise = both(sector(specification, numbers[0], pair), in_lane(specification, "SV"), *starts)
+        starts = (safe(specification, *PAIR), eventually(danger(specification, *PAIR)))
+        premise = both(sector(specification, numbers[0], PAIR), in_lane(specification, SUBJECT), *starts)
         some = [
             applied(specification, Scenario(number, specification.set_name), roles)
-            for roles in (pair, pair[::-1])
+            for roles in (PAIR, PAIR[::-1])
             for number in numbers
         ]
         claims.append(implication(premise, either(*some)).formula)
-    somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in pair))
-    some_sector = either(*(sector(specification, numbers[0], pair) for numbers in sectors.values()))
+    somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in PAIR))
+    some_sector = either(*(sector(specification, numbers[0], PAIR) for numbers in sectors.values()))
     return [*claims, implication(somewhere, some_sector).formula]
+
+
+READER = Reader(
+    SCHEMA,
+    ("set", "wider", "options", "parameters", "specs"),
+    ("view", "verdict", "claims", "classes", "gaps", "needs", "traffic", "seconds"),
+    read_index,
+    ("group", "classes", "claim", "need"),
+    read_record,
+    faults,
+)

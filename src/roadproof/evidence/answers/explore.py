@@ -1,16 +1,16 @@
-"""The index of ``roadproof explore``: for which values a formula has a drive."""
+"""The index and the kept answers of ``roadproof explore``: for which values a formula has a drive."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, rational, text
 
 SCHEMA = "roadproof/explore/1"
-FIELDS = ("schema", "options", "parameters", "specs", "view", "seconds", "explored")
 _EXPLORED = ("scenario", "set", "formula", "vary", "values", "boundaries", "searches", "drives", "extremes")
 _EXPLORED_MORE = ("seconds", "stem")
 _FINDING = ("at", "verdict", "formula", "reason", "number", "drive", "certificate")
@@ -18,33 +18,46 @@ _BOUNDARY = ("held", "missed", "surely")
 _EXTREME = ("sense", "measure", "when", "unit", "point", "best", "missed", "surely", "endless", "searches")
 
 
-def read(data: Fields, common_of_set: Callable[[str], Common]) -> Iterator[Entry]:
+def read_index(data: Fields, background: Background) -> Iterator[Entry]:
     """The entries of an index. Raises ``InputError``."""
     for number, content in enumerate(data.items("explored"), 1):
-        where = f"{data.where}, exploration {number}"
-        one = Fields(content, where, (*_EXPLORED, *_EXPLORED_MORE))
-        common = common_of_set(one.text("set"))
-        knobs = [Fields(x, f"{where}, vary").text("name") for x in one.items("vary")]
-        for k, finding in enumerate(one.items("values"), 1):
-            yield _entry(finding, f"{where}, value {k}", common, knobs, ())
-        for k, boundary in enumerate(one.items("boundaries"), 1):
-            sides = Fields(boundary, f"{where}, boundary {k}", _BOUNDARY)
-            for side in _BOUNDARY:
-                if sides.has(side):
-                    yield _entry(sides.get(side), f"{where}, boundary {k}, {side}", common, knobs, (side, k))
-        for k, extreme in enumerate(one.items("extremes"), 1):
-            place = f"{where}, extreme {k}"
-            sides = Fields(extreme, place, _EXTREME)
-            # Where it is sought is a point of the knobs; its own values are of a measure, in the formula.
-            point = dict(zip(knobs, sides.items("point"), strict=False))
-            there = replace(common, values=_values(common, point, place))
-            for side in ("best", "missed", "surely"):
-                if sides.has(side):
-                    yield _entry(sides.get(side), f"{place}, {side}", there, [], (side, k))
+        yield from _one(content, f"{data.where}, exploration {number}", background)
+
+
+def read_record(record: Fields, background: Background) -> Iterator[Entry]:
+    """The entries of a kept answer. Raises ``InputError``."""
+    return _one(record.get("exploration"), record.where, background)
+
+
+def _one(content: object, where: str, background: Background) -> Iterator[Entry]:
+    """The entries of one exploration."""
+    one = Fields(content, where, (*_EXPLORED, *_EXPLORED_MORE))
+    common = background.at(one.text("set"))
+    of = tuple(str(one.content.get(name)) for name in ("scenario", "set", "formula"))
+    knobs = [Fields(x, f"{where}, vary").text("name") for x in one.items("vary")]
+    for k, finding in enumerate(one.items("values"), 1):
+        yield _entry(finding, f"{where}, value {k}", common, knobs, (*of, "value", k))
+    for k, boundary in enumerate(one.items("boundaries"), 1):
+        place = f"{where}, boundary {k}"
+        sides = Fields(boundary, place, _BOUNDARY)
+        for side in _BOUNDARY:
+            if sides.has(side):
+                key = (*of, "boundary", k, side)
+                yield _entry(sides.get(side), f"{place}, {side}", common, knobs, key)
+    for k, extreme in enumerate(one.items("extremes"), 1):
+        place = f"{where}, extreme {k}"
+        sides = Fields(extreme, place, _EXTREME)
+        # Where it is sought is a point of the knobs; its own values are of a measure, in the formula.
+        point = dict(zip(knobs, sides.items("point"), strict=False))
+        there = replace(common, values=_values(common, point, place))
+        for side in ("best", "missed", "surely"):
+            if sides.has(side):
+                key = (*of, "extreme", k, side)
+                yield _entry(sides.get(side), f"{place}, {side}", there, [], key)
 
 
 def _entry(
-    content: object, where: str, common: Common, knobs: Sequence[str], side: tuple[object, ...]
+    content: object, where: str, common: Common, knobs: Sequence[str], key: tuple[object, ...]
 ) -> Entry:
     line = Fields(content, where, _FINDING)
     verdict, at = line.text("verdict"), line.items("at")
@@ -53,7 +66,7 @@ def _entry(
     return Entry(
         common,
         where,
-        ("finding", where, *side),
+        key,
         verdict,
         told,
         shows,
@@ -73,3 +86,13 @@ def _values(common: Common, at: Mapping[str, object], where: str) -> dict[str, F
     if any(not isinstance(value, str) for value in at.values()):
         raise InputError(f"{where}: its values are no texts")
     return {**(common.values or {}), **chosen}
+
+
+READER = Reader(
+    SCHEMA,
+    ("options", "parameters", "specs"),
+    ("view", "seconds", "explored"),
+    read_index,
+    ("exploration",),
+    read_record,
+)

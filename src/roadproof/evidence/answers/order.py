@@ -4,40 +4,45 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from math import perm
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, TextError
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, text
+from roadproof.logic import syntax
+from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.scenarios import Scenario, applied, vehicles_of
+from roadproof.spec.scenarios import (
+    LANE,
+    SUBJECT,
+    Application,
+    Scenario,
+    application_in,
+    applied,
+    vehicles_of,
+)
 
 SCHEMA = "roadproof/order/1"
-SAID = ("sets", "options", "parameters", "specs")
-FIELDS = ("schema", *SAID, "view", "kinds", "proved", "edges", "missing", "drives", "doubts", "seconds")
-_APPLIED = re.compile(r"\s*scenario_([0-9]{1,6})(?:@(\w+))?\(\s*([\w\s,]*?)\s*\)\s*", re.ASCII)
 _NODE = re.compile(r"([0-9]{1,6})@(\w+)", re.ASCII)
 
 
-def read(head: Fields, common: Common, proved: Sequence[object], drives: Sequence[object]) -> Iterator[Entry]:
-    """The entries of an index or of a line of a journal. Raises ``InputError``."""
-    for number, content in enumerate(proved, 1):
+def read(data: Fields, background: Background) -> Iterator[Entry]:
+    """The entries of an index or of a kept answer. Raises ``InputError``."""
+    common = background.home
+    for number, content in enumerate(data.items("proved"), 1):
         line = Fields(
             content, f"{common.where}, implication {number}", ("from", "to", "claim", "certificate")
         )
         yield _implication(line, common)
-    for number, content in enumerate(drives, 1):
+    for number, content in enumerate(data.items("drives"), 1):
         line = Fields(content, f"{common.where}, drive {number}", ("number", "holds", "fails", "drive"))
         yield _refutation(line, common)
 
 
 def _implication(line: Fields, common: Common) -> Entry:
     above, below, claim = line.text("from"), line.text("to"), line.text("claim")
-    one, _, other = claim.partition("->")
-    told = _reading(one, common), _reading(other, common)
-    right = told[0] is not None and told[1] is not None and (told[0][0], told[1][0]) == (above, below)
-    if not right or not _fit(told[0][1] if told[0] else (), told[1][1] if told[1] else ()):
+    fault = ""
+    if [(str(a.scenario), str(b.scenario)) for a, b in _implied(claim, common)] != [(above, below)]:
         fault = f"{line.where} says {above} -> {below}, but its claim is not that: {claim[:120]}"
-    else:
-        fault = ""
     return Entry(
         common,
         line.where,
@@ -69,59 +74,77 @@ def _refutation(line: Fields, common: Common) -> Entry:
 def _misread(formula: str, holds: str, fails: Sequence[str], common: Common) -> str:
     """Why a drive's formula is not that one scenario holds and the others do not; or nothing."""
     readings = readings_of(formula, common)
-    told = [] if readings is None else [node for _, (node, _) in readings]
-    if readings is None or readings[0][0][0] != holds or sorted(set(told)) != sorted(set(fails)):
+    told = {str(below.scenario) for _, below in readings}
+    if not readings or str(readings[0][0].scenario) != holds or told != set(fails):
         return f"it says that {holds} holds without {', '.join(fails)}, but its drive: {formula[:120]}"
     return ""
 
 
-Reading = tuple[str, tuple[str, ...]]
+Reading = tuple[Application, Application]
 
 
-def readings_of(formula: str, common: Common) -> list[tuple[Reading, Reading]] | None:
-    """``A and not B and not C`` as the pairs A, B and A, C; None where it is no such formula."""
-    first, *others = formula.split(" and ")
-    above = _reading(first, common)
-    found: list[tuple[Reading, Reading]] = []
-    for other in others:
-        below = _reading(other.strip().removeprefix("not "), common)
-        if above is None or below is None or not other.strip().startswith("not "):
-            return None
-        if not _fit(above[1], below[1]):
-            return None
-        found.append((above, below))
-    return found or None
+def _implied(claim: str, common: Common) -> list[Reading]:
+    """``A -> B`` as the pair A, B; nothing where it is no such claim."""
+    match _body(claim):
+        case syntax.Binary("->", above, below):
+            return _fitting([(above, below)], common)
+        case _:
+            return []
 
 
-def _reading(written: str, common: Common) -> Reading | None:
-    """A scenario applied to names, as its node and the names."""
-    read = _APPLIED.fullmatch(written)
-    if read is None:
+def readings_of(formula: str, common: Common) -> list[Reading]:
+    """``A and not B and not C`` as the pairs A, B and A, C; nothing where it is no such formula."""
+    match _body(formula):
+        case syntax.Chain("and", (above, *others)):
+            below = [x.body for x in others if isinstance(x, syntax.Prefix) and x.op == "not"]
+            return _fitting([(above, x) for x in below], common) if len(below) == len(others) else []
+        case _:
+            return []
+
+
+def _body(written: str) -> syntax.Expression | None:
+    """What a text says, None where it is no formula or declares names of its own."""
+    try:
+        claim = parse_claim(written)
+    except TextError:
         return None
-    return f"{int(read[1])}@{read[2] or common.set_name}", tuple(re.split(r"\s*,\s*", read[3]))
+    return None if claim.given else claim.body
+
+
+def _fitting(pairs: Sequence[tuple[syntax.Expression, syntax.Expression]], common: Common) -> list[Reading]:
+    """Pairs of scenarios that speak of the same vehicles; nothing where one pair is no such."""
+    found: list[Reading] = []
+    for above, below in pairs:
+        one, other = (application_in(common.specification, said) for said in (above, below))
+        if one is None or other is None or not _fit(one.arguments, other.arguments):
+            return []
+        found.append((one, other))
+    return found
 
 
 def _fit(above: tuple[str, ...], below: tuple[str, ...]) -> bool:
     """Whether two scenarios are about one L and the same SV, and the fewer POVs are among the others."""
-    if len(above) == len(below):
-        return above == below and above[0] == "SV" and above[-1] == "L"
     fewer, more = sorted((above, below), key=len)
-    ends = (fewer[0], fewer[-1]) == (more[0], more[-1]) == ("SV", "L")
+    if len(fewer) == len(more) and fewer != more:
+        return False
+    ends = (fewer[:1], fewer[-1:]) == (more[:1], more[-1:]) == ((SUBJECT,), (LANE,))
     return ends and set(fewer) <= set(more) and len(set(fewer)) == len(fewer)
 
 
-def faults(data: Fields, common: Common, formulas: Mapping[str, str]) -> Iterator[str]:
+def faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """What a whole index says that its entries do not show; ``formulas`` are those of accepted drives."""
+    common = background.home
     proved = {(x.text("from"), x.text("to")) for x in _lines(data, "proved")}
     for edge in data.items("edges"):
         if edge not in data.items("proved"):
             yield f"an edge is not among what is proved: {str(edge)[:120]}"
-    refuted: dict[tuple[str, str], set[tuple[Reading, Reading]]] = {}
+    refuted: dict[tuple[str, str], set[Reading]] = {}
     numbers: dict[tuple[str, str], set[int]] = {}
     for drive in _lines(data, "drives"):
-        for above, below in readings_of(formulas.get(drive.text("drive"), ""), common) or ():
-            refuted.setdefault((above[0], below[0]), set()).add((above, below))
-            numbers.setdefault((above[0], below[0]), set()).add(drive.whole("number"))
+        for above, below in readings_of(formulas.get(drive.text("drive"), ""), common):
+            shown = str(above.scenario), str(below.scenario)
+            refuted.setdefault(shown, set()).add((above, below))
+            numbers.setdefault(shown, set()).add(drive.whole("number"))
     for line in _lines(data, "missing"):
         pair = (line.text("from"), line.text("to"))
         if len(refuted.get(pair, ())) < _count_readings(common, *pair):
@@ -174,3 +197,14 @@ def _node(name: str) -> Scenario:
     if read is None:
         raise InputError(f"'{name[:40]}' is no scenario: write 4@base")
     return Scenario(int(read[1]), read[2])
+
+
+READER = Reader(
+    SCHEMA,
+    ("sets", "options", "parameters", "specs"),
+    ("view", "kinds", "proved", "edges", "missing", "drives", "doubts", "seconds"),
+    read,
+    ("family", "proved", "drives", "doubts"),
+    read,
+    faults,
+)

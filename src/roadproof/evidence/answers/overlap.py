@@ -5,23 +5,32 @@ from itertools import combinations, permutations
 
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.spec.compose import both, eventually
 from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, vehicles_of
+from roadproof.spec.scenarios import LANE, Scenario, applied, vehicles_of
 
 SCHEMA = "roadproof/overlap/1"
-SAID = ("set", "lanes", "roles", "start", "options", "parameters", "specs")
-FIELDS = ("schema", *SAID, "view", "seconds", "verdicts")
 _ENTRY = ("a", "b", "set_a", "set_b", "verdict", "formula", "core", "cores", "certificate", "drive")
 _ENTRY_MORE = ("reason", "seconds")
 
 
-def read(head: Fields, common: Common, records: Sequence[object]) -> Iterator[Entry]:
-    """The entries of an index or a journal; ``head`` says how scenarios meet. Raises ``InputError``."""
-    choices = {name: head.text(name) for name in ("lanes", "roles", "start")}
+def read_index(data: Fields, background: Background) -> Iterator[Entry]:
+    """The entries of an index. Raises ``InputError``."""
+    return _entries(background, data.items("verdicts"))
+
+
+def read_record(record: Fields, background: Background) -> Iterator[Entry]:
+    """The entry of a kept answer. Raises ``InputError``."""
+    return _entries(background, [record.get("verdict")])
+
+
+def _entries(background: Background, records: Sequence[object]) -> Iterator[Entry]:
+    common = background.home
+    choices = {name: background.said.text(name) for name in ("lanes", "roles", "start")}
     for number, content in enumerate(records, 1):
         line = Fields(content, f"{common.where}, pair {number}", (*_ENTRY, *_ENTRY_MORE))
         yield _entry(line, common, choices)
@@ -71,7 +80,9 @@ def _conjunctions(common: Common, one: Scenario, other: Scenario, choices: dict[
     found: list[Query] = []
     for roles in _assignments(most, len(fewer), choices["roles"]):
         first = applied(home, one, roles if swapped else most)
-        second = applied(home, other, most if swapped else roles, "L2" if choices["lanes"] == "any" else "L")
+        second = applied(
+            home, other, most if swapped else roles, f"{LANE}2" if choices["lanes"] == "any" else LANE
+        )
         if choices["start"] == "same":
             found.append(both(first, second))
         else:
@@ -83,3 +94,13 @@ def _assignments(vehicles: Sequence[str], count: int, roles: str) -> list[tuple[
     if roles == "any":
         return list(permutations(vehicles, count))
     return [(vehicles[0], *others) for others in combinations(vehicles[1:], count - 1)]
+
+
+READER = Reader(
+    SCHEMA,
+    ("set", "lanes", "roles", "start", "options", "parameters", "specs"),
+    ("view", "seconds", "verdicts"),
+    read_index,
+    ("verdict",),
+    read_record,
+)

@@ -1,34 +1,31 @@
 """The index that ``roadproof prove`` writes: claims with their verdicts."""
 
-from collections.abc import Callable, Iterator
-from typing import Any, TypeAlias
+from collections.abc import Iterator
+from typing import Any
 
-from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields
 
 SCHEMA = "roadproof/index/1"
-FIELDS = ("schema", "options", "specs", "claims")
 _ENTRY = ("property", "part", "scenario", "set", "claim", "verdict", "evidence", "counterexample")
 OWN = "claim"  # what a claim is called that is no template property
 
-# Property, part and scenario of a claim in a set, where it is a template property.
-FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
 
-
-def read(data: Fields, common_of_set: Callable[[str], Common], find_label: FindLabel) -> Iterator[Entry]:
+def read(data: Fields, background: Background) -> Iterator[Entry]:
     """The entries of an index. Raises ``InputError``."""
     for number, content in enumerate(data.items("claims"), 1):
-        yield _entry(Fields(content, f"{data.where}, claim {number}", _ENTRY), common_of_set, find_label)
+        yield _entry(Fields(content, f"{data.where}, claim {number}", _ENTRY), background)
 
 
-def _entry(line: Fields, common_of_set: Callable[[str], Common], find_label: FindLabel) -> Entry:
+def _entry(line: Fields, background: Background) -> Entry:
     claim, set_name, verdict = line.text("claim"), line.text("set"), line.text("verdict")
     scenario = line.whole("scenario") if line.get("scenario") is not None else None
     told = (line.text("property"), line.text("part"), scenario)
-    label = find_label(claim, set_name)
+    label = background.find_label(claim, set_name)
     own = told[0] == OWN and scenario is None and (not told[1] or told[1].isdecimal())
     return Entry(
-        common_of_set(set_name),
+        background.at(set_name),
         line.where,
         (" ".join(claim.split()), set_name),
         verdict,
@@ -62,3 +59,15 @@ def misnamed(where: str, told: tuple[str, str, int | None], label: tuple[str, st
 
 def _trace(line: Fields) -> Any:
     return line.content.get("counterexample")
+
+
+READER = Reader(
+    SCHEMA,
+    ("options", "specs"),
+    ("claims",),
+    read,
+    record=("claim", "reason", "seconds", "asked"),
+    read_record=lambda record, background: [
+        _entry(Fields(record.get("claim"), f"{record.where}, claim", _ENTRY), background)
+    ],
+)

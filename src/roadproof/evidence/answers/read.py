@@ -1,115 +1,80 @@
-"""Which reader an index and a journal have, by their schema."""
+"""Which reader an index and a kept answer have, by their schema.
 
-from collections.abc import Callable, Iterator, Mapping
+A reader is the ``READER`` of a module in this folder; modules of no other folder are looked at.
+"""
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib import import_module
+from pkgutil import iter_modules
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers import classify, coverage, explore, order, overlap, proofs, redundancy
-from roadproof.evidence.answers.entry import Common, Entry, common_of
-from roadproof.evidence.answers.proofs import FindLabel
+from roadproof.evidence import answers
+from roadproof.evidence.answers.entry import Entry
+from roadproof.evidence.answers.reader import Background, FindLabel, Reader, without_labels
+from roadproof.evidence.heading import HEADING, library_of
 from roadproof.evidence.strict import Fields
 from roadproof.spec.library import Library
 
-_FIELDS: Mapping[str, tuple[str, ...]] = {
-    proofs.SCHEMA: proofs.FIELDS,
-    overlap.SCHEMA: overlap.FIELDS,
-    redundancy.SCHEMA: redundancy.FIELDS,
-    order.SCHEMA: order.FIELDS,
-    coverage.SCHEMA: coverage.FIELDS,
-    classify.SCHEMA: (*classify.FIELDS, *classify.FIELDS_MORE),
-    explore.SCHEMA: explore.FIELDS,
-}
-_RECORDS: Mapping[str, tuple[str, ...]] = {
-    overlap.SCHEMA: ("verdict",),
-    redundancy.SCHEMA: ("scenario", "verdicts"),
-    order.SCHEMA: ("family", "proved", "drives", "doubts"),
-    coverage.SCHEMA: ("group", "classes"),
-}
+
+@cache
+def readers() -> Mapping[str, Reader]:
+    """The readers by schema."""
+    names = sorted(module.name for module in iter_modules(answers.__path__))
+    modules = [import_module(f"{answers.__name__}.{name}") for name in names]
+    found = [x.READER for x in modules if isinstance(getattr(x, "READER", None), Reader)]
+    assert len({reader.schema for reader in found}) == len(found), "two readers of one schema"
+    return {reader.schema: reader for reader in found}
 
 
 def index_fields(content: object, where: str) -> Fields:
-    """An index, of any kind. Raises ``InputError`` for another schema, and for a field that it has not."""
+    """An index, of any kind. Raises ``InputError`` for what begins or goes on as none does."""
     schema = Fields(content, where).text("schema")
-    if schema not in _FIELDS:
-        raise InputError(f"{where}: schema='{schema[:60]}' is none of an index: {', '.join(_FIELDS)}")
-    return Fields(content, where, _FIELDS[schema])
+    if schema not in readers():
+        raise InputError(f"{where}: schema='{schema[:60]}' is none of an index: {', '.join(readers())}")
+    reader = readers()[schema]
+    data = Fields(content, where, (*HEADING, *reader.said, *reader.index))
+    library_of(data)
+    return data
 
 
 def read_index(data: Fields, library: Library, find_label: FindLabel) -> list[Entry]:
     """What an index says. Raises ``InputError``."""
-    at_set = _common(data, library)
-    match data.text("schema"):
-        case proofs.SCHEMA:
-            return [*proofs.read(data, at_set, find_label)]
-        case overlap.SCHEMA:
-            return [*overlap.read(data, at_set(first_set(data)), data.items("verdicts"))]
-        case redundancy.SCHEMA:
-            return [*redundancy.read(data, at_set(data.text("set")), data.items("verdicts"))]
-        case order.SCHEMA:
-            return [*order.read(data, at_set(first_set(data)), data.items("proved"), data.items("drives"))]
-        case coverage.SCHEMA:
-            common = at_set(data.text("set"))
-            classes = coverage.read_classes(common, data.items("classes"))
-            gaps = coverage.read_gaps(common, data.items("gaps"), data.where)
-            return [*coverage.read_rest(data, common), *classes, *gaps]
-        case classify.SCHEMA:
-            return [*classify.read(data, at_set(classify.CLASSES))]
-        case _:
-            return [*explore.read(data, at_set)]
+    background = Background(data, library, data.where, find_label)
+    return list(readers()[data.text("schema")].read_index(data, background))
 
 
 def faults_of(data: Fields, library: Library, formulas: Mapping[str, str]) -> Iterator[str]:
     """What an index says as a whole and its entries do not show; ``formulas``: of its drives, by file."""
-    schema, at_set = data.text("schema"), _common(data, library)
-    if schema == order.SCHEMA:
-        yield from order.faults(data, at_set(first_set(data)), formulas)
-    elif schema == coverage.SCHEMA:
-        yield from coverage.faults(data, at_set(data.text("set")))
+    background = Background(data, library, data.where)
+    yield from readers()[data.text("schema")].faults(data, background, formulas)
 
 
-def read_record(head: Fields, record: Fields, library: Library) -> list[Entry]:
-    """What one line of a journal says, whose first line is ``head``. Raises ``InputError``."""
-    said = said_of(head)
-    at_set = _common(said, library, record.where)
-    match head.text("of"):
-        case overlap.SCHEMA:
-            return [*overlap.read(said, at_set(first_set(said)), [record.get("verdict")])]
-        case redundancy.SCHEMA:
-            return [*redundancy.read(said, at_set(said.text("set")), record.items("verdicts"))]
-        case order.SCHEMA:
-            common = at_set(first_set(said))
-            return [*order.read(said, common, record.items("proved"), record.items("drives"))]
-        case _:
-            return [*coverage.read_classes(at_set(said.text("set")), record.items("classes"))]
+def read_record(
+    head: Fields, record: Fields, library: Library, find_label: FindLabel = without_labels
+) -> list[Entry]:
+    """What a kept answer says, one of those under ``head``. Raises ``InputError``."""
+    reader = _keeping(head.text("of"), head.where)
+    return list(reader.read_record(record, Background(said_of(head), library, record.where, find_label)))
 
 
 def record_fields(schema: str, where: str) -> tuple[str, ...]:
-    """The fields of a line of a journal. Raises ``InputError`` where there are no such journals."""
-    if schema not in _RECORDS:
-        raise InputError(f"{where}: of='{schema[:60]}': there are journals of {', '.join(_RECORDS)}")
-    return _RECORDS[schema]
+    """The fields of a kept answer. Raises ``InputError`` where none are kept for that schema."""
+    return _keeping(schema, where).record
+
+
+def stands_alone(head: Fields) -> bool:
+    """Whether files may lie beside kept answers that none of these names. Raises ``InputError``."""
+    return _keeping(head.text("of"), head.where).alone
 
 
 def said_of(head: Fields) -> Fields:
-    """What a journal says once for all its lines."""
-    known = {overlap.SCHEMA: overlap.SAID, redundancy.SCHEMA: redundancy.SAID, order.SCHEMA: order.SAID}
-    return Fields(head.mapping("said"), head.where, known.get(head.text("of"), coverage.SAID))
+    """What is said once for all kept answers. Raises ``InputError``."""
+    return Fields(head.mapping("said"), head.where, _keeping(head.text("of"), head.where).said)
 
 
-def first_set(data: Fields) -> str:
-    """The set that names without @ are read in."""
-    sets = data.texts("sets") if data.has("sets") else tuple(data.text("set").split(","))
-    if not sets:
-        raise InputError(f"{data.where}: it names no set")
-    return sets[0]
-
-
-def _common(data: Fields, library: Library, where: str = "") -> Callable[[str], Common]:
-    """What an index says once, about a set; made once for each set."""
-    made: dict[str, Common] = {}
-
-    def at(set_name: str) -> Common:
-        if set_name not in made:
-            made[set_name] = common_of(data, library, set_name, where)
-        return made[set_name]
-
-    return at
+def _keeping(schema: str, where: str) -> Reader:
+    keeping = {name: reader for name, reader in readers().items() if reader.record}
+    if schema not in keeping:
+        raise InputError(f"{where}: of='{schema[:60]}': there are journals of {', '.join(keeping)}")
+    return keeping[schema]

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
 from roadproof.spec.compose import both, equivalence, implication, negation
@@ -11,15 +12,14 @@ from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, applied, leaves_at_once, vehicles_of
 
 SCHEMA = "roadproof/redundancy/1"
-SAID = ("set", "options", "parameters", "specs")
-FIELDS = ("schema", *SAID, "view", "seconds", "verdicts")
 _ENTRY = ("scenario", "part", "where", "as", "changed", "redundant", "verdict", "assuming", "claim")
 _ENTRY_MORE = ("certificate", "drive", "trace", "reason", "late")
 
 
-def read(head: Fields, common: Common, records: Sequence[object]) -> Iterator[Entry]:
-    """The entries of an index or a journal. Raises ``InputError``."""
-    for number, content in enumerate(records, 1):
+def read(data: Fields, background: Background) -> Iterator[Entry]:
+    """The entries of an index or a kept answer. Raises ``InputError``."""
+    common = background.at(background.said.text("set"))
+    for number, content in enumerate(data.items("verdicts"), 1):
         line = Fields(content, f"{common.where}, change {number}", (*_ENTRY, *_ENTRY_MORE))
         yield _entry(line, common)
 
@@ -77,3 +77,13 @@ def _moving(common: Common, scenario: Scenario) -> Sequence[Query]:
 
 def _and(moving: Sequence[Query], query: Query) -> Query:
     return both(*moving, query)
+
+
+READER = Reader(
+    SCHEMA,
+    ("set", "options", "parameters", "specs"),
+    ("view", "seconds", "verdicts"),
+    read,
+    ("scenario", "verdicts"),
+    read,
+)

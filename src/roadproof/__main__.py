@@ -1,0 +1,8 @@
+"""``python -m roadproof``: the command line."""
+
+import sys
+
+from roadproof.cli.main import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,201 @@
+"""Many claims, each settled by itself and kept: what is asked, and what came out."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from roadproof.effort import Effort
+from roadproof.errors import InputError
+from roadproof.evidence.answers.proofs import SCHEMA as INDEX_SCHEMA
+from roadproof.evidence.heading import heading
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.refutation import trace_data
+from roadproof.evidence.traces import read_trace
+from roadproof.proving.properties import Task, find_label, name_of_claim
+from roadproof.proving.prover import Result
+from roadproof.searching.settle import Settled, in_doubt, settle, settle_bounded
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Library, Specification
+from roadproof.study.shelf import Question, Shelf, specification_names
+from roadproof.verdict import Verdict
+
+if TYPE_CHECKING:
+    from roadproof.searching.question import SearchOptions, Setting
+
+SCHEMA = "roadproof/verdicts/1"
+_BY_TRACE, _BY_DRIVE = "trace", "trace or drive"
+
+
+@dataclass(frozen=True)
+class Answered:
+    """A claim of the list or of the user, settled."""
+
+    task: Task
+    settled: Settled
+
+    @property
+    def verdict(self) -> Verdict:
+        return self.settled.verdict
+
+    @property
+    def expected(self) -> Verdict:
+        """PROVED-BOUNDED is as good as PROVED where the question was about drives up to a horizon."""
+        weaker = self.settled.bounded and self.task.expected is Verdict.PROVED
+        return Verdict.PROVED_BOUNDED if weaker else self.task.expected
+
+    def as_data(self, file: str | None = None) -> dict[str, Any]:
+        """As plain data; ``file``: where its certificate is."""
+        task, settled, result = self.task, self.settled, self.settled.result
+        return {
+            "property": task.id,
+            "part": task.part,
+            "scenario": task.scenario,
+            "set": task.set_name,
+            "claim": task.claim,
+            "expected": str(self.expected),
+            "verdict": str(settled.verdict),
+            "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
+            "seconds": round(result.seconds, 4),
+            "reason": result.reason,
+            **({"limits": settled.limits.as_json()} if settled.limits is not None else {}),
+            "assumptions": list(result.certificate.assumptions) if result.certificate else [],
+            "certificate": file if result.certificate is not None else None,
+            "counterexample": _counterexample(settled),
+        }
+
+
+def _counterexample(settled: Settled) -> dict[str, Any] | None:
+    """The refuting drive, or else the countermodel, as plain data."""
+    if settled.drive is not None:
+        return {"kind": "drive", "drive": settled.drive.as_data()}
+    found = settled.result.countermodel
+    return None if found is None else trace_data(found)
+
+
+@dataclass(frozen=True)
+class Claims:
+    """Claims to be settled, each in the specification of its spec set, as a ``study.frame.Study``.
+
+    ``effort`` is for each; ``seek_drive``: whether a drive is looked for that refutes one; ``within``: where
+    and by whom drives are looked for where a claim is about drives up to a horizon, None in dense time.
+    """
+
+    tasks: tuple[Task, ...]
+    specifications: Mapping[str, Specification]
+    effort: Effort = field(default_factory=Effort)
+    seek_drive: bool = True
+    within: "tuple[Setting, SearchOptions] | None" = None
+
+    @property
+    def are_own(self) -> bool:
+        """Whether the claims are of a user, and not of the list."""
+        return any(not task.title for task in self.tasks)
+
+    @property
+    def library(self) -> Library:
+        return next(iter(self.specifications.values())).library
+
+    @cached_property
+    def named(self) -> dict[str, Task]:
+        """The tasks by the names under which answers are kept; what is asked twice is there once."""
+        return {name_of(task): task for task in self.tasks}
+
+    @property
+    def question(self) -> Question:
+        """Definitions and readings: claims that are proved later are kept beside the others."""
+        options = dict(next(iter(self.specifications.values())).options)
+        said = {"options": options, "specs": specification_names(self.library)}
+        return Question(INDEX_SCHEMA, said, {}, self.library, find_label)
+
+    def pieces(self, known: Mapping[str, Answered]) -> Sequence[Task]:
+        return [task for name, task in self.named.items() if name not in known]
+
+    def settle(self, piece: Task) -> dict[str, Answered]:
+        """One claim settled: in dense time, or within bounds."""
+        specification = self.specifications[piece.set_name]
+        query = read_claim(specification, piece.claim)
+        if self.within is not None:
+            from roadproof.searching.ask import Search
+
+            settled = settle_bounded(Search(specification, query, *self.within))
+        else:
+            label = piece.id + (f"-{piece.part}" if piece.part else "")
+            settled = settle(specification, query, self.effort, label, piece.scenario, self.seek_drive)
+        return {name_of(piece): Answered(piece, settled)}
+
+    def doubt(self, piece: Task, reason: str) -> dict[str, Answered]:
+        settled = replace(in_doubt(reason), bounded=self.within is not None)
+        return {name_of(piece): Answered(piece, settled)}
+
+    def is_sure(self, answer: Answered) -> bool:
+        """Whether there is evidence; PROVED-BOUNDED has none, and is about other limits the next time."""
+        return answer.verdict in (Verdict.PROVED, Verdict.VACUOUS, Verdict.REFUTED)
+
+    def record(self, name: str, answer: Answered, shelf: Shelf) -> dict[str, Any]:
+        task, settled, result = answer.task, answer.settled, answer.settled.result
+        entry: dict[str, Any] = {
+            "property": task.id,
+            "part": task.part,
+            "scenario": task.scenario,
+            "set": task.set_name,
+            "claim": task.claim,
+            "verdict": str(answer.verdict),
+            "evidence": shelf.certificate(f"{task.name}.json", result.certificate),
+        }
+        if settled.drive is not None and result.certificate is None:
+            entry["evidence"] = shelf.drive(f"{task.name}-drive.json", settled.drive)
+        if entry["evidence"] is None:
+            entry["counterexample"] = _counterexample(settled)
+        seconds = round(result.seconds, 4)
+        return {"claim": entry, "reason": result.reason, "seconds": seconds, "asked": self._asked}
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answered]:
+        said = record["claim"]
+        name, verdict = name_of_claim(said["claim"], said["set"]), Verdict(said["verdict"])
+        told = (said["property"], said["part"], "", said["scenario"], said["set"], said["claim"])
+        task = self.named.get(name) or Task(*told, verdict)
+        if task.claim.split() != said["claim"].split():
+            raise InputError(f"the answer '{name}' is about another claim: {said['claim'][:120]}")
+        refuted = verdict is Verdict.REFUTED
+        certificate = None if refuted else shelf.read_certificate(said["evidence"])
+        drive = shelf.read_drive(said["evidence"]) if refuted else None
+        trace = read_trace(said["counterexample"], name) if refuted and drive is None else None
+        if refuted and name in self.named:
+            self._check_refuted(name, record["asked"], drive)
+        result = Result(verdict, record["reason"], record["seconds"], 0.0, certificate, trace)
+        return name, Answered(task, Settled(result, drive, None, refuted and self.within is not None))
+
+    @property
+    def _asked(self) -> str:
+        """How a claim is refuted: by any trace, by a drive if there is one, or by a drive within limits."""
+        if self.within is None:
+            return _BY_DRIVE if self.seek_drive else _BY_TRACE
+        place, search_options = self.within
+        return f"{search_options.engine} {hashlib.sha256(repr(place).encode()).hexdigest()[:16]}"
+
+    def _check_refuted(self, name: str, asked: str, drive: Judged | None) -> None:
+        """Raises ``InputError`` where a kept counterexample is less than what is asked for now."""
+        if asked == self._asked:
+            return
+        if self.within is not None:
+            raise InputError(f"the answer '{name}' is that to another question about drives, or about traces")
+        if self.seek_drive and drive is None:
+            raise InputError(f"the answer '{name}' is a trace, and no drive was looked for")
+
+
+def name_of(task: Task) -> str:
+    """Under which name the answer to a claim is kept, whatever the list calls it."""
+    return name_of_claim(task.claim, task.set_name)
+
+
+def as_data(
+    answers: Sequence[Answered], library: Library, files: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """All answers as plain data; ``files``: where certificates are, by the name of the answer."""
+    known = files or {}
+    return {
+        **heading(SCHEMA, library),
+        "verdicts": [x.as_data(known.get(name_of(x.task))) for x in answers],
+    }

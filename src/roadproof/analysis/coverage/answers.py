@@ -1,0 +1,143 @@
+"""What came out for a class of gaps, and the same as plain data."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from roadproof.analysis.coverage.classes import GapGroup
+from roadproof.analysis.coverage.parts import Part
+from roadproof.errors import InputError
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
+from roadproof.study.shelf import Shelf
+from roadproof.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A judged drive that the set misses, near to the scenario of a class in roles and lane of its formula.
+
+    ``first``: the first of the wider sets that catches it, or empty, and ``caught_by`` the smallest choices
+    of definitions of that set that do; ``classes``: the keys of all parts for which it is a near miss.
+    ``elsewhere``: by road the same motions as gaps there, as near to the scenario's counterpart; they are
+    given for whole components.
+    """
+
+    drive: Judged
+    first: str
+    caught_by: tuple[tuple[str, ...], ...]
+    classes: tuple[str, ...]
+    elsewhere: Mapping[str, Judged] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class ClassAnswer:
+    """What came out for one class; ``part`` None is the class for which no single condition is to blame.
+
+    WITNESSED with gaps that differ in the wider set that catches them first, ``none_for`` being the sets
+    for which none was found; IMPOSSIBLE with a certificate of ``claim``; UNKNOWN with a reason. Where
+    recordings were looked at, ``in_traffic`` says how often it occurs there, and ``trace`` where first;
+    CROSSCHECK-FAILED where it does although it is proved empty.
+    """
+
+    part: Part | None
+    verdict: Verdict
+    gaps: tuple[Gap, ...] = ()
+    claim: Query | None = None
+    certificate: Certificate | None = None
+    reason: str = ""
+    none_for: tuple[str, ...] = ()
+    in_traffic: int | None = None
+    trace: str = ""
+
+
+Answers = tuple[ClassAnswer, ...]
+
+
+def group_name(group: GapGroup) -> str:
+    """Under which name the answers for a group are kept."""
+    return group.title.replace(" ", "-")
+
+
+def record_of(group: GapGroup, answers: Answers, shelf: Shelf) -> dict[str, Any]:
+    """The answers for a group as plain data; their evidence goes to the shelf."""
+    stems = (f"{group_name(group)}-{k}" for k in range(len(answers)))
+    classes = [_class_data(x, stem, shelf) for stem, x in zip(stems, answers, strict=True)]
+    return {"group": group.title, "classes": classes}
+
+
+def _class_data(answer: ClassAnswer, stem: str, shelf: Shelf) -> dict[str, Any]:
+    return {
+        **_names(answer.part),
+        "verdict": str(answer.verdict),
+        "gaps": [_gap_data(gap, f"gap-{stem}-{n}", shelf) for n, gap in enumerate(answer.gaps, 1)],
+        "claim": "" if answer.claim is None else answer.claim.text,
+        "certificate": shelf.certificate(f"empty-{stem}.json", answer.certificate),
+        "reason": answer.reason,
+        "none_for": list(answer.none_for),
+    }
+
+
+def _names(part: Part | None) -> dict[str, Any]:
+    return {
+        "scenario": None if part is None else part.scenario,
+        "component": "" if part is None else part.component,
+        "description": "" if part is None else part.description,
+        "condition": "" if part is None else part.condition,
+    }
+
+
+def _gap_data(gap: Gap, name: str, shelf: Shelf) -> dict[str, Any]:
+    file = gap.drive.file
+    return {
+        "road": file.road.name,
+        "formula": file.formula,
+        "first": gap.first,
+        "caught_by": [list(names) for names in gap.caught_by],
+        "classes": list(gap.classes),
+        "drive": shelf.drive(f"{name}.json", gap.drive),
+        "elsewhere": {
+            road: shelf.drive(f"{name}-{road}.json", drive) for road, drive in gap.elsewhere.items()
+        },
+    }
+
+
+def answers_in(
+    record: Mapping[str, Any], group: GapGroup, specification: Specification, shelf: Shelf
+) -> Answers:
+    """The inverse of ``record_of``, with every drive judged again. Raises ``InputError``."""
+    classes: Sequence[Mapping[str, Any]] = record["classes"]
+    if [{name: x[name] for name in _names(None)} for x in classes] != [_names(x) for x in group.parts]:
+        raise InputError(f"the classes that are kept of {group.title} are not its own")
+    found = zip(group.parts, classes, strict=True)
+    return tuple(_read_class(part, said, specification, shelf) for part, said in found)
+
+
+def _read_class(
+    part: Part | None, said: Mapping[str, Any], specification: Specification, shelf: Shelf
+) -> ClassAnswer:
+    return ClassAnswer(
+        part,
+        Verdict(said["verdict"]),
+        tuple(_read_gap(gap, shelf) for gap in said["gaps"]),
+        read_claim(specification, said["claim"]) if said["claim"] else None,
+        shelf.read_certificate(said["certificate"]),
+        said["reason"],
+        tuple(said["none_for"]),
+    )
+
+
+def _read_gap(said: Mapping[str, Any], shelf: Shelf) -> Gap:
+    drives = {road: shelf.read_drive(kept) for road, kept in said["elsewhere"].items()}
+    drive = shelf.read_drive(said["drive"])
+    assert drive is not None
+    return Gap(
+        drive,
+        said["first"],
+        tuple(map(tuple, said["caught_by"])),
+        tuple(said["classes"]),
+        {road: judged for road, judged in drives.items() if judged is not None},
+    )

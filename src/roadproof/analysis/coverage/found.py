@@ -1,0 +1,65 @@
+"""Gaps to begin with: drives of the catalogue that a set misses, before anything is searched or proved."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice
+
+from roadproof.analysis.coverage.catalogue import HORIZON, catalogue
+from roadproof.analysis.coverage.classes import GapClasses
+from roadproof.analysis.coverage.trial import Trials
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.judge.exact import judge
+from roadproof.judge.replay import first_breach, first_overlap
+from roadproof.logic.formula import transform
+from roadproof.spec.bind import bind
+from roadproof.spec.scenarios import PAIR, danger_comes
+from roadproof.world.models import load_vehicle
+from roadproof.world.road import Road
+
+
+@dataclass(frozen=True)
+class FoundGap:
+    """A drive that the set misses; ``first``: the first of the wider sets that catches it, or empty.
+
+    ``classes``: the keys of all parts for which it is a near miss. It is no evidence yet: what it shows of
+    a class is judged when an answer is made of it.
+    """
+
+    file: DriveFile
+    first: str
+    classes: tuple[str, ...]
+
+    @property
+    def effort(self) -> tuple[int, int, int, Fraction]:
+        """What makes a drive hard to read: vehicles that move across the road, accelerations, vehicles that
+        start off the middle of a lane; and how long it takes (s)."""
+        motions = self.file.drive.vehicles.values()
+        movers = sum(m.v_lat != 0 or any(p.a_lat for p in m.pieces) for m in motions)
+        changes = sum((p.a_lon != 0) + (p.a_lat != 0) for m in motions for p in m.pieces)
+        middles = {sum(lanelet.d, Fraction(0)) for lanelet in self.file.road.lanelets}
+        off = sum(2 * m.d - m.width not in middles for m in motions)
+        longest = max(sum((p.duration or Fraction(0) for p in m.pieces), Fraction(0)) for m in motions)
+        return movers, changes, off, longest
+
+
+def find_in_catalogue(
+    road: Road, start: int, step: int, classes: GapClasses, trials: Trials
+) -> list[FoundGap]:
+    """The gaps among every ``step``-th drive of the catalogue; of those alike the ones with least effort."""
+    specification, car = classes.specification, load_vehicle("car")
+    begins = bind(danger_comes(specification, *PAIR).formula, road, {}, classes.values)
+    gap = bind(classes.missed(classes.numbers_on(road)).formula, road, {}, classes.values)
+    gap = transform(gap, lambda part: part)
+    best: dict[tuple[str, tuple[str, ...]], FoundGap] = {}
+    for drive in islice(catalogue(road, car), start, None, step):
+        if not judge(begins, drive).holds or not judge(gap, drive).holds:
+            continue
+        if first_overlap(drive, HORIZON) or first_breach(drive, dict.fromkeys(drive.vehicles, car), None):
+            continue
+        name, options = specification.set_name, specification.options
+        file = DriveFile(None, name, "", HORIZON, {}, classes.values, options, road, drive)
+        found = FoundGap(file, trials.first(file), classes.of(file))
+        key = (found.first, found.classes)
+        if key not in best or found.effort < best[key].effort:
+            best[key] = found
+    return list(best.values())

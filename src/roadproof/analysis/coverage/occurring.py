@@ -1,0 +1,70 @@
+"""How often classes of gaps occur in recordings, and whether that fits what is proved of them."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class GapTrace:
+    """A disturbance between two vehicles of a recording; ``missed``: no scenario, any lane, either role.
+
+    ``classes``: the keys of the parts without which a scenario would hold; ``alone``: whether no single
+    condition is to blame.
+    """
+
+    recording: str
+    first: int
+    second: int
+    frames: tuple[int, int]
+    missed: bool
+    classes: tuple[str, ...]
+    alone: bool
+
+    @property
+    def pair(self) -> str:
+        return f"{self.first} and {self.second}, frames {self.frames[0]} to {self.frames[1]}"
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Its classes by their keys, that of gaps without a single condition to blame as ''."""
+        return (*self.classes, "") if self.alone else self.classes
+
+
+@dataclass(frozen=True)
+class GapTraffic:
+    """What recordings hold. ``repeats``: how many disturbances an earlier window has shown already."""
+
+    folder: Path
+    disturbances: int
+    missed: tuple[GapTrace, ...]
+    repeats: int
+
+    def as_data(self) -> dict[str, Any]:
+        """What an index says of it."""
+        missed = [{"recording": x.recording, "pair": x.pair, "classes": list(x.keys)} for x in self.missed]
+        return {
+            "recordings": str(self.folder),
+            "view": "recorded",
+            "disturbances": self.disturbances,
+            "repeats": self.repeats,
+            "missed": missed,
+        }
+
+
+def with_counts(answer: ClassAnswer, traffic: GapTraffic) -> ClassAnswer:
+    """The answer with how often its class occurs. One that is proved empty and occurs is our fault."""
+    key = "" if answer.part is None else answer.part.key
+    traces = [trace for trace in traffic.missed if key in trace.keys]
+    if not traces:
+        return replace(answer, in_traffic=0)
+    where = f"recording {traces[0].recording}, vehicles {traces[0].pair}"
+    seen = replace(answer, in_traffic=len(traces), trace=where)
+    if answer.verdict is Verdict.WITNESSED:
+        return seen
+    broken = answer.verdict is Verdict.IMPOSSIBLE
+    verdict = Verdict.CROSSCHECK_FAILED if broken else answer.verdict
+    return replace(seen, verdict=verdict, reason=f"occurs in {where}")

@@ -1,0 +1,246 @@
+"""Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes.
+
+Claims of coverage come first. Where they are proved, only the definitions are left that the set may not need;
+else the catalogue is looked through, and its gaps are what the classes begin with.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
+from roadproof.analysis.coverage.claims import Covered, claims_of, prove_claim
+from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
+from roadproof.analysis.coverage.found import FoundGap, find_in_catalogue
+from roadproof.analysis.coverage.needed import Need, find_need, parent_of, replaced_by
+from roadproof.analysis.coverage.occurring import GapTraffic, with_counts
+from roadproof.analysis.coverage.pieces import (
+    Chunk,
+    Component,
+    CoverageClaim,
+    Kept,
+    Looked,
+    NeededDefinition,
+    Piece,
+    name_of,
+)
+from roadproof.analysis.coverage.settling import Settling
+from roadproof.analysis.coverage.surveyed import Surveyed, is_covered
+from roadproof.analysis.coverage.trial import Trials
+from roadproof.errors import InputError
+from roadproof.evidence.answers.coverage import SCHEMA
+from roadproof.study.shelf import Question, Shelf
+from roadproof.verdict import Verdict
+
+CHUNKS = 7
+"""The catalogue of a road is looked through in so many pieces."""
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """The question which disturbances a set misses, as a ``study.frame.Study``.
+
+    ``needed``: also which of its definitions it needs, where it misses none.
+    """
+
+    survey: GapSurvey
+    needed: bool = False
+
+    @property
+    def question(self) -> Question:
+        """Without the roads: what was decided on some of them stays so, and doubts are asked again."""
+        basis = self.survey.basis
+        said = {"set": basis.specification.set_name, "wider": list(self.survey.wider), **basis.said()}
+        return Question(SCHEMA, said, {}, basis.library)
+
+    @cached_property
+    def claims(self) -> tuple[CoverageClaim, ...]:
+        queries = claims_of(self.survey.basis.specification)
+        return tuple(CoverageClaim(number, query) for number, query in enumerate(queries, 1))
+
+    @cached_property
+    def groups(self) -> dict[str, GapGroup]:
+        """The classes in groups, by the names under which their answers are kept."""
+        return {group_name(group): group for group in self._classes.groups()}
+
+    @cached_property
+    def _classes(self) -> GapClasses:
+        return GapClasses(self.survey.basis)
+
+    @cached_property
+    def _trials(self) -> Trials:
+        return Trials(self.survey.basis, self.survey.wider)
+
+    # --- pieces ----------------------------------------------------------------------------------
+
+    def pieces(self, known: Mapping[str, Kept]) -> Sequence[Piece]:
+        claims = [claim for claim in self.claims if name_of(claim) not in known]
+        if claims:
+            return claims
+        if is_covered(self._proved(known)):
+            definitions = [NeededDefinition(name) for name in self._replaced()]
+            return [definition for definition in definitions if name_of(definition) not in known]
+        groups = [name for name in self.groups if name not in known]
+        roads = range(len(self.survey.roads) if groups else 0)
+        chunks = [Chunk(road, k) for road in roads for k in range(CHUNKS)]
+        left = [chunk for chunk in chunks if name_of(chunk) not in known]
+        if left:
+            return left
+        looked = [x for x in (known[name_of(chunk)] for chunk in chunks) if isinstance(x, Looked)]
+        found = [x for each in looked for x in each.found]
+        lost = tuple(each.lost for each in looked if each.lost)
+        return [Component(name, _concerning(self.groups[name], found), lost) for name in groups]
+
+    def _proved(self, known: Mapping[str, Kept]) -> tuple[Covered, ...]:
+        answers = (known[name_of(claim)] for claim in self.claims)
+        return tuple(answer for answer in answers if isinstance(answer, Covered))
+
+    def _replaced(self) -> tuple[str, ...]:
+        return replaced_by(self.survey.basis.specification) if self.needed else ()
+
+    def settle(self, piece: Piece) -> dict[str, Kept]:
+        basis = self.survey.basis
+        answer: Kept
+        match piece:
+            case CoverageClaim(_, query):
+                answer = prove_claim(basis, query)
+            case NeededDefinition(name):
+                answer = find_need(basis, name)
+            case Chunk(road, number):
+                where, classes, trials = self.survey.roads[road], self._classes, self._trials
+                answer = Looked(tuple(find_in_catalogue(where, number, CHUNKS, classes, trials)))
+            case Component(name, known, lost):
+                group = self.groups[name]
+                settling = Settling(self.survey, group, [*known], self._classes, self._trials)
+                answer = tuple(_with_lost(x, lost) for x in settling.run())
+        return {name_of(piece): answer}
+
+    def doubt(self, piece: Piece, reason: str) -> dict[str, Kept]:
+        answer: Kept
+        match piece:
+            case CoverageClaim(_, query):
+                answer = Covered(query, Verdict.UNKNOWN, None, reason)
+            case NeededDefinition(name):
+                answer = Need(name, parent_of(self.survey.basis.specification), Verdict.UNKNOWN)
+            case Chunk():
+                answer = Looked((), f"a part of the catalogue was not looked through: {reason}")
+            case Component(name):
+                parts = self.groups[name].parts
+                answer = tuple(ClassAnswer(part, Verdict.UNKNOWN, reason=reason) for part in parts)
+        return {name_of(piece): answer}
+
+    # --- answers that are kept -------------------------------------------------------------------
+
+    def is_sure(self, answer: Kept) -> bool:
+        """Gaps of the catalogue are no answer, and what has no evidence is quickly asked again."""
+        match answer:
+            case Covered():
+                return answer.certificate is not None
+            case Need():
+                return answer.drive is not None
+            case Looked():
+                return False
+            case _:
+                return all(x.verdict is not Verdict.UNKNOWN for x in answer)
+
+    def record(self, name: str, answer: Kept, shelf: Shelf) -> dict[str, Any]:
+        match answer:
+            case Covered(claim, verdict, certificate, reason):
+                file = shelf.certificate(f"{name}.json", certificate)
+                said = {"claim": claim.text, "verdict": str(verdict), "certificate": file}
+                return {"claim": {**said, "reason": reason}}
+            case Need(definition, parent, verdict, drive):
+                told = {"road": "", "formula": ""}
+                if drive is not None:
+                    told = {"road": drive.file.road.name, "formula": drive.file.formula}
+                names = {"definition": definition, "extends": parent, "verdict": str(verdict)}
+                return {"need": {**names, **told, "drive": shelf.drive(f"{name}.json", drive)}}
+            case Looked():
+                return {}
+            case _:
+                return record_of(self.groups[name], answer, shelf)
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
+        match record:
+            case {"claim": said}:
+                return self._read_claim(said, shelf)
+            case {"need": said}:
+                need = Need(
+                    said["definition"],
+                    said["extends"],
+                    Verdict(said["verdict"]),
+                    shelf.read_drive(said["drive"]),
+                )
+                return name_of(NeededDefinition(need.definition)), need
+            case _:
+                return self._read_classes(record, shelf)
+
+    def _read_claim(self, said: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
+        for claim in self.claims:
+            if claim.query.text == said["claim"]:
+                certificate = shelf.read_certificate(said["certificate"])
+                verdict = Verdict(said["verdict"])
+                return name_of(claim), Covered(claim.query, verdict, certificate, said["reason"])
+        raise InputError(f"coverage does not rest on this claim: {said['claim'][:120]}")
+
+    def _read_classes(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
+        for name, group in self.groups.items():
+            if group.title == record["group"]:
+                return name, answers_in(record, group, self.survey.basis.specification, shelf)
+        raise InputError(f"the set has no component {record['group']}")
+
+    # --- all together ----------------------------------------------------------------------------
+
+    def together(self, answers: Mapping[str, Kept], traffic: GapTraffic | None = None) -> Surveyed:
+        """All answers, the classes in order; with how often they occur in ``traffic``."""
+        claims = self._proved(answers)
+        found = (answers.get(name_of(NeededDefinition(name))) for name in self._replaced())
+        needs = [x for x in found if isinstance(x, Need)]
+        every = [answers[name] for name in self._shown(answers)]
+        classes = [x for each in every if isinstance(each, tuple) for x in each]
+        if traffic is not None:
+            classes = [with_counts(x, traffic) for x in classes]
+        return Surveyed(claims, tuple(classes), tuple(sorted(needs, key=lambda x: x.definition)), traffic)
+
+    def _shown(self, answers: Mapping[str, Kept]) -> list[str]:
+        """The names of the groups that have answers, in order; none is shown where no gap can be."""
+        return [] if is_covered(self._proved(answers)) else list(self.groups)
+
+    def as_data(
+        self, surveyed: Surveyed, answers: Mapping[str, Kept], records: Mapping[str, Mapping[str, Any]]
+    ) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded: classes name their gaps by numbers."""
+        recorded = [entry for name in self._shown(answers) for entry in records[name]["classes"]]
+        classes: list[dict[str, Any]] = []
+        numbered: list[dict[str, Any]] = []
+        for answer, entry in zip(surveyed.classes, recorded, strict=True):
+            first = len(numbered) + 1
+            numbered += [{"number": first + k, **gap} for k, gap in enumerate(entry["gaps"])]
+            numbers = list(range(first, len(numbered) + 1))
+            told: dict[str, Any] = {"verdict": str(answer.verdict), "gaps": numbers, "reason": answer.reason}
+            told |= {} if answer.in_traffic is None else {"in_traffic": answer.in_traffic}
+            classes.append({**entry, **told, **({"trace": answer.trace} if answer.trace else {})})
+        return {
+            **self.question.heading,
+            "view": "dense",
+            "verdict": str(surveyed.verdict),
+            "claims": [records[name_of(claim)]["claim"] for claim in self.claims],
+            "classes": classes,
+            "gaps": numbered,
+            "needs": [records[name_of(NeededDefinition(x.definition))]["need"] for x in surveyed.needs],
+            "traffic": None if surveyed.traffic is None else surveyed.traffic.as_data(),
+        }
+
+
+def _concerning(group: GapGroup, found: Sequence[FoundGap]) -> tuple[FoundGap, ...]:
+    """The gaps that are in a class of the group; all of them where no single condition is to blame."""
+    keys = {part.key for part in group.parts if part is not None}
+    return tuple(x for x in found if not keys or keys & {*x.classes})
+
+
+def _with_lost(answer: ClassAnswer, lost: tuple[str, ...]) -> ClassAnswer:
+    """A doubt that also says which drives were not tried."""
+    if answer.verdict is not Verdict.UNKNOWN or not lost:
+        return answer
+    return ClassAnswer(answer.part, answer.verdict, reason="; ".join((answer.reason, *lost)))

@@ -1,0 +1,142 @@
+"""Explorations of several formulas: each is a piece with an answer of its own, kept and taken up again."""
+
+import json
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
+
+from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, PointFinding, say_nothing
+from roadproof.analysis.explore.extreme import Sought, find_extreme, find_extremes, soughts_of, unsought
+from roadproof.analysis.explore.record import as_data, read_data
+from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided, values_of
+from roadproof.analysis.explore.values import explore
+from roadproof.errors import InputError
+from roadproof.evidence.drive_file import road_data
+from roadproof.study.pool import Say, in_order, work
+from roadproof.study.shelf import Question, Shelf, specification_names
+from roadproof.verdict import Verdict
+
+SCHEMA = "roadproof/explore/1"
+
+
+@dataclass(frozen=True)
+class Exploration:
+    """All that is ``asked``, as a ``study.frame.Study``: the same of one formula or of several.
+
+    ``processes`` (None: one a core) share the searches for one formula, where formulas do not already.
+    ``say`` is told how far one is.
+    """
+
+    asked: tuple[Explorable, ...]
+    processes: int | None = None
+    say: Say = say_nothing
+
+    @cached_property
+    def named(self) -> dict[str, Explorable]:
+        """What is asked by the names under which the answers are kept; what is asked twice is there once."""
+        return {name_of(number, asked): asked for number, asked in enumerate(self.asked, 1)}
+
+    @property
+    def question(self) -> Question:
+        """What is varied has its values in the findings, and no other for all of them."""
+        first = self.asked[0]
+        specification = first.search.specification
+        varied = {knob.name for knob in first.knobs}
+        values = {n: str(v) for n, v in sorted(values_of(first.search).items()) if n not in varied}
+        specs = specification_names(specification.library)
+        said = {"options": dict(specification.options), "parameters": values, "specs": specs}
+        return Question(SCHEMA, said, _more(self.named, first), specification.library)
+
+    def pieces(self, known: Mapping[str, Explored]) -> Sequence[str]:
+        return [name for name in self.named if name not in known]
+
+    def settle(self, piece: str) -> dict[str, Explored]:
+        begun, asked = time.monotonic(), self.named[piece]
+        explored = explore(asked, self._look_all, self.say) if asked.knobs else Explored()
+        extremes: list[Extreme] = []
+        for measure in asked.measures:
+            extremes += find_extremes(soughts_of(asked, explored, measure), self._find_all)
+        explored = replace(
+            explored,
+            extremes=tuple(extremes),
+            searches=explored.searches + sum(x.searches for x in extremes),
+            seconds=time.monotonic() - begun,
+            late=explored.late or any(x.late for x in extremes),
+        )
+        return {piece: explored}
+
+    def _look_all(self, tasks: Sequence[SearchTask]) -> Iterable[Reply]:
+        return in_order(work(look, tasks, self.processes, undecided))
+
+    def _find_all(self, soughts: Sequence[Sought]) -> Iterable[Extreme]:
+        find = partial(find_extreme, say=self.say)
+        return in_order(work(find, soughts, self.processes, unsought))
+
+    def doubt(self, piece: str, reason: str) -> dict[str, Explored]:
+        asked = self.named[piece]
+        findings = (PointFinding(x, Verdict.UNKNOWN, asked.query(x), reason) for x in asked.points)
+        explored = Explored(tuple(findings), late=True)
+        soughts = (x for measure in asked.measures for x in soughts_of(asked, explored, measure))
+        return {piece: replace(explored, extremes=tuple(unsought(x, reason) for x in soughts))}
+
+    def is_sure(self, answer: Explored) -> bool:
+        """A doubt that the count of work makes is the same in the next run, so it stands."""
+        return not answer.late
+
+    def record(self, name: str, answer: Explored, shelf: Shelf) -> dict[str, Any]:
+        return {"exploration": as_data(name, self.named[name], answer, shelf)}
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Explored]:
+        data = record["exploration"]
+        said = (data["scenario"], data["set"], data["formula"])
+        for name, asked in self.named.items():
+            if said == _asked_of(asked):
+                return name, read_data(asked, data, shelf)
+        raise InputError(f"an exploration of {data['formula']}, which is not asked for")
+
+    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+        return {
+            **self.question.heading,
+            "view": "dense",
+            "seconds": round(seconds, 1),
+            "explored": [records[name]["exploration"] for name in self.named],
+        }
+
+
+def name_of(number: int, asked: Explorable) -> str:
+    """Under which name the answer is kept, and how the names of its files begin; ``number`` is its place."""
+    search = asked.search
+    stem = f"formula-{number:02}" if search.scenario is None else f"scenario-{search.scenario:02}"
+    return f"{stem}-{search.specification.set_name}"
+
+
+def _asked_of(asked: Explorable) -> tuple[int | None, str, str]:
+    search = asked.search
+    return search.scenario, search.specification.set_name, search.query.text
+
+
+def _more(named: Mapping[str, Explorable], first: Explorable) -> dict[str, str]:
+    """What else all answers depend on, of which ``first`` is one."""
+    setting, search_options = first.search.setting, first.search.search_options
+    more = {
+        "formulas": {name: _asked_of(asked) for name, asked in named.items()},
+        "vary": [(x.name, str(x.low), str(x.high)) for x in first.knobs],
+        "measures": [(x.sense, x.text, x.when) for x in first.measures],
+        "steps": first.steps,
+        "precision": str(first.precision),
+        "road": None if setting.road is None else road_data(setting.road),
+        "lanes": dict(setting.lanes),
+        "vehicles": {name: repr(vehicle) for name, vehicle in setting.vehicles.items()},
+        "grid": [str(x) for x in (setting.horizon, setting.dt, setting.reach)],
+        "collisions": setting.collisions,
+        "means": [
+            search_options.engine,
+            search_options.solver,
+            search_options.objective,
+            f"{search_options.effort.units:g}",
+        ],
+    }
+    return {name: json.dumps(value, sort_keys=True) for name, value in more.items()}

@@ -1,0 +1,144 @@
+"""Drives for scenarios and formulas, each looked for by itself and kept."""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from roadproof.effort import Effort
+from roadproof.errors import InputError
+from roadproof.evidence.answers.drives import SCHEMA
+from roadproof.logic import syntax
+from roadproof.logic.show import text
+from roadproof.searching import ask
+from roadproof.searching.ask import Outcome, Search
+from roadproof.searching.impossible import Impossibility
+from roadproof.spec.elaborate import read_claim
+from roadproof.study.shelf import Question, Shelf, specification_names
+from roadproof.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Witnessing:
+    """Searches for drives, as a ``study.frame.Study``.
+
+    ``finish`` is told of each outcome under its name, in the process that found it.
+    """
+
+    searches: tuple[Search, ...]
+    finish: Callable[[str, Outcome], None] | None = None
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names under which outcomes are kept, and which files begin with, in order."""
+        return tuple(_name(number, search) for number, search in enumerate(self.searches, 1))
+
+    @cached_property
+    def named(self) -> dict[str, Search]:
+        """The searches by name; what is asked twice is there once."""
+        return dict(zip(self.names, self.searches, strict=True))
+
+    @property
+    def question(self) -> Question:
+        """Definitions and readings; how each drive was looked for is kept with its answer."""
+        specification = self.searches[0].specification
+        specs = specification_names(specification.library)
+        said = {"options": dict(specification.options), "specs": specs}
+        return Question(SCHEMA, said, {}, specification.library)
+
+    def pieces(self, known: Mapping[str, Outcome]) -> Sequence[str]:
+        return [name for name in self.named if name not in known]
+
+    def settle(self, piece: str) -> dict[str, Outcome]:
+        outcome = ask.answer(self.named[piece])
+        if self.finish is not None:
+            self.finish(piece, outcome)
+        return {piece: outcome}
+
+    def doubt(self, piece: str, reason: str) -> dict[str, Outcome]:
+        return {piece: ask.undecided(self.named[piece], reason)}
+
+    def is_sure(self, answer: Outcome) -> bool:
+        """Whether all drives that were asked for are there, or a proof that there is none."""
+        return answer.verdict is Verdict.IMPOSSIBLE or (bool(answer.drives) and not answer.reason)
+
+    def record(self, name: str, answer: Outcome, shelf: Shelf) -> dict[str, Any]:
+        shown = answer.impossibility
+        values = self.named[name].setting.values
+        outcome = {
+            "scenario": answer.scenario,
+            "set": answer.set_name,
+            "formula": answer.query.text,
+            "parameters": {name: str(value) for name, value in sorted(values.items())},
+            "road": answer.road,
+            "verdict": str(answer.verdict),
+            "reason": answer.reason,
+            "natural": answer.natural,
+            "drives": [
+                shelf.drive(f"{stem}.json", judged)
+                for stem, judged in zip(stems(name, answer), answer.drives, strict=True)
+            ],
+            "certificate": None if shown is None else shelf.certificate(_proof(name), shown.certificate),
+            "core": [] if shown is None else list(shown.told),
+            "minimal": shown is not None and shown.minimal,
+            "seconds": {stage: round(value, 4) for stage, value in answer.seconds.items()},
+            "sizes": dict(answer.sizes),
+        }
+        return {"name": name, "outcome": outcome, "asked": _asked(self.named[name])}
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Outcome]:
+        name, said = record["name"], record["outcome"]
+        search = self.named.get(name)
+        if search is not None and record["asked"] != _asked(search):
+            raise InputError(f"the answer '{name}' is that to another search")
+        home = self.searches[0].specification.in_set(said["set"])
+        query = read_claim(home, said["formula"]) if search is None else search.query
+        certificate = shelf.read_certificate(said["certificate"])
+        shown = None
+        if certificate is not None:
+            head = text(syntax.Claim(query.claim.given, syntax.Literal_(True))).removesuffix("true")
+            parts = (read_claim(home, (head if query.claim.given else "") + part) for part in said["core"])
+            shown = Impossibility(tuple(part.formula for part in parts), said["minimal"], certificate)
+        return name, Outcome(
+            said["scenario"],
+            said["set"],
+            query,
+            said["road"],
+            Verdict(said["verdict"]),
+            said["reason"],
+            tuple(x for x in map(shelf.read_drive, said["drives"]) if x is not None),
+            said["natural"],
+            said["seconds"],
+            said["sizes"],
+            shown,
+        )
+
+
+def stems(name: str, outcome: Outcome) -> list[str]:
+    """How the files of each drive of an outcome begin."""
+    several = len(outcome.drives) > 1
+    return [f"{name}-{k}" if several else name for k in range(1, len(outcome.drives) + 1)]
+
+
+def evidence_files(name: str, outcome: Outcome) -> list[str]:
+    """The files that show an outcome."""
+    proof = [] if outcome.impossibility is None else [_proof(name)]
+    return [*(f"{stem}.json" for stem in stems(name, outcome)), *proof]
+
+
+def _proof(name: str) -> str:
+    return f"impossible-{name}.json"
+
+
+def _name(number: int, search: Search) -> str:
+    scenario = search.scenario
+    what = f"formula-{number:02d}" if scenario is None else f"scenario-{scenario:02d}"
+    return f"{what}-{search.specification.set_name}"
+
+
+def _asked(search: Search) -> str:
+    """A short text that changes with formula, road, vehicles, limits and options, but not with the effort."""
+    options = replace(search.search_options, effort=Effort())
+    asked = repr((search.query.text, search.setting, options, search.count))
+    return hashlib.sha256(asked.encode()).hexdigest()[:16]

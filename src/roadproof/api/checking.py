@@ -1,0 +1,133 @@
+"""Evidence checked again, without the programs that made it."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from functools import partial
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from roadproof.api.answer import Row
+from roadproof.api.settings import one_of, work_of
+from roadproof.effort import Effort
+from roadproof.evidence.checking import Checker
+from roadproof.evidence.finding import Acceptance, Finding, exit_code, summary
+from roadproof.evidence.folder import conclude, survey
+from roadproof.evidence.heading import heading
+from roadproof.proving.properties import find_label
+from roadproof.solve.smt import Satisfiability as SolverAnswer
+from roadproof.solve.smt import ask
+from roadproof.spec.library import Library, load_library
+from roadproof.study import pool
+from roadproof.study.pool import Progress
+from roadproof.verdict import ExitCode
+
+if TYPE_CHECKING:
+    from roadproof.formats.table import Frame
+
+SCHEMA = "roadproof/check/2"
+Solver: TypeAlias = Literal["z3", "cvc5"]
+
+
+@dataclass(frozen=True, repr=False)
+class Checked:
+    """A finding for each claim, with the definitions of ``library``.
+
+    ``specs``: specification files that lie beside the evidence, and were read on top of it.
+    """
+
+    findings: tuple[Finding, ...]
+    solver: str
+    library: Library
+    specs: tuple[Path, ...] = ()
+
+    @property
+    def accepted(self) -> bool:
+        """Whether every claim is accepted."""
+        return all(x.outcome is Acceptance.ACCEPTED for x in self.findings)
+
+    @property
+    def counts(self) -> dict[Acceptance, int]:
+        """How many claims came out how."""
+        return dict(Counter(x.outcome for x in self.findings))
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code(self.findings)
+
+    def as_data(self) -> dict[str, Any]:
+        """As the plain data of ``--json``."""
+        entries = [{**asdict(x), "accepted": x.outcome is Acceptance.ACCEPTED} for x in self.findings]
+        return {**heading(SCHEMA, self.library), "solver": self.solver, "findings": entries}
+
+    def rows(self) -> list[Row]:
+        """A row for each claim."""
+        return [
+            {
+                "claim": " ".join(x.claim.split()),
+                "verdict": x.verdict,
+                "outcome": str(x.outcome),
+                "reason": x.reason,
+                "where": x.where,
+            }
+            for x in self.findings
+        ]
+
+    def to_frame(self) -> "Frame":
+        """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
+        from roadproof.formats.table import frame_of
+
+        return frame_of(self.rows())
+
+    def __repr__(self) -> str:
+        return f"<Checked: {', '.join(f'{n} {outcome}' for outcome, n in self.counts.items())}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
+
+    def __str__(self) -> str:
+        lines = [f"read with {path}" for path in self.specs]
+        return "\n".join([*lines, *map(str, self.findings), summary(self.findings, self.solver)])
+
+
+def check(
+    *paths: str | Path,
+    solver: Solver = "z3",
+    specs: Iterable[str | Path] = (),
+    effort: float = 60.0,
+    timeout: float | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> Checked:
+    """Check certificates, drive files and folders of them, as ``roadproof check`` does.
+
+    ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. Raises
+    ``InputError`` for a path that holds nothing, ``MissingSolverError``.
+    """
+    one_of("solver", solver, Solver)
+    ask("(set-logic QF_UF)(check-sat)", solver)  # a solver that is missing is said once, before any work
+    named = tuple(Path(x) for x in specs)
+    library = load_library(named)
+    surveyed = survey([Path(x) for x in paths], named, find_label)
+    given = list(surveyed.files.items())
+    judge = partial(_examine, solver, work_of(effort, timeout))
+    answers = pool.in_order(pool.work(judge, given, jobs, _doubt, progress, "files"))
+    found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
+    beside = tuple(path for told in surveyed.told for path in told.specs)
+    return Checked(tuple(conclude(surveyed, found)), solver, library, beside)
+
+
+def _doubt(job: tuple[Path, tuple[Path, ...]], reason: str) -> Finding:
+    """The finding on a file that nothing is known of."""
+    return Finding(str(job[0]), "", Acceptance.UNDECIDED, reason)
+
+
+def _examine(solver: str, effort: Effort, job: tuple[Path, tuple[Path, ...]]) -> Finding:
+    """Check one file by what its schema says that it is."""
+    path, specs = job
+
+    def answer(script: str) -> SolverAnswer:
+        return ask(script, solver, effort.meter())
+
+    return Checker(load_library(specs), answer, find_label).check(path)

@@ -1,0 +1,219 @@
+"""Drives for scenarios and formulas."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from itertools import product
+from pathlib import Path
+from typing import Any, ClassVar
+
+from roadproof.analysis.witnesses import Witnessing, evidence_files, stems
+from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.definitions import Definitions, What, load
+from roadproof.api.settings import RoadLike, VehicleLike, one_of, searches_of, setting, work_of
+from roadproof.api.studied import Studied
+from roadproof.errors import UsageError
+from roadproof.evidence.answers.drives import SCHEMA
+from roadproof.evidence.heading import heading
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.kinds import Evidence
+from roadproof.files import make_folder, write_whole
+from roadproof.report.drive import draw_drive
+from roadproof.report.witness import as_line, files_of, kinds
+from roadproof.searching.ask import Outcome, Search
+from roadproof.searching.question import Engine, Objective, SearchOptions
+from roadproof.spec.library import Library
+from roadproof.spec.values import Number
+from roadproof.study import pool
+from roadproof.study.frame import put_away
+from roadproof.study.pool import Progress, Say
+from roadproof.verdict import ExitCode, Verdict, exit_code
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Writes samples, and ``pictures``, of drives into a folder, where they are not there yet."""
+
+    folder: Path
+    library: Library
+    pictures: bool
+
+    def __call__(self, name: str, outcome: Outcome) -> None:
+        make_folder(self.folder)
+        for stem, judged in zip(stems(name, outcome), outcome.drives, strict=True):
+            for file, content in files_of(judged, stem, self.library, self.pictures):
+                write_whole(self.folder / file, content)
+            for kind in set(kinds(True)) - set(kinds(self.pictures)):
+                (self.folder / f"{stem}.{kind}").unlink(missing_ok=True)  # that of a former drive
+
+    def lacks(self, name: str, outcome: Outcome) -> bool:
+        """Whether any is not there."""
+        every = product(stems(name, outcome), kinds(self.pictures))
+        return any(not (self.folder / f"{stem}.{kind}").exists() for stem, kind in every)
+
+
+@dataclass(frozen=True, repr=False)
+class Witnesses(Studied[Witnessing, Outcome]):
+    """Searches for drives, and what came out of each."""
+
+    pieces: ClassVar[str] = "questions"
+
+    @property
+    def library(self) -> Library:
+        return self.study.question.library
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What came out, in the order in which it was asked."""
+        return tuple(self.found.answers[name] for name in self.study.names)
+
+    @property
+    def drives(self) -> tuple[Judged, ...]:
+        """All drives that were found."""
+        return tuple(drive for outcome in self.outcomes for drive in outcome.drives)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {f"{x.query.text}@{x.set_name}": x.verdict for x in self.outcomes}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        proofs = (x.impossibility.certificate for x in self.outcomes if x.impossibility is not None)
+        return (*self.drives, *proofs)
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code((x.verdict, Verdict.WITNESSED) for x in self.outcomes)
+
+    def rows(self) -> list[Row]:
+        return [
+            {
+                "scenario": x.scenario,
+                "set": x.set_name,
+                "formula": x.query.text,
+                "verdict": str(x.verdict),
+                "road": x.road,
+                "drives": len(x.drives),
+                "reason": x.reason or _core_of(x),
+                "seconds": x.seconds["all"],
+            }
+            for x in self.outcomes
+        ]
+
+    def as_data(self) -> dict[str, Any]:
+        return {**heading(SCHEMA, self.library), "verdicts": [x.as_data() for x in self.outcomes]}
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.as_data()
+
+    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+        """There is none: drive files and proofs stand for themselves."""
+
+    def _write(self, folder: Path, pictures: bool) -> None:
+        make_folder(folder)
+        if not self.evidence:
+            return
+        if folder != self.folder:
+            put_away(self.study, {name: self.found.answers[name] for name in self.study.named}, folder)
+        for name in self.study.named:
+            Beside(folder, self.library, pictures)(name, self.found.answers[name])
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        drawn = (draw_drive(x.file, self.library) for x in self.drives)
+        return ((f"drive-{k}", picture(x)) for k, x in enumerate(drawn, 1))
+
+    def __str__(self) -> str:
+        lines = [as_line(x) for x in self.outcomes]
+        return "\n".join([*lines, *([self.summary] if len(lines) > 1 else [])])
+
+    @property
+    def summary(self) -> str:
+        """How many were found, in words."""
+        found = sum(x.verdict is Verdict.WITNESSED for x in self.outcomes)
+        return f"{found} of {len(self.outcomes)} witnessed in {self.seconds:.1f} s"
+
+
+def _core_of(outcome: Outcome) -> str:
+    """The parts that clash where there is no drive at all; empty otherwise."""
+    return "" if outcome.impossibility is None else f"core: {'; '.join(outcome.impossibility.told)}"
+
+
+def witness(
+    *what: What,
+    using: Definitions | None = None,
+    road: RoadLike | None = None,
+    lanes: Mapping[str, str] | None = None,
+    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+    reach: Number = 80,
+    collisions: bool = False,
+    objective: Objective = "smooth",
+    engine: Engine = "milp",
+    solver: str = "highs",
+    count: int = 1,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    pictures: bool = True,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Witnesses:
+    """Find a drive for each of some scenarios or formulas, in each spec set; without any, for all scenarios.
+
+    Where, with whom and for how long: see ``setting``. ``count`` clearly different drives are looked for.
+    ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``effort``: units
+    of work for a search, each about a second of a solver; ``timeout``: seconds after which the clock ends it.
+    ``out``: a folder in which drives are kept as they come, with samples and ``pictures``.
+    Raises ``TextError``, ``InputError``, ``UsageError``, ``MissingSolverError``.
+
+    >>> witness(4, jobs=1).verdict
+    <Verdict.WITNESSED: 'WITNESSED'>
+    """
+    one_of("engine", engine, Engine)
+    one_of("objective", objective, Objective)
+    if count < 1:
+        raise UsageError(f"count={count}: write a whole number greater than 0")
+    home = using or load()
+    place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
+    search_options = SearchOptions(objective, engine, solver, work_of(effort, timeout))
+    searches = list(searches_of(home, what, place, search_options, count))
+    return witness_all(searches, out, pictures, jobs, progress, say)
+
+
+def witness_all(
+    searches: Sequence[Search],
+    out: str | Path | None = None,
+    pictures: bool = True,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+    each: Callable[[str, Outcome], None] | None = None,
+) -> Witnesses:
+    """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
+    if not searches:
+        raise UsageError("there is no scenario in the spec set: name formulas")
+    if pool.count_workers(searches, jobs) > 1:
+        from roadproof.solve.milp import prepare
+
+        prepare()  # what every worker needs is imported once, before they are forked
+    beside = None if out is None else Beside(Path(out), searches[0].specification.library, pictures)
+    study = Witnessing(tuple(searches), beside)
+    found = Witnesses.asked(study, out, jobs, progress, say, each)
+    if beside is not None:
+        left = [(name, x) for name in study.named if beside.lacks(name, x := found.found.answers[name])]
+        with closing(pool.work(partial(_finish, beside), left, jobs, None, progress, "drives")) as done:
+            list(done)
+    return found
+
+
+def _finish(beside: Beside, of: tuple[str, Outcome]) -> None:
+    beside(*of)
+
+
+def files_written(name: str, outcome: Outcome, pictures: bool) -> list[str]:
+    """The names of the files that an outcome has in a folder."""
+    every = (f"{stem}.{kind}" for stem in stems(name, outcome) for kind in ("json", *kinds(pictures)))
+    return list(every) if outcome.drives else evidence_files(name, outcome)

@@ -1,0 +1,209 @@
+"""Claims: proved or refuted."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Self, TypeAlias
+
+from roadproof.analysis import claims
+from roadproof.analysis.claims import Answered, Claims, name_of
+from roadproof.analysis.proof_folder import former_claims, write_claims
+from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.definitions import Definitions, What, load
+from roadproof.api.settings import RoadLike, one_of, setting, work_of
+from roadproof.api.studied import Studied
+from roadproof.errors import UsageError
+from roadproof.evidence.kinds import Evidence
+from roadproof.files import hold_if_any
+from roadproof.proving.properties import OWN, Task, choose, template_properties
+from roadproof.report import claims as claims_text
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import are_numbers, read_numbers
+from roadproof.spec.values import Number
+from roadproof.study.pool import Progress, Say
+from roadproof.verdict import ExitCode, Verdict, exit_code
+
+_Engine: TypeAlias = Literal["dense", "smt", "milp"]
+_Expected: TypeAlias = Literal["PROVED", "REFUTED"]
+_PROPERTY = re.compile(r"[A-Z]\d+")
+
+
+@dataclass(frozen=True, repr=False)
+class Proofs(Studied[Claims, Answered]):
+    """Claims, settled."""
+
+    pieces: ClassVar[str] = "claims"
+
+    @classmethod
+    def asked(
+        cls,
+        study: Claims,
+        out: str | Path | None = None,
+        jobs: int | None = None,
+        progress: Progress | None = None,
+        say: Say | None = None,
+        each: Callable[[str, Answered], None] | None = None,
+        more: Callable[[], Mapping[str, Any]] = dict,
+        begun: float | None = None,
+    ) -> Self:
+        """As of all studies; a folder of claims grows, and only one run at a time may write into it."""
+        folder = None if out is None else Path(out)
+        with hold_if_any(folder):
+            if folder is not None:
+                former_claims(folder, study)
+            return super().asked(study, folder, jobs, progress, say, each, more, begun)
+
+    @property
+    def answers(self) -> tuple[Answered, ...]:
+        """In the order in which they were asked."""
+        return tuple(replace(self.found.answers[name_of(x)], task=x) for x in self.study.tasks)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {x.task.name: x.verdict for x in self.answers}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        found = (
+            (x.settled.result.certificate, x.settled.drive, x.settled.result.countermodel)
+            for x in self.answers
+        )
+        return tuple(next(y for y in each if y is not None) for each in found if any(each))
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code((x.verdict, x.expected) for x in self.answers)
+
+    def rows(self) -> list[Row]:
+        return [
+            {
+                "claim": " ".join(x.task.claim.split()),
+                "set": x.task.set_name,
+                "verdict": str(x.verdict),
+                "expected": str(x.expected),
+                "reason": x.settled.result.reason,
+                "seconds": x.settled.result.seconds,
+            }
+            for x in self.answers
+        ]
+
+    def as_data(self) -> dict[str, Any]:
+        files = {name: x["claim"]["evidence"] for name, x in self.found.records.items()}
+        named = {name: file for name, file in files.items() if isinstance(file, str)}
+        return claims.as_data(self.answers, self.study.library, named)
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return {**self.study.question.heading, "claims": [x["claim"] for x in records.values()]}
+
+    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+        write_claims(folder, self.study, records)
+
+    def _write(self, folder: Path, pictures: bool) -> None:
+        with hold_if_any(folder):
+            former_claims(folder, self.study)
+            super()._write(folder, pictures)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """The drives that refute a claim."""
+        from roadproof.report.drive import draw_drive
+
+        drives = {x.task.name: x.settled.drive for x in self.answers}
+        library = self.study.library
+        return ((n, picture(draw_drive(x.file, library))) for n, x in drives.items() if x is not None)
+
+    def __str__(self) -> str:
+        if self.study.are_own:
+            return "\n".join(map(claims_text.details, self.answers))
+        return f"{claims_text.table(self.answers)}\n{len(self.answers)} claims in {self.seconds:.1f} s"
+
+
+def prove(
+    *what: What,
+    using: Definitions | None = None,
+    expect: _Expected = "PROVED",
+    engine: _Engine = "dense",
+    road: RoadLike | None = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    drive: bool = True,
+    out: str | Path | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Proofs:
+    """Prove or refute claims for all time, on all roads, for all parameter values within their bounds.
+
+    A claim is a formula, a property of the list such as "P1", or scenarios such as 4 or "1-8", of which all
+    that the list says is settled; without one all of the list is. With ``engine`` "smt" or "milp" a claim is
+    about drives on one ``road`` up to a ``horizon`` (s), and PROVED-BOUNDED says within which limits.
+    ``expect``: the verdict that is expected of your own claims; ``drive``: whether one is looked for that
+    refutes. ``effort``: units of work for a claim, each about a second of a solver; ``timeout``: seconds
+    after which the clock ends it. ``out``: a folder in which answers are kept as they come. ``using``: one
+    spec set, without values of parameters, as a claim is about all of them.
+    Raises ``TextError``, ``UsageError``, ``InputError``.
+
+    >>> prove("danger(SV,POV) -> danger(SV,POV)", jobs=1).verdict
+    <Verdict.PROVED: 'PROVED'>
+    """
+    one_of("engine", engine, _Engine)
+    one_of("expect", expect, _Expected)
+    home = using or load()
+    if home.values:
+        raise UsageError(f"a claim is about all values of {', '.join(home.values)}: ask without params")
+    asked = claims_of(home, what, using.alone.set_name if using else None, Verdict(expect))
+    asked = replace(asked, effort=work_of(effort, timeout), seek_drive=drive)
+    if engine != "dense":
+        if not asked.are_own:
+            raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
+        asked = within_limits(asked, home, engine, road, horizon, dt)
+    return Proofs.asked(asked, out, jobs, progress, say)
+
+
+def claims_of(
+    home: Definitions, what: Sequence[What], set_name: str | None, expected: Verdict = Verdict.PROVED
+) -> Claims:
+    """What is claimed: the list's claims in a set, in all where None; or one's own in that of ``home``.
+
+    Raises ``TextError``, ``InputError``, ``UsageError``.
+    """
+    named: list[str] = []
+    numbers: set[int] = set()
+    own: list[Query] = []
+    for x in what:
+        if isinstance(x, str) and _PROPERTY.fullmatch(x):
+            named.append(x)
+        elif isinstance(x, int | str) and not isinstance(x, bool) and are_numbers(str(x)):
+            numbers |= {*read_numbers(home.specification, str(x))}
+        else:
+            own.append(home.read(x))
+    if own and (named or numbers):
+        raise UsageError("ask for properties or for claims of your own, not for both at once")
+    tasks = _own(home, own, expected) or choose(template_properties(), named, set_name, sorted(numbers))
+    if not tasks:
+        words = ", ".join(map(str, what))
+        raise UsageError(f"no claim of {words} is stated for set={set_name or 'any'}: ask for others")
+    return Claims(tuple(tasks), {x.set_name: home.specification.in_set(x.set_name) for x in tasks})
+
+
+def _own(home: Definitions, claims: list[Query], expected: Verdict) -> list[Task]:
+    parts = [str(k) if len(claims) > 1 else "" for k in range(1, len(claims) + 1)]
+    name = home.specification.set_name
+    return [Task(OWN, k, "", None, name, x.text, expected) for k, x in zip(parts, claims, strict=True)]
+
+
+def within_limits(
+    asked: Claims,
+    home: Definitions,
+    engine: Literal["smt", "milp"],
+    road: RoadLike | None = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+) -> Claims:
+    """The same claims, about drives on one road up to a horizon. Raises ``InputError``, ``UsageError``."""
+    from roadproof.searching.question import SearchOptions
+
+    place = replace(setting(home, road, horizon=horizon, dt=dt), values={})
+    return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))

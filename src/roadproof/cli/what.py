@@ -1,0 +1,18 @@
+"""What is searched for: some scenarios and formulas, or all scenarios."""
+
+import argparse
+
+from roadproof.errors import UsageError
+
+
+def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
+    """Scenarios and formulas by position, and ``--all``, of which ``every`` is the help."""
+    parser.add_argument("what", metavar="N|FORMULA", nargs="*", help="a scenario's number, or a formula")
+    parser.add_argument("--all", action="store_true", help=every)
+
+
+def some_or_all(args: argparse.Namespace) -> list[str]:
+    """What is named; nothing with --all. Raises ``UsageError``."""
+    if args.all == bool(args.what):
+        raise UsageError("name scenarios or formulas, or ask for --all: one of the two")
+    return list(args.what)

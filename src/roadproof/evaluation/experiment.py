@@ -1,0 +1,182 @@
+"""The highD experiment over many recordings: resumable, and in memory one recording a process."""
+
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadproof.errors import InputError
+from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.questions import Questions, Settings, ask
+from roadproof.evaluation.results import (
+    Totals,
+    fingerprint,
+    load_findings,
+    question_mark,
+    save_findings,
+    write_results,
+)
+from roadproof.formats.recording import Recording
+from roadproof.formats.source import RecordingSource
+from roadproof.formats.sources import copies_among, find_sources
+from roadproof.workers import Lost, answers_of
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Where the recordings are, where results go, and what is asked."""
+
+    recordings: Path
+    out: Path
+    settings: Settings
+    jobs: int = 1
+    keep_going: bool = False
+
+
+@dataclass(frozen=True)
+class ExperimentOutcome:
+    """The totals, the recordings that could not be used, and why, and what marks the results of each.
+
+    ``lost`` are those among them whose process ended twice, which may be the machine's fault.
+    """
+
+    totals: Totals
+    failed: dict[str, str]
+    marks: Mapping[str, str]
+    lost: tuple[str, ...] = ()
+
+
+def run_experiment(
+    experiment: Experiment, tell: Callable[[str], None] = lambda line: None
+) -> ExperimentOutcome:
+    """Evaluate every recording that has no valid result yet, then write the results of all.
+
+    ``tell`` gets a line for each recording that is done. Raises ``InputError`` for the first
+    recording that cannot be evaluated, unless ``keep_going``: then it is left out, and said so.
+    """
+    sources = find_sources(experiment.recordings)
+    question = question_mark(experiment.settings)
+    with ThreadPoolExecutor(experiment.jobs) as threads:
+        found = threads.map(RecordingSource.digests, sources)
+        digests = {source.name: each for source, each in zip(sources, found, strict=True)}
+    marks = {name: fingerprint(question, each) for name, each in digests.items()}
+    failed = copies_among(sources, digests)
+    waiting = [s for s in sources if s.name not in failed and not _is_kept(experiment, s, marks[s.name])]
+    kept = len(sources) - len(failed) - len(waiting)
+    if kept:
+        tell(f"{kept} of {len(sources)} recordings are already evaluated")
+    for copy in failed.values():
+        if not experiment.keep_going:
+            raise InputError(copy)
+        tell(f"left out: {copy}")
+    lost: list[str] = []
+    for done, (source, error) in enumerate(_evaluate_all(experiment, question, marks, waiting), start=1):
+        if isinstance(error, Lost):
+            lost.append(source.name)
+            error = error.reason
+        elif error is not None and not experiment.keep_going:
+            raise InputError(error)
+        if error is not None:
+            failed[source.name] = error
+        tell(f"[{done}/{len(waiting)}] {source.name}" + (f": left out: {error}" if error else ""))
+    if len(failed) == len(sources):
+        raise InputError(
+            f"recordings={experiment.recordings}: none could be used; " + "; ".join(failed.values())
+        )
+
+    def findings() -> Iterator[Findings]:
+        for source in sources:
+            found = None if source.name in failed else _known(experiment, source, marks[source.name])
+            if found is None and source.name not in failed:
+                raise InputError(f"recording {source.name}: its results changed while they were used")
+            if found is not None:
+                yield found
+
+    in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
+    totals = write_results(experiment.out, experiment.settings, findings(), in_order)
+    return ExperimentOutcome(totals, in_order, marks, tuple(lost))
+
+
+def saved_findings(
+    experiment: Experiment, outcome: ExperimentOutcome
+) -> Iterator[tuple[RecordingSource, Findings]]:
+    """What an experiment that is done has saved of each recording, in order."""
+    for source in find_sources(experiment.recordings):
+        if source.name in outcome.marks and source.name not in outcome.failed:
+            found = _known(experiment, source, outcome.marks[source.name])
+            if found is not None:
+                yield source, found
+
+
+def _path(out: Path, source: RecordingSource) -> Path:
+    return out / "recordings" / f"{source.name}.json"
+
+
+def _is_kept(experiment: Experiment, source: RecordingSource, mark: str) -> bool:
+    return _known(experiment, source, mark) is not None
+
+
+def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findings | None:
+    return load_findings(_path(experiment.out, source), mark)
+
+
+def _evaluate_all(
+    experiment: Experiment, question: str, marks: Mapping[str, str], sources: list[RecordingSource]
+) -> Iterator[tuple[RecordingSource, str | Lost | None]]:
+    """Evaluate and save each; the second part is why a recording could not be used."""
+    jobs = [_Job(experiment.settings, question, experiment.out, s, marks[s.name]) for s in sources]
+    if experiment.jobs == 1 or len(sources) < 2:
+        for job in jobs:
+            yield job.source, _evaluate(job)
+        return
+    # Threads of a library may hold locks while a process forks, so workers start afresh.
+    with closing(answers_of(_evaluate, jobs, min(experiment.jobs, len(sources)), fresh=True)) as answers:
+        for place, error in answers:
+            yield sources[place], error
+
+
+@dataclass(frozen=True)
+class _Job:
+    """One recording to evaluate: ``question`` marks the settings, ``mark`` the results."""
+
+    settings: Settings
+    question: str
+    out: Path
+    source: RecordingSource
+    mark: str
+
+
+def _evaluate(job: _Job) -> str | None:
+    """Read, evaluate and save; why the recording cannot be used, where it is the files' fault."""
+    try:
+        recording = job.source.read()
+    except InputError as error:
+        return str(error)
+    try:
+        questions = questions_for(job.settings, job.question, recording)
+    except InputError as error:
+        return f"{job.source.place_of_rate(recording.rate)}: {error}"
+    try:
+        findings = evaluate_recording(recording, questions)
+    except Exception as error:
+        raise RuntimeError(f"recording {job.source.name}: {type(error).__name__}: {error}") from error
+    save_findings(_path(job.out, job.source), findings, job.mark)
+    return None
+
+
+_MOST_ASKED = 4
+_asked: dict[tuple[str, int, tuple[str, ...]], Questions] = {}
+
+
+def questions_for(settings: Settings, question: str, recording: Recording) -> Questions:
+    """Compiled once a process for recordings of one rate and the same zones.
+
+    ``question`` is the settings' mark, which tells settings apart, as they come as copies.
+    """
+    key = question, recording.rate, recording.zone_names
+    if key not in _asked:
+        if len(_asked) >= _MOST_ASKED:
+            _asked.clear()
+        _asked[key] = ask(settings, recording.rate, recording.zone_names)
+    return _asked[key]

@@ -1,0 +1,148 @@
+"""What a formula is on one trace: verdict, margin, and when each named part of it is true."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from roadproof.judge.algebraic import approximate
+from roadproof.judge.exact import judge
+from roadproof.judge.robust import robustness
+from roadproof.judge.truth import TruthSet
+from roadproof.logic.formula import Formula, Named
+from roadproof.monitoring.answers import Convention, TruthArrays
+from roadproof.monitoring.batch import Batch
+from roadproof.monitoring.compiled import compile
+from roadproof.world.drive import Drive
+
+Said: TypeAlias = Literal["true", "false", "undecided"]
+Spans: TypeAlias = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Strip:
+    """When a part is true, and when that depends on what comes after the trace; seconds, ends included.
+
+    ``exact`` tells the same with open and closed ends where the view is dense.
+    """
+
+    name: str
+    true: Spans
+    undecided: Spans = ()
+    exact: str = ""
+
+
+@dataclass(frozen=True)
+class Observed:
+    """An answer at the first sample (time 0). ``margin`` bounds the robustness; infinite where only
+    lanes decide. ``other`` is the answer under the other convention for the end of a trace."""
+
+    formula: str
+    view: Literal["recorded", "dense"]
+    verdict: Said
+    margin: tuple[float, float]
+    seconds: float
+    dt: Fraction
+    strips: tuple[Strip, ...]
+    convention: Convention | None = None
+    other: Said | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """As plain data without its heading; infinities and unknown ends are null."""
+        return {
+            "formula": self.formula,
+            "view": self.view,
+            "end": self.convention,
+            "verdict": self.verdict,
+            "under_the_other_end": self.other,
+            "robustness": [_finite(x) for x in self.margin],
+            "seconds": self.seconds,
+            "dt": str(self.dt),
+            "parts": [
+                {
+                    "formula": strip.name,
+                    "true": [[begin, _finite(end)] for begin, end in strip.true],
+                    "undecided": [[begin, _finite(end)] for begin, end in strip.undecided],
+                }
+                | ({"exact": strip.exact} if strip.exact else {})
+                for strip in self.strips
+            ],
+        }
+
+
+def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> Observed:
+    """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
+    monitor = compile({"asked": formula})
+    other: Convention = "clip" if convention == "truncated" else "truncated"
+    seen = monitor.observe(batch)
+    verdicts = monitor.evaluate(seen, convention, named=True)
+    margin = monitor.measure(batch, convention).margins["asked"]
+    dt = float(batch.dt)
+    whole = Strip(text, *_spans(monitor.evaluate(seen, convention, at="all").answers["asked"], dt))
+    return Observed(
+        text,
+        "recorded",
+        _said(verdicts.answers["asked"]),
+        (float(margin.low[0]), float(margin.high[0])),
+        float((batch.samples - 1) * batch.dt),
+        batch.dt,
+        (whole, *_strips(formula, verdicts.named, dt)),
+        convention,
+        _said(monitor.evaluate(seen, other).answers["asked"]),
+    )
+
+
+def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction) -> Observed:
+    """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt.
+
+    Raises ``InputError`` and ``UsageError``.
+    """
+    judgement = judge(formula, drive)
+    margin = robustness(formula, drive, dt, int(horizon / dt) * dt).value
+    strips = [_exact_strip(text, judgement.truth(formula))]
+    strips += [_exact_strip(name_of(part), truth) for part, truth in judgement.named() if part != formula]
+    verdict: Said = "true" if judgement.holds else "false"
+    return Observed(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
+
+
+def name_of(part: Named) -> str:
+    """An application of a definition as a user writes it."""
+    return f"{part.name}({', '.join(part.arguments)})"
+
+
+def _strips(formula: Formula, named: Mapping[Named, TruthArrays], dt: float) -> Iterator[Strip]:
+    for part, answer in named.items():
+        if part != formula:
+            yield Strip(name_of(part), *_spans(answer, dt))
+
+
+def _spans(answer: TruthArrays, dt: float) -> tuple[Spans, Spans]:
+    true, false = answer.true[:, 0], answer.false[:, 0]
+    return _runs(true, dt), _runs(~true & ~false, dt)
+
+
+def _runs(truth: Any, dt: float) -> Spans:
+    """First and last time of each run of true samples."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], truth.astype(np.int8), [0]))))
+    return tuple(
+        (round(int(begin) * dt, 9), round((int(end) - 1) * dt, 9))
+        for begin, end in zip(edges[::2], edges[1::2], strict=True)
+    )
+
+
+def _exact_strip(name: str, truth: TruthSet) -> Strip:
+    spans = tuple(
+        (approximate(span.begin.point), float("inf") if span.end is None else approximate(span.end.point))
+        for span in truth.spans()
+    )
+    return Strip(name, spans, (), str(truth))
+
+
+def _said(answer: TruthArrays) -> Said:
+    return "true" if answer.true[0] else "false" if answer.false[0] else "undecided"
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None

@@ -1,0 +1,262 @@
+"""One trace to monitor: samples of a few vehicles on one road, from whatever file they came.
+
+Where a file is one trace, it has for every time one row a vehicle, in equal steps.
+"""
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.evaluation.traces import gather
+from roadproof.formats.pairs import row_of
+from roadproof.formats.recording import Bools, Integers, Recording
+from roadproof.formats.samples import HEADER, ROAD_ENDING, read_columns
+from roadproof.formats.source import beside
+from roadproof.formats.sources import find_source
+from roadproof.formats.straight import whole
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import with_values
+from roadproof.monitoring.batch import Array, Batch
+from roadproof.signals import RECORDED, SIGNALS, SIZES, SignalName, SizeName
+from roadproof.spec.bind import occupies
+from roadproof.spec.scenarios import roles
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_recorded_road, load_road
+from roadproof.world.motion import state_at
+from roadproof.world.road import Lanelet, Road
+
+Column: TypeAlias = SignalName | SizeName
+_PAIR = re.compile(r"(?P<path>.+):(?P<ids>\d{1,9}(?:,\d{1,9}){0,2})")
+
+
+@dataclass(frozen=True)
+class OneTrace:
+    """A batch of one trace, its road, and the lane of each vehicle's centre at the start ("" for none).
+
+    ``first`` is the time of the first sample as the source counts it: seconds, or a frame. ``notes``: what is
+    odd in the recording that it is from.
+    """
+
+    source: str
+    batch: Batch
+    road: Road
+    lanes: Mapping[str, str]
+    first: str
+    notes: tuple[str, ...] = ()
+
+
+def is_pair(text: str) -> bool:
+    """Whether ``text`` names vehicles of a recording, as ``highd/01_tracks.csv:12,15`` does."""
+    return _PAIR.fullmatch(text) is not None
+
+
+def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -> OneTrace:
+    """Vehicles of a recording on their common frames, or on those of ``frames`` (first, last).
+
+    The first id is SV, the others are POV, or POV1 and POV2. Raises ``InputError`` for files that are
+    no recording, vehicles that are not there or drive in different directions, and no frames.
+    """
+    named = _PAIR.fullmatch(text)
+    if named is None:
+        raise InputError(f"{text}: name a pair as highd/01_tracks.csv:12,15, or three vehicles")
+    ids = [int(x) for x in named["ids"].split(",")]
+    recording = find_source(Path(named["path"])).read()
+    index = [_find(recording, number, text) for number in ids]
+    if len(set(ids)) < len(ids):
+        raise InputError(f"{text}: each vehicle may be named once")
+    if len({int(recording.direction[v]) for v in index}) > 1:
+        raise InputError(f"{text}: the vehicles drive in different directions; name some of one direction")
+    low = max(int(recording.first_frame[v]) for v in index)
+    high = min(int(recording.last_frame[v]) for v in index)
+    wanted = (low if frames[0] is None else frames[0], high if frames[1] is None else frames[1])
+    if low > high or not low <= wanted[0] <= wanted[1] <= high:
+        have = f"they share the frames {low} to {high}" if low <= high else "they share no frame"
+        raise InputError(f"{text}, frames {wanted[0]} to {wanted[1]}: {have}")
+    return cut_trace(recording, text, dict(zip(roles(len(ids)), index, strict=True)), wanted)
+
+
+def _find(recording: Recording, number: int, text: str) -> int:
+    place = np.flatnonzero(recording.vehicle_id == number)
+    if not len(place):
+        known = f"{recording.vehicle_id.min()} to {recording.vehicle_id.max()}"
+        raise InputError(f"{text}: recording {recording.name} has no vehicle {number}; ids are {known}")
+    return int(place[0])
+
+
+def cut_trace(
+    recording: Recording, source: str, vehicles: Mapping[str, int], frames: tuple[int, int]
+) -> OneTrace:
+    """Vehicles of a recording (indices by name), of one direction, from the first frame to the last.
+
+    Lane predicates are decided by the recording, as in an evaluation.
+    """
+
+    def one(value: int) -> Integers:
+        return np.array([value])
+
+    way = int(recording.direction[next(iter(vehicles.values()))])
+    road = _road_of(recording, way)
+    made = gather(
+        recording, {n: one(v) for n, v in vehicles.items()}, one(frames[0]), one(frames[1]), RECORDED
+    )
+    given: dict[Formula, Array] = {}
+    lanes = {}
+    for name, v in vehicles.items():
+        begin = int(row_of(recording, one(v), one(frames[0]))[0])
+        rows = slice(begin, begin + frames[1] - frames[0] + 1)
+        for lanelet, inside in _lanelets(recording, way, rows):
+            given[with_values(occupies(name, lanelet), {})] = inside[:, None]
+        at = int(recording.lane[begin])
+        lanes[name] = recording.lanes[at].name if at >= 0 else ""
+    batch = Batch(made.dt, made.lengths, made.signals, made.sizes, given)
+    return OneTrace(source, batch, road, lanes, f"frame {frames[0]}", recording.notes)
+
+
+def _lanelets(recording: Recording, way: int, rows: slice) -> Iterator[tuple[Lanelet, Bools]]:
+    """The lanelets of a direction, and at which of some samples the box is in each."""
+    ways = {lane.name: lane.direction for lane in recording.lanes}
+    for j, lanelet in enumerate(recording.lanelets):
+        if ways[lanelet.lane] == way:
+            yield lanelet, recording.inside[rows, j]
+    for k, lane in enumerate(recording.lanes if not recording.lanelets else ()):
+        if lane.direction == way:
+            yield whole(lane), (recording.occupancy[rows] >> np.uint32(k)) & 1 != 0
+
+
+def _road_of(recording: Recording, way: int) -> Road:
+    """The lanes of one direction."""
+    lanelets = tuple(lanelet for lanelet, _ in _lanelets(recording, way, slice(0)))
+    names = {x.lane for x in lanelets}
+    beside = frozenset(pair for pair in recording.beside if pair <= names)
+    return Road(f"recording {recording.name}, direction {way}", lanelets, beside)
+
+
+def sample_drive(drive: Drive, road: Road, horizon: Fraction, dt: Fraction, source: str) -> OneTrace:
+    """A drive as a recording of it would have it: samples every ``dt`` s from 0 up to ``horizon``."""
+    if dt <= 0:
+        raise InputError(f"dt={dt}: the time between samples must be greater than zero")
+    times = [k * dt for k in range(int(horizon / dt) + 1)]
+    columns: dict[tuple[str, str], list[float]] = {}
+    for name, motion in drive.vehicles.items():
+        states = [state_at(motion, time) for time in times]
+        columns |= {(x, name): [float(getattr(state, x)) for state in states] for x in SIGNALS}
+    sizes: dict[tuple[str, str], float] = {
+        (x, n): float(getattr(m, x)) for n, m in drive.vehicles.items() for x in SIZES
+    }
+    return _one_trace(source, dt, columns, sizes, road, "0 s")
+
+
+def read_samples(path: Path, road: Road | None = None) -> OneTrace:
+    """The trace of a CSV or Parquet file (``formats.samples``), of which every vehicle is seen all the time.
+
+    ``road``: by default that beside the file, or else main-2. Raises ``InputError`` with file, row, column,
+    value and rule.
+    """
+    table = read_columns(path)
+    if road is None:
+        known = beside(path, ROAD_ENDING)
+        road = load_recorded_road(known[0])[0] if known else load_road("main-2")
+    return of_columns({name: table[name].tolist() for name in HEADER}, road, str(path))
+
+
+def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
+    """The trace of columns named as in ``HEADER``: arrays, or a frame with such columns, in any order.
+
+    Times are numbers of seconds, taken as the decimals that they are shown as (nine places). Raises
+    ``InputError`` with column, row, value and rule.
+    """
+    missing = [name for name in HEADER if name not in columns]
+    if missing:
+        raise InputError(
+            f"{source}: there is no column {', '.join(missing)}; columns are {', '.join(HEADER)}"
+        )
+    read = {name: list(columns[name]) for name in HEADER}
+    lengths = {name: len(values) for name, values in read.items()}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise InputError(f"{source}: columns must be equally long, but have {told} rows")
+    keys = [
+        (Fraction(repr(round(_finite(source, k, "time", time), 9))), str(name))
+        for k, (time, name) in enumerate(zip(read["time"], read["vehicle"], strict=True))
+    ]
+    cells = [{x: _finite(source, k, x, read[x][k]) for x in (*RECORDED, *SIZES)} for k in range(len(keys))]
+    return of_rows(source, keys, cells, road)
+
+
+def of_rows(
+    source: str, keys: Sequence[tuple[Fraction, str]], cells: Sequence[Mapping[Column, float]], road: Road
+) -> OneTrace:
+    """The trace of rows, each with its time and vehicle. Raises ``InputError`` where they are no table."""
+    names = list(dict.fromkeys(name for _, name in keys))
+    times = list(dict.fromkeys(time for time, _ in keys))
+    if len(times) < 2:
+        raise InputError(f"{source}: {len(times)} times; at least two samples are needed")
+    dt = times[1] - times[0]
+    for k, time in enumerate(times):
+        if time != times[0] + k * dt or dt <= 0:
+            shown = f"{float(time):g}"
+            raise InputError(f"{source}: time={shown} breaks the step of {float(dt):g} s; use equal steps")
+    if sorted(keys) != sorted((time, name) for time in times for name in names):
+        raise InputError(
+            f"{source}: {len(keys)} rows for {len(times)} times and {len(names)} vehicles: every vehicle "
+            "needs exactly one row at every time"
+        )
+    columns: dict[tuple[str, str], list[float]] = {(x, n): [] for x in (*RECORDED, *SIZES) for n in names}
+    for (_, name), row in sorted(zip(keys, cells, strict=True), key=lambda x: x[0][0]):
+        for x in (*RECORDED, *SIZES):
+            columns[x, name].append(row[x])
+    sizes: dict[tuple[str, str], float] = {}
+    for name in names:
+        for x in SIZES:
+            values = columns.pop((x, name))
+            if len(set(values)) > 1:
+                raise InputError(f"{source}: {x} of {name} changes; the size of a vehicle stays the same")
+            sizes[x, name] = values[0]
+    return _one_trace(source, dt, columns, sizes, road, f"{float(times[0]):g} s")
+
+
+def _finite(source: str, row: int, column: str, value: object) -> float:
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        found = math.nan
+    if not math.isfinite(found):
+        raise InputError(f"{source}, row {row}, column {column}={value!r}: a finite number is needed")
+    return found
+
+
+def _one_trace(
+    source: str,
+    dt: Fraction,
+    columns: Mapping[tuple[str, str], Sequence[float]],
+    sizes: Mapping[tuple[str, str], float],
+    road: Road,
+    first: str,
+) -> OneTrace:
+    length = len(next(iter(columns.values())))
+    batch = Batch(
+        dt,
+        np.array([length]),
+        {key: np.array(values)[:, None] for key, values in columns.items()},  # type: ignore[misc]
+        {key: np.array([value]) for key, value in sizes.items()},  # type: ignore[misc]
+    )
+    names = dict.fromkeys(name for _, name in columns)
+    lanes = {n: _lane_of(road, columns["s", n][0], columns["d", n][0], sizes["width", n]) for n in names}
+    return OneTrace(source, batch, road, lanes, first)
+
+
+def _lane_of(road: Road, s: float, d: float, width: float) -> str:
+    """The lane that holds the middle of the box's front; "" for none."""
+    for lanelet in road.lanelets:
+        low, high = lanelet.s
+        right, left = lanelet.d
+        if right <= d - width / 2 < left and (low is None or s >= low) and (high is None or s < high):
+            return lanelet.lane
+    return ""

@@ -1,0 +1,126 @@
+"""Answers of an evaluation asked once more, one by one, of the plain recursive evaluator."""
+
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+
+from roadproof.evaluation.evaluate import Findings, Match
+from roadproof.evaluation.lane_atoms import OTHER_LANE
+from roadproof.evaluation.questions import MonitorKey, Questions, of_three
+from roadproof.evaluation.traces import gather
+from roadproof.formats.recording import Integers, Recording
+from roadproof.logic.formula import Formula, transform
+from roadproof.monitoring.batch import Batch
+from roadproof.monitoring.compiled import Monitor
+from roadproof.monitoring.recursive import ReadAs, Reading, Trace
+from roadproof.spec.scenarios import LANE, PAIR, TRIPLE
+
+
+def recheck(recording: Recording, questions: Questions, findings: Findings) -> Iterator[str]:
+    """One line for each answer that the recursive evaluator denies; of nothing denied, none.
+
+    Pairs are asked every question again, so that a match that was missed shows as well as one too
+    many; of triples only the matches are asked. What is taken over from the evaluation is where
+    traces start and end.
+    """
+    pairs, triples = _shared(questions.pairs), _shared(questions.triples)
+    matched = set(findings.matches)
+    place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
+    names = [lane.name for lane in recording.lanes]
+    for t in findings.traces if questions.pairs else ():
+        lanes = {LANE: t.first_lane, OTHER_LANE: t.second_lane}
+        reading = _read(
+            recording,
+            questions,
+            {PAIR[0]: place[t.first], PAIR[1]: place[t.second]},
+            {name: names.index(lane) if lane else -1 for name, lane in lanes.items()},
+            (t.start_frame, t.end_frame),
+        )
+        for asked, formula in pairs[t.min_danger].items():
+            sv, pov = (t.first, t.second) if asked.sv == "first" else (t.second, t.first)
+            lane = lanes[asked.lane]
+            match = Match(
+                sv, pov, None, lane, t.start_frame, t.end_frame, t.min_danger, asked.set_name, asked.number
+            )
+            if reading.holds(formula, 0, _view(questions)) != (match in matched):
+                yield _line(recording, match, match in matched)
+    for match in findings.matches:
+        if match.pov2 is not None:
+            formula = triples[match.min_danger][of_three(match.set_name, match.scenario)]
+            if not _holds_for_three(recording, questions, match, formula, place, names):
+                yield _line(recording, match, True)
+
+
+def _shared(monitors: Iterable[Monitor[MonitorKey]]) -> list[dict[MonitorKey, Formula]]:
+    """The formulas as they were given, equal parts being one object: they are then found quickly."""
+    known: dict[Formula, Formula] = {}
+    return [
+        {asked: transform(x, lambda part: known.setdefault(part, part)) for asked, x in m.formulas.items()}
+        for m in monitors
+    ]
+
+
+def _holds_for_three(
+    recording: Recording,
+    questions: Questions,
+    match: Match,
+    formula: Formula,
+    place: Mapping[int, int],
+    names: list[str],
+) -> bool:
+    assert match.pov2 is not None
+    vehicles = dict(zip(TRIPLE, (place[x] for x in (match.sv, match.pov, match.pov2)), strict=True))
+    lanes = {LANE: names.index(match.lane)}
+    reading = _read(recording, questions, vehicles, lanes, (match.start_frame, match.end_frame))
+    return reading.holds(formula, 0, _view(questions))
+
+
+def _read(
+    recording: Recording,
+    questions: Questions,
+    vehicles: Mapping[str, int],
+    lanes: Mapping[str, int],
+    frames: tuple[int, int],
+) -> Reading:
+    def one(value: int) -> Integers:
+        return np.array([value])
+
+    batch = gather(
+        recording,
+        {name: one(k) for name, k in vehicles.items()},
+        one(frames[0]),
+        one(frames[1]),
+        [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals],
+        {name: one(k) for name, k in lanes.items()},
+        questions.lane_atoms,
+    )
+    return Reading(trace_of(batch))
+
+
+def trace_of(batch: Batch) -> Trace:
+    """The only trace of a batch as the recursive evaluator wants it."""
+    length = int(batch.lengths[0])
+    return Trace(
+        batch.dt,
+        length,
+        {key: values[:length, 0].tolist() for key, values in batch.signals.items()},
+        {key: float(values[0]) for key, values in batch.sizes.items()},
+        {key: values[:length, 0].tolist() for key, values in batch.given.items()},
+    )
+
+
+def _view(questions: Questions) -> ReadAs:
+    return "clip" if questions.settings.convention == "clip" else "strong"
+
+
+def _line(recording: Recording, match: Match, found: bool) -> str:
+    who = ", ".join(str(x) for x in (match.sv, match.pov, match.pov2) if x is not None)
+    said = (
+        "found, but the recursive evaluator denies it"
+        if found
+        else "missed, but the recursive evaluator has it"
+    )
+    return (
+        f"recording {recording.name}, vehicles {who}, frames {match.start_frame} to {match.end_frame}, "
+        f"{match.set_name}, scenario {match.scenario}: {said}"
+    )

@@ -1,0 +1,84 @@
+"""What the reader of an index is: fields that there may be, and how entries are read from them."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from roadproof.errors import InputError
+from roadproof.evidence.answers.entry import Common, Entry, common_of
+from roadproof.evidence.strict import Fields
+from roadproof.spec.library import Library
+
+# Property, part and scenario of a claim in a set, where it is a template property.
+FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
+
+
+def without_labels(claim: str, set_name: str) -> tuple[str, str, int | None] | None:
+    """A ``FindLabel`` for answers that are not about template properties."""
+    return None
+
+
+@dataclass(frozen=True)
+class Background:
+    """Against what entries are read; ``said`` is what an index says once, or the head of kept answers.
+
+    ``where``: what the entries are read from.
+    """
+
+    said: Fields
+    library: Library
+    where: str
+    find_label: FindLabel = without_labels
+    made: dict[str, Common] = field(default_factory=dict, repr=False, compare=False)
+
+    def at(self, set_name: str) -> Common:
+        """What is said once, about a set; made once for each. Raises ``InputError``."""
+        if set_name not in self.made:
+            self.made[set_name] = common_of(self.said, self.library, set_name, self.where)
+        return self.made[set_name]
+
+    @property
+    def home(self) -> Common:
+        """As ``at``, about the set that names without @ are read in."""
+        return self.at(first_set(self.said))
+
+
+def first_set(data: Fields) -> str:
+    """The set that names without @ are read in. Raises ``InputError``."""
+    sets = data.texts("sets") if data.has("sets") else tuple(data.text("set").split(","))
+    if not sets:
+        raise InputError(f"{data.where}: it names no set")
+    return sets[0]
+
+
+Read: TypeAlias = Callable[[Fields, Background], Iterable[Entry]]
+
+
+def _nothing(record: Fields, background: Background) -> Iterator[Entry]:
+    """Of a command that keeps no answers."""
+    yield from ()
+
+
+def _without_faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+    """Of an index that says nothing but its entries."""
+    yield from ()
+
+
+@dataclass(frozen=True)
+class Reader:
+    """How an index of one ``schema`` is read, and each of the answers that are kept before it is written.
+
+    ``said`` are the fields of what is said once for all entries, ``index`` the further ones of an index,
+    ``record`` those of a kept answer, none where none are kept. ``alone``: files that no answer names may lie
+    beside them, and stand for themselves. ``faults``: what an index says as a whole
+    and its entries do not show, given the formulas of its accepted drives by file. All raise ``InputError``.
+    """
+
+    schema: str
+    said: tuple[str, ...]
+    index: tuple[str, ...]
+    read_index: Read
+    record: tuple[str, ...] = ()
+    read_record: Read = _nothing
+    faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = _without_faults
+    alone: bool = False

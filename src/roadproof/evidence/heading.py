@@ -1,0 +1,37 @@
+"""How answers begin as plain data: what kind of answer, which version gave it, what the definitions said."""
+
+import re
+
+from roadproof.errors import InputError
+from roadproof.evidence.strict import Fields
+from roadproof.spec.library import Library
+
+HEADING = ("schema", "roadproof", "library")
+_FINGERPRINT = re.compile("[0-9a-f]{16}")
+
+
+def version(name: str) -> str:
+    """The version of an installed package; what tells it is imported when it is asked."""
+    from importlib import metadata
+
+    return metadata.version(name)
+
+
+def heading(schema: str, library: Library) -> dict[str, str]:
+    """The first fields of an answer; ``library`` has the definitions that it was given with."""
+    return {"schema": schema, "roadproof": version("roadproof"), "library": library.fingerprint}
+
+
+def library_of(data: Fields) -> str | None:
+    """The fingerprint of the definitions of an index, None in those of earlier versions.
+
+    Raises ``InputError`` where that, or the version, is none.
+    """
+    if "roadproof" in data.content:
+        data.text("roadproof")
+    if "library" not in data.content:
+        return None
+    found = data.text("library")
+    if not _FINGERPRINT.fullmatch(found):
+        raise InputError(f"{data.where}: library='{found[:60]}' is no fingerprint of 16 digits from 0 to f")
+    return found

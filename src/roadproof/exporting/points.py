@@ -1,0 +1,41 @@
+"""Where formats have the reference point of a vehicle; ours is the front-left corner of the box.
+
+The plane has x = s along the road and y = d to the left. Our boxes are aligned with the road (semantics §2);
+a box that is turned by ``heading`` is turned about its centre, which stays where it is.
+"""
+
+import math
+from fractions import Fraction
+
+from roadproof.world.drive import Motion
+from roadproof.world.motion import State
+
+OVERHANG = Fraction(1, 5)
+"""The rear axle is this share of the length ahead of the rear, the front axle as far behind the front."""
+
+
+def centre(state: State, length: Fraction, width: Fraction) -> tuple[Fraction, Fraction]:
+    """The centre of the box (m): CommonRoad, exiD."""
+    return state.s - length / 2, state.d - width / 2
+
+
+def upper_left(state: State, length: Fraction) -> tuple[Fraction, Fraction]:
+    """The corner of the box with the least x and the least y, with y = -d that grows down (m): highD."""
+    return state.s - length, -state.d
+
+
+def rear_axle(state: State, motion: Motion, turned: float) -> tuple[float, float]:
+    """The middle of the rear axle (m) of a box that is ``turned`` (rad) about its centre: OpenSCENARIO."""
+    x, y = centre(state, motion.length, motion.width)
+    ahead = float(axle_to_centre(motion.length))
+    return float(x) - ahead * math.cos(turned), float(y) - ahead * math.sin(turned)
+
+
+def axle_to_centre(length: Fraction) -> Fraction:
+    """How far (m) the centre of the box is ahead of the rear axle."""
+    return length / 2 - OVERHANG * length
+
+
+def heading(state: State) -> float | None:
+    """The direction of motion, from the road to the left (rad); None at rest."""
+    return math.atan2(state.v_lat, state.v_lon) if state.v_lon or state.v_lat else None

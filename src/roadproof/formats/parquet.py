@@ -1,0 +1,52 @@
+"""Tables in Parquet files, checked as those in CSV files are."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.formats.table import RULES, Column, Kind, Table, cell_error, polars_module
+
+
+def read_parquet(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind]) -> Table:
+    """The columns of a Parquet file with ``wanted`` and perhaps ``optional`` columns, in any order.
+
+    Whole numbers may stand for texts. Raises ``InputError``.
+    """
+    pl = polars_module()
+    try:
+        frame = pl.read_parquet(path, use_pyarrow=False, glob=False)
+    except OSError as error:
+        told = error.strerror or str(error).partition("\n")[0][:200]
+        raise InputError(f"{path}: the file cannot be read ({told}); check the path") from None
+    except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
+        told = str(error).partition("\n")[0][:200]
+        raise InputError(f"{path}: no readable Parquet file ({told}); get it again from its source") from None
+    missing = [name for name in wanted if name not in frame.columns]
+    extra = [name for name in frame.columns if name not in (*wanted, *optional)]
+    if missing or extra:
+        told = f"missing columns {', '.join(missing)}" if missing else f"unknown columns {', '.join(extra)}"
+        raise InputError(f"{path}: {told}; the format has {', '.join((*wanted, *optional))}")
+    if not frame.height:
+        raise InputError(f"{path}: the file has no rows; get it again from its source")
+    kinds = {name: kind for name, kind in {**wanted, **optional}.items() if name in frame.columns}
+    columns = {name: _parquet_column(path, frame[name], name, kind) for name, kind in kinds.items()}
+    return Table(path, columns, frame.height)
+
+
+def _parquet_column(path: Path, values: Any, name: str, kind: Kind) -> Column:
+    """A column as an array of its kind."""
+    pl = polars_module()
+    whole, text = values.dtype.is_integer(), values.dtype in (pl.String, pl.Categorical)
+    if not {"integer": whole, "number": values.dtype.is_numeric()}.get(kind, whole or text):
+        raise InputError(f"{path}, column {name}: {values.dtype} is no type for it; {RULES[kind]}")
+    if values.null_count():
+        raise cell_error(path, int(values.is_null().arg_max()), name, "null", RULES[kind])
+    array: Column = values.cast({"integer": pl.Int64, "number": pl.Float64}.get(kind, pl.String)).to_numpy()
+    wrong = ~np.isfinite(array) if kind in ("integer", "number") else array == ""
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise cell_error(path, row, name, repr(values[row]), RULES[kind])
+    return array

@@ -1,0 +1,192 @@
+"""Samples of vehicles in road coordinates, as CSV or Parquet: a recording, or one trace.
+
+A file has the columns ``HEADER``, and may have ``kind`` (a class such as Car, which is the default, or
+Truck); SI units and coordinates are those of semantics §2. NAME_road.toml beside NAME.csv or NAME.parquet,
+in the form of models/roads, says where its lanes are.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.formats.parquet import read_parquet
+from roadproof.formats.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_SIZE,
+    LARGEST_SPEED,
+    Implausible,
+)
+from roadproof.formats.recording import Floats, Integers, Recording, with_notes
+from roadproof.formats.source import TRACK_FILES, Files, Format, beside, first_line, with_suffix
+from roadproof.formats.straight import of_road, place
+from roadproof.formats.table import Kind, Table, read_table
+from roadproof.signals import RECORDED, SIZES
+from roadproof.world.models import load_recorded_road
+
+HEADER = ("time", "vehicle", *RECORDED, *SIZES)
+ROAD_ENDING = "_road.toml"
+DIRECTION = 1
+"""The only driving direction of such a file."""
+LARGEST_PLACE = 1_000_000.0
+LARGEST_RATE = 1000
+_ROUNDING = 0.00101
+"""s: two times with three decimals are this far from what they stand for, together."""
+_KINDS: dict[str, Kind] = {name: "text" if name == "vehicle" else "number" for name in HEADER}
+
+
+def read_columns(path: Path) -> Table:
+    """The columns of a file, ``kind`` only where it has one. Raises ``InputError``."""
+    if path.suffix == ".parquet":
+        return read_parquet(path, _KINDS, {"kind": "text"})
+    if first_line(path).split(",")[-1] == "kind":
+        return read_table(path, (*HEADER, "kind"), {**_KINDS, "kind": "text"})
+    return read_table(path, HEADER, _KINDS)
+
+
+def read_recording(path: Path) -> Recording:
+    """The recording of a file, on the road beside it. Raises ``InputError``.
+
+    Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
+    """
+    table, ids, notes = _by_vehicle(read_columns(path))
+    road_file = path.with_name(f"{path.stem}{ROAD_ENDING}")
+    if not road_file.is_file():
+        raise InputError(f"{path}: {road_file.name} is missing beside it, which says where the lanes are")
+    road = of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
+    first = np.flatnonzero(np.diff(ids, prepend=-1) != 0)
+    start = np.append(first, table.rows)
+    rate, frames, begin = _frames(table, ids)
+    _check_cells(table, start)
+    counts = np.diff(start)
+    kind = table["kind"].astype(np.str_) if "kind" in table.columns else np.full(table.rows, "Car")
+    table.require(kind == np.repeat(kind[first], counts), "kind", "the class of a vehicle stays the same")
+    placed = place(
+        road, np.full(table.rows, DIRECTION), *(table[x] for x in ("s", "d")), *(table[x] for x in SIZES)
+    )
+    recording = Recording(
+        name=path.stem,
+        rate=rate,
+        lanes=road.lanes,
+        beside=road.beside,
+        vehicle_id=ids[first],
+        direction=np.full(len(first), DIRECTION),
+        kind=kind[first],
+        length=table["length"][first],
+        width=table["width"][first],
+        first_frame=frames[first],
+        start=start,
+        s=table["s"],
+        d=table["d"],
+        v_lon=table["v_lon"],
+        v_lat=table["v_lat"],
+        a_lon=table["a_lon"],
+        a_lat=table["a_lat"],
+        occupancy=placed.occupancy,
+        lane=placed.lane,
+        zones=placed.zones,
+        lanelets=road.lanelets,
+        inside=placed.inside,
+        notes=(*notes, *begin),
+    )
+    return with_notes(recording, _check_plausible(table, recording))
+
+
+def _by_vehicle(table: Table) -> tuple[Table, Integers, tuple[str, ...]]:
+    """The rows by vehicle, in the order of the file, and the number of each row's vehicle."""
+    names, index = np.unique(table["vehicle"].astype(np.str_), return_inverse=True)
+    notes: tuple[str, ...] = ()
+    if all(name.isdecimal() and name[0] != "0" and len(name) < 10 for name in names):
+        number = names.astype(np.int64)
+    else:
+        number = np.arange(1, len(names) + 1)
+        shown = ", ".join(f"{name} is {k}" for name, k in zip(names[:12], number, strict=False))
+        notes = (f"vehicles are numbered: {shown}{', …' if len(names) > 12 else ''}",)
+    ids: Integers = number[index]
+    order = np.argsort(ids, kind="stable")
+    columns = {name: values[order] for name, values in table.columns.items()}
+    return Table(table.path, columns, table.rows, order), ids[order], notes
+
+
+def _frames(table: Table, ids: Integers) -> tuple[int, Integers, tuple[str, ...]]:
+    """Samples a second, the frame of each row, and a note on what frame 0 is where it is not time 0."""
+    time = table["time"]
+    same = np.diff(ids, prepend=-1) == 0
+    ahead = np.diff(time, prepend=0.0)
+    table.require(~same | (ahead > 0), "time", "the rows of a vehicle come in order of time, each time once")
+    if not same.any():
+        raise InputError(f"{table.path}: no vehicle has two samples; at least two are needed")
+    steps = ahead[same]
+    step = float(steps[steps < 1.2 * steps.min()].mean())  # gaps left out, rounded times evened out
+    rate = round(1 / step)
+    if not 1 <= rate <= LARGEST_RATE:
+        raise InputError(f"{table.path}: time goes on by {step:g} s; 1 to {LARGEST_RATE} samples a second")
+    frames: Integers = np.round((time - time.min()) * rate).astype(np.int64)
+    told = f"samples are {step:g} s apart, so times are whole multiples of 1/{rate} s"
+    off = np.abs(time - time.min() - frames / rate)
+    table.require(off <= min(_ROUNDING, 0.1 / rate), "time", told)
+    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told} without gaps")
+    return rate, frames, (f"frame 0 is time {time.min():g} s",) if time.min() else ()
+
+
+def _check_cells(table: Table, start: Integers) -> None:
+    """No cell may say what no vehicle does, and no vehicle changes its size or drives backwards."""
+    limits: dict[float, tuple[str, ...]] = {
+        LARGEST_PLACE: ("s", "d"),
+        LARGEST_SPEED: ("v_lon", "v_lat"),
+        LARGEST_ACCELERATION: ("a_lon", "a_lat"),
+        LARGEST_SIZE: tuple(SIZES),
+    }
+    for most, columns in limits.items():
+        for column in columns:
+            table.require(np.abs(table[column]) <= most, column, f"must lie between {-most:g} and {most:g}")
+    for column in SIZES:
+        size = table[column]
+        table.require(size > 0, column, "the size of a vehicle is greater than zero")
+        same = size == np.repeat(size[start[:-1]], np.diff(start))
+        table.require(same, column, "the size of a vehicle stays the same")
+    s: Floats = table["s"]
+    backwards = s[start[1:] - 1] - s[start[:-1]] < -table["length"][start[:-1]]
+    ends = np.ones(table.rows, np.bool_)
+    ends[start[1:] - 1] = ~backwards
+    table.require(ends, "s", "a vehicle never ends further back than its length from where it began")
+
+
+def _check_plausible(table: Table, recording: Recording) -> Iterator[str]:
+    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
+
+    def at(doubt: Implausible) -> str:
+        return f"{table.cell(doubt.row, doubt.signal)} of vehicle {table['vehicle'][doubt.row]}"
+
+    yield from contradictions(table.path, recording, at)
+    yield from nowhere(table.path, recording, lambda row: table.cell(row, "vehicle"), "lanelet of the road")
+
+
+def _is_header(line: str) -> bool:
+    """Whether ``line`` may be the header of such a file, if one that has to be put right."""
+    return {"time", "vehicle"} <= set(line.split(","))
+
+
+def _find_csv(path: Path) -> dict[str, Files]:
+    if path.is_dir():
+        found = [x for x in with_suffix(path, ".csv") if _is_header(first_line(x))]
+    else:
+        found = [x for x in with_suffix(path, ".csv") if not TRACK_FILES.fullmatch(x.name)]
+    return {x.stem: (*beside(x, ROAD_ENDING), x) for x in found}
+
+
+def _find_parquet(path: Path) -> dict[str, Files]:
+    return {x.stem: (*beside(x, ROAD_ENDING), x) for x in with_suffix(path, ".parquet")}
+
+
+def _read(files: Files) -> Recording:
+    return read_recording(files[-1])
+
+
+def _rate_at(files: Files, rate: int) -> str:
+    return f"{files[-1]}, column time in steps of 1/{rate} s"
+
+
+CSV = Format("CSV", f"NAME.csv with the header {','.join(HEADER)}", _find_csv, _read, _rate_at)
+PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet, _read, _rate_at)

@@ -1,0 +1,277 @@
+"""Number tables in CSV files: the one home of polars.
+
+Reading is strict. A file has exactly the header that its format prescribes, every row has every
+field, every cell that is asked for is a finite number (or a text where the format has one); the
+first cell that breaks a rule is named by file, row (the header is row 1), column and value.
+"""
+
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from roadproof.errors import InputError, MissingSolverError
+from roadproof.files import whole_file
+from roadproof.mistaken import other_table
+
+if TYPE_CHECKING:
+    import polars
+
+    Frame: TypeAlias = polars.DataFrame
+else:
+    Frame = Any
+
+Kind: TypeAlias = Literal["integer", "number", "text", "list"]
+"""A list is text that may be empty."""
+Column: TypeAlias = npt.NDArray[Any]
+RULES: Mapping[Kind, str] = {
+    "integer": "a whole number is needed",
+    "number": "a finite number is needed",
+    "text": "the cell must not be empty",
+    "list": "any text is possible",
+}
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of equal length by name, and the file that they came from.
+
+    ``places``: for each row its place among the rows of the file, where it is another.
+    """
+
+    path: Path
+    columns: Mapping[str, Column]
+    rows: int
+    places: Column | None = None
+
+    def __getitem__(self, name: str) -> Column:
+        return self.columns[name]
+
+    def refuse(self, row: int, column: str, rule: str) -> InputError:
+        """The error for the cell in data row ``row`` (from 0)."""
+        return InputError(f"{self.path}, {self.cell(row, column)}: {rule}")
+
+    def cell(self, row: int, column: str) -> str:
+        """Row of the file, column and value of the cell in data row ``row`` (from 0)."""
+        place = row if self.places is None else int(self.places[row])
+        return f"row {place + 2}, column {column}={self.columns[column][row]}"
+
+    def require(self, holds: npt.NDArray[np.bool_], column: str, rule: str) -> None:
+        """Raise for the first row where ``holds`` is false."""
+        if not holds.all():
+            raise self.refuse(int(np.argmin(holds)), column, rule)
+
+
+def names_in(*lines: str) -> tuple[str, ...]:
+    """The names of columns in lines of them."""
+    return tuple(" ".join(lines).split())
+
+
+def cell_error(path: Path, row: int, column: str, value: object, rule: str) -> InputError:
+    """An error that names a cell; ``row`` counts data rows from 0, the message lines from 1."""
+    return InputError(f"{path}, row {row + 2}, column {column}={value}: {rule}")
+
+
+def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Table:
+    """The columns ``wanted`` of a CSV file whose header is exactly ``header``.
+
+    Integers come as int64, numbers as finite float64, texts as str. Raises ``InputError`` for a
+    file that cannot be read, is empty or truncated, or breaks a rule above.
+    """
+    content = _read_bytes(path)
+    other = other_table(content, len(header))
+    if other is not None:
+        raise InputError(f"{path}: the file {other}")
+    end = content.find(b"\n")
+    _check_header(path, content[:end] if end >= 0 else content, header)
+    rows = _check_shape(path, content, len(header))
+    columns = _read_fast(content, wanted, rows)
+    if columns is None:
+        _blame(path, content[end + 1 :], header, wanted)
+        raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
+    for name, kind in wanted.items():
+        if kind == "number" and not np.isfinite(columns[name]).all():
+            row = int(np.argmin(np.isfinite(columns[name])))
+            raise cell_error(path, row, name, columns[name][row], "a number must be finite")
+    return Table(path, columns, rows)
+
+
+def read_named(path: Path, wanted: Mapping[str, Kind]) -> Table:
+    """As ``read_table``, for a file that may have other columns too, in any order. Raises ``InputError``."""
+    header = _read_bytes(path).partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
+    return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted)
+
+
+def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
+    """The numbers of ``names`` in about ``count`` rows, evenly over a file that ``read_table`` took."""
+    places = [header.index(name) for name in names]
+    found = []
+    with path.open("rb") as file:
+        size = file.seek(0, 2)
+        for k in range(count):
+            file.seek(size * k // count)
+            file.readline()
+            cells = file.readline().decode("ascii").strip().split(",")
+            if len(cells) == len(header):
+                found.append([float(cells[place]) for place in places])
+    return found
+
+
+def read_columns(path: Path, names: Sequence[str]) -> None:
+    """Read some columns and check nothing: what benchmarks compare ``read_table`` with."""
+    pl = polars_module()
+
+    pl.read_csv(path, columns=list(names))
+
+
+def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None = None) -> None:
+    """Write ``columns`` as CSV, floats with ``decimals`` places; the file appears whole or not at all."""
+    with whole_file(path) as file:
+        _write_table(file, columns, decimals)
+
+
+def table_bytes(columns: Mapping[str, Column], decimals: int) -> bytes:
+    """The content of the file that ``write_table`` writes."""
+    file = io.BytesIO()
+    _write_table(file, columns, decimals)
+    return file.getvalue()
+
+
+def _write_table(file: BinaryIO, columns: Mapping[str, Column], decimals: int | None) -> None:
+    pl = polars_module()
+
+    frame = pl.DataFrame({name: pl.Series(name, values) for name, values in columns.items()})
+    frame.write_csv(file, float_precision=decimals, float_scientific=False if decimals else None)
+
+
+def frame_of(rows: Sequence[Mapping[str, Any]]) -> "Frame":
+    """A frame with a row for each of ``rows``, and a column for each name in them."""
+    frame: Frame = polars_module().DataFrame(list(rows), infer_schema_length=None)
+    return frame
+
+
+def columns_of(data: Any) -> dict[str, Sequence[object]]:
+    """The columns of a mapping, or of a frame of polars or pandas, by name. Raises ``InputError``."""
+    names = getattr(data, "columns", None) if not isinstance(data, Mapping) else data
+    if names is None:
+        raise InputError(f"{type(data).__name__} has no named columns: give a mapping of arrays, or a frame")
+    return {str(name): data[name] for name in names}
+
+
+def polars_module() -> ModuleType:
+    """polars itself. Raises ``MissingSolverError`` where it is not installed."""
+    try:
+        import polars
+    except ImportError:
+        raise MissingSolverError("tables of traffic need polars: install polars") from None
+    return polars
+
+
+def _read_bytes(path: Path) -> bytes:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
+    if not content or content.isspace():
+        raise InputError(f"{path}: the file is empty; get it again from its source")
+    return content.removeprefix(b"\xef\xbb\xbf")
+
+
+def _check_header(path: Path, line: bytes, header: Sequence[str]) -> None:
+    names = line.decode("utf-8", "replace").strip("\r\n ").split(",")
+    missing = [name for name in header if name not in names]
+    extra = [name for name in names if name not in header]
+    if missing:
+        raise InputError(
+            f"{path}, row 1: missing columns {', '.join(missing)}; the format has {', '.join(header)}"
+        )
+    if extra:
+        shown = ", ".join(repr(name) for name in extra)
+        raise InputError(f"{path}, row 1: columns {shown} are not part of the format; remove them")
+    if list(names) != list(header):
+        raise InputError(f"{path}, row 1: the columns must come in the order {', '.join(header)}, each once")
+
+
+def _check_shape(path: Path, content: bytes, fields: int) -> int:
+    """The number of data rows; every line must end, and hold ``fields`` fields."""
+    data = np.frombuffer(content, np.uint8)
+    if data[-1] != ord("\n"):
+        raise InputError(
+            f"{path}: the last row does not end with a line break; the file was cut off, get it again"
+        )
+    lines = commas = 0
+    for begin in range(0, len(data), 1 << 18):  # pieces that fit the cache
+        piece = data[begin : begin + (1 << 18)]
+        if piece.max() > 127 or not piece.min():
+            strange = begin + int(np.argmax((piece > 127) | (piece == 0)))
+            row = content.count(b"\n", 0, strange) + 1
+            raise InputError(f"{path}, row {row}: byte {data[strange]:#04x} is no part of a table of numbers")
+        lines += int(np.count_nonzero(piece == ord("\n")))
+        commas += int(np.count_nonzero(piece == ord(",")))
+    if commas != lines * (fields - 1):
+        for number, line in enumerate(content.split(b"\n")[:-1], start=1):
+            if line.count(b",") != fields - 1:
+                count = line.count(b",") + 1
+                raise InputError(f"{path}, row {number}: the row has {count} fields, the format {fields}")
+    if lines < 2:
+        raise InputError(f"{path}: the file has a header but no rows; get it again from its source")
+    return lines - 1
+
+
+def _read_fast(content: bytes, wanted: Mapping[str, Kind], rows: int) -> dict[str, Column] | None:
+    """All wanted columns, or None if some cell is wrong."""
+    pl = polars_module()
+
+    types = {"integer": pl.Int64, "number": pl.Float64, "text": pl.String, "list": pl.String}
+    try:
+        frame = pl.read_csv(
+            content,
+            columns=list(wanted),
+            schema_overrides={name: types[kind] for name, kind in wanted.items()},
+            quote_char=None,
+            infer_schema=False,
+        )
+    except (pl.exceptions.PolarsError, UnicodeDecodeError):
+        return None
+    full = {
+        name: frame[name].fill_null("") if kind == "list" else frame[name] for name, kind in wanted.items()
+    }
+    if frame.height != rows or any(values.null_count() for values in full.values()):
+        return None
+    return {name: values.to_numpy() for name, values in full.items()}
+
+
+def _blame(path: Path, body: bytes, header: Sequence[str], wanted: Mapping[str, Kind]) -> None:
+    """Read cell by cell and raise for the first one that is wrong; slow, and only after a failure."""
+    places = [(header.index(name), name, kind) for name, kind in wanted.items()]
+    for row, line in enumerate(body.decode("utf-8", "replace").split("\n")[:-1]):
+        cells = line.rstrip("\r").split(",")
+        if len(cells) != len(header):
+            raise InputError(
+                f"{path}, row {row + 2}: the row has {len(cells)} fields, the format {len(header)}"
+            )
+        for place, name, kind in places:
+            if not _fits(cells[place], kind):
+                raise cell_error(path, row, name, repr(cells[place]), RULES[kind])
+
+
+def _fits(cell: str, kind: Kind) -> bool:
+    match kind:
+        case "text":
+            return cell != ""
+        case "list":
+            return True
+        case "integer":
+            digits = cell.removeprefix("-")
+            return digits.isascii() and digits.isdigit() and abs(int(digits[:20])) < 2**63
+        case "number":
+            try:
+                return cell == cell.strip() and "_" not in cell and math.isfinite(float(cell))
+            except ValueError:
+                return False

@@ -1,0 +1,44 @@
+"""What a file is that was given where a table or XML is expected, named so that it can be put right."""
+
+_BEGINNINGS: tuple[tuple[bytes, str], ...] = (
+    (b"\x1f\x8b", "is compressed by gzip; unpack it first (gunzip)"),
+    (b"PK\x03\x04", "is a ZIP archive or a spreadsheet; unpack it, or save the sheet as CSV"),
+    (b"BZh", "is compressed by bzip2; unpack it first (bunzip2)"),
+    (b"\xfd7zXZ\x00", "is compressed by xz; unpack it first (unxz)"),
+    (b"\x28\xb5\x2f\xfd", "is compressed by Zstandard; unpack it first (unzstd)"),
+    (b"7z\xbc\xaf\x27\x1c", "is a 7z archive; unpack it first"),
+    (b"PAR1", "is a Parquet file; let its name end in .parquet, or write it as CSV"),
+    (b"\x89HDF", "is an HDF5 file; write its table as CSV"),
+    (b"%PDF", "is a PDF file; the recordings are CSV files"),
+    (b"version https://git-lfs", "is a pointer of Git LFS, not the file itself; fetch it with git lfs pull"),
+)
+_PAGES = (b"<!doctype html", b"<html", b"<head", b"<body")
+
+
+def other_format(content: bytes) -> str | None:
+    """What ``content`` is and what to do about it, where that is neither CSV nor XML; else None."""
+    for beginning, told in _BEGINNINGS:
+        if content.startswith(beginning):
+            return told
+    start = content[:200].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
+    if start.startswith(_PAGES):
+        return "is a page of HTML, such as a login or error page; download the file itself"
+    return None
+
+
+def other_table(content: bytes, names: int) -> str | None:
+    """As ``other_format``, for a file that should be CSV in ASCII with ``names`` columns."""
+    told = other_format(content)
+    if told is not None:
+        return told
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")) or content[1:200:2].count(0) > 20:
+        return "is text in UTF-16; save it as UTF-8"
+    line = content[:10_000].partition(b"\n")[0]
+    if line.lstrip().startswith(b"<"):
+        return "is XML or HTML, not a table of numbers; name the CSV file"
+    if line.lstrip().startswith((b"{", b"[")):
+        return "is JSON, not a table of numbers; name the CSV file"
+    for separator, called in ((b";", "semicolons"), (b"\t", "tabs"), (b"|", "vertical bars")):
+        if names > 1 and line.count(separator) >= max(1, (names - 1) // 2) and b"," not in line:
+            return f"has its columns separated by {called}; separate them by commas, decimals with a point"
+    return None

@@ -1,0 +1,98 @@
+"""A model over finitely many instants becomes a trace over all of time, on a road, and is judged.
+
+At each instant the model gives a state of all vehicles. Between instants the trace keeps the state
+of the instant before (or, as a second try, takes that of the instant after). It is a trace in the
+paper's sense, signals as functions of time; it may jump. What the model says of lanes and lanelets
+only guides the making of a road: whether the claim is false there is judged from the numbers.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from roadproof.errors import RoadproofError
+from roadproof.evidence import state
+from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of, when_true
+from roadproof.logic import terms as t
+from roadproof.logic.rewrite import terms_of, vehicles_of
+from roadproof.proving.place import place
+from roadproof.proving.roads import lay_road
+from roadproof.proving.search import Model
+from roadproof.proving.states import TYPICAL_SIZE
+from roadproof.proving.wishes import layout_of
+from roadproof.signals import SIZES
+from roadproof.spec.query import Query
+
+HELD: tuple[Held, ...] = ("before", "after")
+
+
+def realise(
+    query: Query, atoms: Atoms, model: Model, defaults: Mapping[str, Fraction], bounds: Mapping[str, str]
+) -> Countermodel | None:
+    """The model as a trace on which the claim is judged false, or None.
+
+    None also where two instants need different values of one parameter or one vehicle's size, and
+    where no road is found that has what the model says of lanes and lanelets.
+    """
+    fixed = _fixed_values(query, model, defaults)
+    if fixed is None:
+        return None
+    states = place(query.formula, atoms, model, fixed)
+    times = tuple(model.states)
+    parameters = {name: fixed[name] for name in defaults}
+    plain = tuple(Instant(time, found, {}) for time, found in zip(times, states, strict=True))
+    for strict in (True, False):
+        layout = layout_of(query.formula, atoms, model, states, strict)
+        road = None if layout is None else lay_road(layout)
+        if layout is not None and road is None:
+            continue
+        for held in HELD:
+            found = Countermodel(plain, parameters, held, road)
+            if fault_of(found, query.formula, bounds) is None:
+                return _shown(found, atoms)
+        if layout is None:
+            break
+    return None
+
+
+def _shown(found: Countermodel, atoms: Atoms) -> Countermodel:
+    """The countermodel with the truth of every predicate that its road and values decide."""
+    truths = {}
+    for name, meaning in atoms.named.items():
+        try:
+            truths[name] = when_true(meaning, found)
+        except RoadproofError:
+            continue
+    return replace(
+        found,
+        instants=tuple(
+            replace(instant, atoms={name: truth.at(instant.time) for name, truth in truths.items()})
+            for instant in found.instants
+        ),
+    )
+
+
+def _fixed_values(query: Query, model: Model, defaults: Mapping[str, Fraction]) -> dict[str, Fraction] | None:
+    """One value for every parameter and variable by its name, and for every size by its symbol.
+
+    None where instants disagree.
+    """
+    fixed: dict[str, Fraction] = {}
+    for found in [model.values, *model.signals.values()]:
+        for name, value in found.items():
+            if isinstance(value, bool) or (name.startswith("|") and not _is_size(name)):
+                continue
+            if fixed.setdefault(name.removesuffix("."), value) != value:
+                return None
+    rest: dict[str, Fraction] = dict(defaults)
+    for leaf in (leaf for side in terms_of(query.formula) for leaf in t.leaves(side)):
+        if isinstance(leaf, t.Variable):
+            rest[leaf.name] = Fraction(0)
+    for vehicle in vehicles_of(query.formula):
+        rest |= {state.symbol(t.Size(name, vehicle)): value for name, value in TYPICAL_SIZE.items()}
+    return {**rest, **fixed}
+
+
+def _is_size(symbol: str) -> bool:
+    return symbol.strip("|").partition("(")[0] in SIZES

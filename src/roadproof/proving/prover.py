@@ -1,0 +1,218 @@
+"""One claim, one verdict: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
+
+import math
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.effort import Effort, Meter
+from roadproof.errors import InputError
+from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.certificate import Certificate, certify
+from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names
+from roadproof.evidence.refutation import Countermodel
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.proving.countermodel import realise
+from roadproof.proving.roster import Roster, roster_for
+from roadproof.proving.search import GaveUp, InstanceSearch, Proof
+from roadproof.proving.states import StateChecker
+from roadproof.solve.smt import ask
+from roadproof.spec.bind import default_values
+from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
+from roadproof.verdict import Verdict
+
+# Ways to look, in turns: (ask for few instants, units of work). The last is given what is left.
+TURNS: tuple[tuple[bool, float], ...] = (
+    (False, 0.3),
+    (True, 0.5),
+    (False, 3.0),
+    (True, 6.0),
+    (False, 20.0),
+    (True, math.inf),
+)
+ON_FEW_LANES = 1.0
+VACUITY = 0.5
+
+
+@dataclass(frozen=True)
+class Result:
+    """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
+
+    ``work``: the units spent on the search. There is a ``certificate`` with PROVED and VACUOUS, and with
+    nothing else.
+    """
+
+    verdict: Verdict
+    reason: str
+    seconds: float
+    work: float = 0.0
+    certificate: Certificate | None = None
+    countermodel: Countermodel | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the claim is proved, be it because its premise never holds."""
+        return self.verdict in (Verdict.PROVED, Verdict.VACUOUS)
+
+
+def prove(
+    specification: Specification,
+    query: Query,
+    effort: Effort | None = None,
+    label: str = "",
+    scenario: int | None = None,
+) -> Result:
+    """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
+
+    Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
+    above zero, roads, and signals as functions of time. A proof counts only once its certificate, derived
+    apart, has been answered unsat. Raises ``Late`` where the clock cuts it off.
+    """
+    begun = time.monotonic()
+    meter = (effort or Effort()).meter()
+    atoms = Atoms()
+    abstracted = atoms.abstract(query.formula)
+    defaults = default_values(specification.library)
+    bounds = specification.library.bounds
+    states = StateChecker(atoms, bounds, defaults)
+    attempt = _Attempt(query, atoms, bounds, defaults, states, meter)
+
+    def result(
+        verdict: Verdict,
+        reason: str = "",
+        certificate: Certificate | None = None,
+        countermodel: Countermodel | None = None,
+    ) -> Result:
+        seconds = time.monotonic() - begun
+        return Result(verdict, reason, seconds, meter.spent, certificate, countermodel)
+
+    names: dict[Site, str] = {}
+    proofs: list[Proof] = []
+    for goal in conjuncts(abstracted):
+        found = attempt.decide(goal, names)
+        if isinstance(found, Countermodel):
+            return result(Verdict.REFUTED, "", None, found)
+        if isinstance(found, GaveUp):
+            return result(Verdict.UNKNOWN, found.reason)
+        proofs.append(found)
+    try:
+        certificate = _certificate(specification, query, abstracted, atoms, proofs, names, label, scenario)
+    except InputError as error:
+        return result(Verdict.UNKNOWN, f"a proof was found, but no certificate can be made of it: {error}")
+    settled = frozenset[str]().union(*(proof.settled for proof in proofs))
+    for title, script in certificate.queries:
+        if script in settled:
+            continue
+        answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
+        if answer != "unsat":
+            why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
+            return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
+    premise = _premise(abstracted)
+    if premise is not None and attempt.never_holds(premise):
+        return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
+    return result(Verdict.PROVED, "", certificate)
+
+
+def conjuncts(formula: Formula) -> Iterator[Formula]:
+    """The parts of a conjunction, of its conjunctions, and so on."""
+    if isinstance(formula, f.And):
+        for part in formula.parts:
+            yield from conjuncts(part)
+    else:
+        yield formula
+
+
+def _premise(formula: Formula) -> Formula | None:
+    """A of a claim ``A -> B``, which is built as ``not A or B``."""
+    match formula:
+        case f.Or((f.Not(premise), _)):
+            return premise
+        case _:
+            return None
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    query: Query
+    atoms: Atoms
+    bounds: Mapping[str, str]
+    defaults: Mapping[str, Fraction]
+    states: StateChecker
+    meter: Meter
+
+    def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
+        """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
+        last = GaveUp(self.meter.reason())
+        turns = TURNS[-1:] if f.is_state(goal) else TURNS
+        roster = roster_for(goal, self.query.lanes)
+        for number, (wishful, units) in enumerate(turns, 1):
+            if roster is not None and number == len(turns[:2]):
+                few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
+                if isinstance(few, Countermodel):
+                    return few
+            found = self._run(self._search(goal, names, wishful), self.meter.part(units))
+            if not isinstance(found, GaveUp):
+                return found
+            last = found
+            if self.meter.is_out():
+                break
+        return last
+
+    def _run(self, search: InstanceSearch, meter: Meter) -> Proof | Countermodel | GaveUp:
+        """What one search finds, a model of it made into a trace and judged."""
+        found = search.run(meter)
+        while not isinstance(found, Proof | GaveUp):
+            countermodel = realise(self.query, self.atoms, found, self.defaults, self.bounds)
+            if countermodel is not None:
+                return countermodel
+            if not search.widen():
+                return GaveUp("the only countermodels found over points in time are no traces")
+            found = search.run(meter)
+        return found
+
+    def never_holds(self, premise: Formula) -> bool:
+        """Whether the negation of ``premise`` is proved quickly, its query derived apart as for a claim."""
+        names: dict[Site, str] = {}
+        goal = f.negation(premise)
+        proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
+        if not isinstance(proof, Proof):
+            return False
+        met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
+        query = derive_query(
+            goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.query.lanes
+        )
+        return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
+
+    def _search(
+        self, goal: Formula, names: dict[Site, str], wishful: bool, roster: Roster | None = None
+    ) -> InstanceSearch:
+        return InstanceSearch(
+            goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful, roster
+        )
+
+
+def _certificate(
+    specification: Specification,
+    query: Query,
+    abstracted: Formula,
+    atoms: Atoms,
+    proofs: list[Proof],
+    names: dict[Site, str],
+    label: str,
+    scenario: int | None,
+) -> Certificate:
+    """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit the claim."""
+    instances: dict[Site, tuple[str, ...]] = {}
+    lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
+    for proof in proofs:
+        for site, texts in proof.instances.items():
+            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
+        for lemma in proof.lemmas:
+            before = lemmas.get(lemma.literals, ())
+            lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
+    met = met_names(abstracted, atoms, instances, names, specification.library.bounds, query.lanes)
+    made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
+    return certify(specification, query, instances, met, made, label, scenario)

@@ -1,0 +1,120 @@
+"""Settled claims to look at: a line, a table, or all details."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import groupby
+
+from roadproof.analysis.claims import Answered
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.refutation import Countermodel
+from roadproof.spec.scenarios import LANE
+from roadproof.world.motion import state_at
+from roadproof.world.road import Road
+
+
+def line(answered: Answered) -> str:
+    """The verdict in one line."""
+    task = answered.task
+    scenario = "" if task.scenario is None else f" {task.scenario}"
+    mark = "" if answered.verdict is answered.expected else f", expected {answered.expected}"
+    seconds = answered.settled.result.seconds
+    return f"{task.id}{scenario} {task.set_name}: {answered.verdict}{mark} ({seconds:.2f} s)"
+
+
+def table(answered: Sequence[Answered]) -> str:
+    """A line for each property and set; below it what was not as expected."""
+    rows: list[str] = []
+    for (name, title, set_name), group in groupby(
+        answered, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
+    ):
+        found = list(group)
+        verdicts = sorted({str(s.verdict) for s in found})
+        expected = str(found[0].expected)
+        slowest = max(s.settled.result.seconds for s in found)
+        mark = "" if verdicts == [expected] else f"   expected {expected}"
+        count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
+        rows.append(
+            f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
+        )
+        rows += [f"      {line(s)} {s.settled.result.reason}" for s in found if s.verdict is not s.expected]
+    return "\n".join(rows)
+
+
+def details(answered: Answered) -> str:
+    """The verdict with its evidence: certificate in numbers, drive or trace."""
+    task, settled = answered.task, answered.settled
+    result = settled.result
+    lines = [f"{settled.verdict}  {' '.join(task.claim.split())}"]
+    within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
+    lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
+    if result.reason:
+        lines.append(f"  {result.reason}")
+    if result.certificate is not None:
+        certificate = result.certificate
+        count = sum(len(texts) for texts in certificate.instances.values())
+        lines.append(
+            f"  certificate: {count} instance{'s' if count != 1 else ''}, "
+            f"{len(certificate.lemmas)} lemma{'s' if len(certificate.lemmas) != 1 else ''}"
+            + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
+        )
+    if settled.drive is not None:
+        lines += _show_drive(settled.drive)
+    elif result.countermodel is not None:
+        lines += _show_countermodel(result.countermodel)
+    return "\n".join(lines)
+
+
+def _show_drive(judged: Judged) -> list[str]:
+    """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
+    named = judged.file.lanes
+    lanes = named[LANE] if set(named) == {LANE} else ", ".join(f"{k}={v}" for k, v in named.items())
+    lines = [f"  false on this drive, judged exactly in dense time{f' (lane {lanes})' if lanes else ''}:"]
+    for name, motion in judged.file.drive.vehicles.items():
+        start = f"starts at s={_short(motion.s)} m, d={_short(motion.d)} m"
+        last = sum((x.duration for x in motion.pieces if x.duration is not None), Fraction(0))
+        end = state_at(motion, last)
+        moved = f", moves to d={_short(end.d)} m" if abs(end.d - motion.d) > 1 else ""
+        lines.append(f"    {name} {start}, {_short(motion.v_lon)} -> {_short(end.v_lon)} m/s{moved}")
+    return lines
+
+
+def _short(value: Fraction) -> str:
+    return f"{float(value):.4g}"
+
+
+def _show_countermodel(countermodel: Countermodel) -> list[str]:
+    lines = [
+        "  false on this trace over points in time, judged; it may jump, and no drive was found:",
+        f"    between two instants it keeps the state of the one {countermodel.held}",
+    ]
+    if countermodel.parameters:
+        shown = ", ".join(f"{n}={_number(v)}" for n, v in sorted(countermodel.parameters.items()))
+        lines.append(f"    parameters: {shown}")
+    if countermodel.road is not None:
+        lines.append("    on a road made for it:")
+        lines += [f"      {_lane(lane, countermodel.road)}" for lane in countermodel.road.lanes]
+    for instant in countermodel.instants:
+        true = ", ".join(sorted(x for x, holds in instant.atoms.items() if holds)) or "none of the predicates"
+        lines.append(f"    at {_number(instant.time)} s: {true}")
+        values = {n: v for n, v in instant.values.items() if n not in countermodel.parameters}
+        if values:
+            lines.append(f"      {', '.join(f'{n}={_number(v)}' for n, v in sorted(values.items()))}")
+    return lines
+
+
+def _lane(lane: str, road: Road) -> str:
+    """The rectangles of a lane, in metres along and across, and the lanes beside it."""
+    shown = ", ".join(
+        f"{x.zone} [{_end(x.s[0])}, {_end(x.s[1])}] x [{_number(x.d[0])}, {_number(x.d[1])}]"
+        for x in road.lanelets_of(lane)
+    )
+    beside = road.beside(lane)
+    return f"{lane}: {shown}" + (f"; beside {', '.join(beside)}" if beside else "")
+
+
+def _end(value: Fraction | None) -> str:
+    return "" if value is None else _number(value)
+
+
+def _number(value: Fraction) -> str:
+    return f"{float(value):.6g}"

@@ -1,0 +1,47 @@
+"""Drives that were found: a line about each search, and the files of its drives."""
+
+from collections.abc import Iterator
+
+from roadproof.evidence.judged import Judged
+from roadproof.exporting.csv_table import csv_of
+from roadproof.report.drive import draw_drive
+from roadproof.searching.ask import Outcome
+from roadproof.spec.library import Library
+from roadproof.spec.scenarios import LANE
+
+
+def as_line(outcome: Outcome, verbose: bool = False) -> str:
+    """What was found, and why not; with ``verbose`` also sizes and seconds by stage."""
+    name = f"scenario {outcome.scenario}" if outcome.scenario is not None else outcome.query.text
+    shown = f"{name:<12} {outcome.set_name:<5} {outcome.verdict:<11} road {outcome.road:<7}"
+    if outcome.drives:
+        file = outcome.drives[0].file
+        shown += f" lane {file.lanes[LANE]}" if LANE in file.lanes else ""
+        shown += "".join(f" {k}={v}" for k, v in file.lanes.items() if k != LANE)
+        shown += f" horizon {file.horizon} s"
+        shown += "" if outcome.natural else " (not natural: within the vehicles' limits only)"
+        shown += f" {len(outcome.drives)} drives" if len(outcome.drives) > 1 else ""
+    shown += f" {outcome.seconds['all']:.2f} s"
+    if outcome.reason:
+        shown += f"\n  {outcome.reason}"
+    if outcome.impossibility is not None:
+        kind = "minimal core" if outcome.impossibility.minimal else "core, not minimised with the work given"
+        shown += f"\n  proved for all time, on every road; {kind}:"
+        shown += "".join(f"\n    {part}" for part in outcome.impossibility.told)
+    if verbose:
+        shown += f"\n  sizes {dict(outcome.sizes)}"
+        shown += "\n  seconds " + ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
+    return shown
+
+
+def kinds(pictures: bool) -> tuple[str, ...]:
+    """How the files end that lie beside a drive file to be looked at."""
+    return ("csv", "png", "svg") if pictures else ("csv",)
+
+
+def files_of(judged: Judged, stem: str, library: Library, pictures: bool) -> Iterator[tuple[str, bytes]]:
+    """The same by name, with what is in them: samples, pictures."""
+    yield f"{stem}.csv", csv_of(judged.file).encode()
+    if pictures:
+        for kind, content in draw_drive(judged.file, library).items():
+            yield f"{stem}.{kind}", content

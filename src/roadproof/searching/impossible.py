@@ -1,0 +1,82 @@
+"""No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from roadproof.effort import Effort
+from roadproof.evidence.certificate import Certificate, certificate_data
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
+from roadproof.proving.prover import prove
+from roadproof.spec.compose import negation, of_parts
+from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
+
+SHORTER = 1.5  # units of work for a proof with one part less
+
+
+@dataclass(frozen=True)
+class Impossibility:
+    """``certificate`` proves for all time that a formula never holds at 0; ``core`` are parts that clash.
+
+    ``minimal``: no part of the core can be left out and the rest still be proved to clash.
+    """
+
+    core: tuple[Formula, ...]
+    minimal: bool
+    certificate: Certificate
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The core as texts."""
+        return told_parts(self.core)
+
+    def as_data(self) -> dict[str, Any]:
+        """Core and certificate as plain data."""
+        return {"core": list(self.told), "certificate": certificate_data(self.certificate)}
+
+
+def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
+    """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``Late``."""
+    whole = prove(specification, negation(query), effort)
+    if not whole.holds or whole.certificate is None:
+        return None
+    core, minimal = _core(specification, query, effort.of(effort.units - whole.work))
+    return Impossibility(core, minimal, whole.certificate)
+
+
+def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
+    """Parts of a formula as texts, definitions by name."""
+    return tuple(text(as_syntax(part)) for part in core)
+
+
+def _core(specification: Specification, query: Query, effort: Effort) -> tuple[tuple[Formula, ...], bool]:
+    """Leave out one part after the other where the rest still clashes."""
+    kept = tuple(dict.fromkeys(parts(query.formula)))
+    for part in kept:
+        rest = tuple(p for p in kept if p != part)
+        if effort.units <= 0:
+            return kept, False
+        if not rest:
+            continue
+        claim = negation(of_parts(query, rest))
+        found = prove(specification, claim, effort.of(min(effort.units, SHORTER)))
+        effort = effort.of(effort.units - found.work)
+        if found.holds:
+            kept = rest
+    return kept, True
+
+
+def parts(formula: Formula) -> Iterator[Formula]:
+    """The parts of a conjunction, through the names of definitions, down to temporal operators."""
+    match formula:
+        case f.And(every):
+            for part in every:
+                yield from parts(part)
+        case f.Named(_, _, body) if isinstance(body, f.And | f.Named) and not f.is_state(body):
+            yield from parts(body)
+        case _:
+            yield formula

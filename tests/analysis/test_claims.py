@@ -1,0 +1,310 @@
+"""Claims that are kept: a run that was broken off goes on; what has sound evidence is not asked again."""
+
+import json
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import roadproof as rp
+from evidence.folders import check
+from roadproof.analysis.claims import Answered, Claims, name_of
+from roadproof.api.proofs import claims_of
+from roadproof.cli.main import main
+from roadproof.errors import UsageError
+from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
+from roadproof.proving.properties import Task
+from roadproof.verdict import Verdict
+
+SYMMETRIC = "danger(SV,POV) -> danger(POV,SV)"
+JUMPS = "v_lon(SV) > 30 m/s -> G v_lon(SV) > 0 m/s"
+SLOW = "v_lon(SV) < 500 km/h"
+ALWAYS = "G danger(SV,POV) -> danger(SV,POV)"
+FALSE = "fasterThan(SV,POV) -> danger(SV,POV)"
+CLAIMS = (SYMMETRIC, FALSE, ALWAYS)
+
+
+class Asked:
+    """The claims that are asked, in whatever process."""
+
+    def __init__(self, log: Path, patch: pytest.MonkeyPatch) -> None:
+        self.log = log
+        settle = Claims.settle
+
+        def hear(claims: Claims, piece: Task) -> dict[str, Answered]:
+            with log.open("a") as file:
+                file.write(f"{piece.claim}\n")
+            return settle(claims, piece)
+
+        patch.setattr(Claims, "settle", hear)
+
+    def __eq__(self, other: object) -> bool:
+        return (self.log.read_text().splitlines() if self.log.exists() else []) == other
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return self.log.read_text() if self.log.exists() else "nothing"
+
+
+@pytest.fixture
+def asked(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Asked:
+    return Asked(tmp_path_factory.mktemp("log") / "asked", monkeypatch)
+
+
+def prove(out: Path, *claims: str, more: Sequence[str] = ()) -> int:
+    return main(["prove", *claims, "--jobs", "1", "--out", str(out), *more])
+
+
+def path_of(out: Path, claim: str) -> Path:
+    (task,) = claims_of(rp.load(), [claim], None).tasks
+    return out / ANSWERS / f"{name_of(task)}.json"
+
+
+def outcomes(out: Path) -> list[tuple[Acceptance, str, str]]:
+    return sorted((x.outcome, x.verdict, x.claim) for x in check(out))
+
+
+ACCEPTED = sorted(
+    [
+        (Acceptance.ACCEPTED, "PROVED", SYMMETRIC),
+        (Acceptance.ACCEPTED, "REFUTED", FALSE),
+        (Acceptance.ACCEPTED, "PROVED", ALWAYS),
+    ]
+)
+
+_KILLED = """
+import os, signal, sys
+from roadproof.analysis.claims import Claims
+from roadproof.cli.main import main
+
+settle = Claims.settle
+
+def settle_or_die(claims, piece):
+    if piece.claim == {last!r}:
+        os.kill(os.getppid(), signal.SIGKILL)
+        os.kill(os.getpid(), signal.SIGKILL)
+    return settle(claims, piece)
+
+Claims.settle = settle_or_die
+main(["prove", *{claims!r}, "--jobs", "1", "--out", {out!r}])
+"""
+
+
+def test_a_killed_run_goes_on_where_it_was(
+    tmp_path: Path, asked: Asked, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    script = _KILLED.format(last=ALWAYS, claims=CLAIMS, out=str(out))
+    killed = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    assert not (out / "index.json").exists()
+    assert outcomes(out) == [x for x in ACCEPTED if x[2] != ALWAYS]
+    assert prove(out, *CLAIMS) == 10
+    assert asked == [ALWAYS]
+    told = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line[:1].isupper()]
+    assert told == ["PROVED", "REFUTED", "PROVED"]
+    assert outcomes(out) == ACCEPTED
+    assert [x["claim"] for x in json.loads((out / "index.json").read_text())["claims"]] == [*CLAIMS]
+
+
+def test_what_was_taken_up_is_told_as_before(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    told: list[tuple[str, Any]] = []
+    for _ in range(2):
+        target = tmp_path / "answer.json"
+        prove(tmp_path / "out", *CLAIMS, JUMPS, more=["--json", str(target)])
+        told.append((capsys.readouterr().out, json.loads(target.read_text())))
+    assert told[0] == told[1]
+
+
+def test_a_folder_grows_and_keeps_its_order(tmp_path: Path, asked: Asked) -> None:
+    assert prove(tmp_path, ALWAYS) == 0
+    assert prove(tmp_path, SYMMETRIC, ALWAYS) == 0
+    assert prove(tmp_path, "P2", more=["--set", "base"]) == 0
+    assert asked == [ALWAYS, SYMMETRIC, "danger(SV,POV) <-> danger(POV,SV)"]
+    entries = json.loads((tmp_path / "index.json").read_text())["claims"]
+    assert [(x["property"], x["claim"]) for x in entries] == [
+        ("claim", ALWAYS),
+        ("claim", SYMMETRIC),
+        ("P2", "danger(SV,POV) <-> danger(POV,SV)"),
+    ]
+    assert {x.outcome for x in check(tmp_path)} == {Acceptance.ACCEPTED}
+
+
+def test_a_claim_has_one_answer_whatever_it_is_called(tmp_path: Path, asked: Asked) -> None:
+    prove(tmp_path, "P2", more=["--set", "base"])
+    assert prove(tmp_path, "danger(SV,POV)  <-> danger(POV,SV)") == 0
+    assert asked == ["danger(SV,POV) <-> danger(POV,SV)"]
+    assert len(json.loads((tmp_path / "index.json").read_text())["claims"]) == 1
+
+
+def test_a_doubt_is_asked_again(tmp_path: Path, asked: Asked) -> None:
+    hard = "scenario_4(SV,POV,L) -> dangerArises(SV,POV)"
+    assert prove(tmp_path, hard, more=["--effort", "0.001", "--no-drive"]) == 20
+    assert prove(tmp_path, hard) == 0
+    assert asked == [hard, hard]
+    assert [x.verdict for x in check(tmp_path)] == ["PROVED"]
+
+
+def test_a_drive_is_looked_for_where_none_was(tmp_path: Path, asked: Asked) -> None:
+    assert prove(tmp_path, FALSE, more=["--no-drive"]) == 10
+    assert not list(tmp_path.glob("*-drive.json"))
+    assert prove(tmp_path, FALSE) == 10
+    assert len(list(tmp_path.glob("*-drive.json"))) == 1
+    assert prove(tmp_path, FALSE, more=["--no-drive"]) == 10
+    assert asked == [FALSE, FALSE]
+    assert {x.outcome for x in check(tmp_path)} == {Acceptance.ACCEPTED}
+
+
+def test_a_trace_that_jumps_does_not_answer_a_claim_about_drives(tmp_path: Path, asked: Asked) -> None:
+    """Refuted by a trace over points in time, but by no drive up to a horizon."""
+    jump = "v_lon(SV) <= 30 m/s -> G[0, 0.6] v_lon(SV) <= 31.8 m/s"
+    within = ["--engine", "milp", "--horizon", "3", "--dt", "1/5"]
+    assert prove(tmp_path, jump) == 10
+    assert prove(tmp_path, jump, more=within) == 0
+    assert asked == [jump, jump]
+
+
+def test_a_drive_within_limits_answers_no_other_limits(tmp_path: Path, asked: Asked) -> None:
+    fast = "v_lon(SV) <= 30 m/s -> G[0, 0.6] v_lon(SV) <= 31.7 m/s"
+    three, two = (["--engine", "milp", "--dt", "1/5", "--horizon", s] for s in ("3", "2"))
+    for more in (three, three, two):
+        assert prove(tmp_path, fast, more=more) == 10
+    assert asked == [fast, fast]
+    assert prove(tmp_path, fast) == 10, "a drive refutes what is said of all time, too"
+    assert asked == [fast, fast]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"PROVED"', '"REFUTED"'),
+        ('"base"', '"ext"'),
+        ("danger(POV,SV)", "danger(SV,POV)"),
+        ('"seconds": 0', '"seconds": 9'),
+        ('"property": "claim"', '"property": "P2"'),
+    ],
+)
+def test_an_altered_answer_is_asked_again_and_said_so(
+    old: str, new: str, tmp_path: Path, asked: Asked, capsys: pytest.CaptureFixture[str]
+) -> None:
+    prove(tmp_path, SYMMETRIC, ALWAYS)
+    path = path_of(tmp_path, SYMMETRIC)
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    assert not all(x.outcome is Acceptance.ACCEPTED for x in check(tmp_path))
+    capsys.readouterr()
+    assert prove(tmp_path, SYMMETRIC, ALWAYS) == 0
+    assert asked == [SYMMETRIC, ALWAYS, SYMMETRIC]
+    assert "asked again, since a kept answer does not count" in capsys.readouterr().err
+    assert {x.outcome for x in check(tmp_path)} == {Acceptance.ACCEPTED}
+
+
+@pytest.mark.parametrize("forged", ["another claim", "another name", "another certificate"])
+def test_a_foreign_answer_under_a_new_seal_is_asked_again(
+    forged: str, tmp_path: Path, asked: Asked, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As somebody would forge it who computes seals."""
+    prove(tmp_path, SYMMETRIC, ALWAYS)
+    path, other = path_of(tmp_path, SYMMETRIC), json.loads(path_of(tmp_path, ALWAYS).read_text())
+    record = json.loads(path.read_text())
+    if forged == "another claim":
+        record = other
+    elif forged == "another name":
+        record["claim"]["property"] = "P2"
+    else:
+        record["claim"]["evidence"], record["evidence"] = other["claim"]["evidence"], other["evidence"]
+    question = json.loads((tmp_path / HEAD).read_text())["question"]
+    path.write_text(json.dumps({**record, "seal": seal_of(record, question, tmp_path)}))
+    capsys.readouterr()
+    assert prove(tmp_path, SYMMETRIC, ALWAYS) == 0
+    assert asked == [SYMMETRIC, ALWAYS, SYMMETRIC]
+    assert "does not count" in capsys.readouterr().err
+    assert {x.outcome for x in check(tmp_path)} == {Acceptance.ACCEPTED}
+
+
+def test_a_false_claim_that_is_kept_as_proved_is_not_believed(tmp_path: Path, asked: Asked) -> None:
+    """With a certificate that was made to say another claim, under a seal that was made anew."""
+    prove(tmp_path, SYMMETRIC)
+    path = path_of(tmp_path, SYMMETRIC)
+    record = json.loads(path.read_text())
+    file = tmp_path / record["claim"]["evidence"]
+    file.write_text(file.read_text().replace("danger(POV,SV)", "danger(SV,POV)"))
+    question = json.loads((tmp_path / HEAD).read_text())["question"]
+    path.write_text(json.dumps({**record, "seal": seal_of(record, question, tmp_path)}))
+    prove(tmp_path, SYMMETRIC)
+    assert asked == [SYMMETRIC, SYMMETRIC]
+
+
+@pytest.mark.parametrize(
+    "more",
+    [["--option", "lateral_sign=literal"], ["--spec", "mine.spec"]],
+)
+def test_other_definitions_need_another_folder(
+    more: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("mine.spec").write_text("def danger(a, b: vehicle) := s(a) > s(b)\n")
+    assert prove(Path("out"), SYMMETRIC) == 0
+    before = {x: x.read_bytes() for x in Path("out").rglob("*.json")}
+    assert prove(Path("out"), SYMMETRIC, more=more) == 2
+    assert "name another folder with --out" in capsys.readouterr().err
+    assert {x: x.read_bytes() for x in Path("out").rglob("*.json")} == before
+
+
+def test_a_folder_of_an_earlier_version_is_taken_up(tmp_path: Path, asked: Asked) -> None:
+    """Its claims stay in the index, with their files, and are asked again when somebody asks."""
+    prove(tmp_path, SYMMETRIC, ALWAYS)
+    for path in [tmp_path / HEAD, *(tmp_path / ANSWERS).iterdir()]:
+        path.unlink()
+    (tmp_path / ANSWERS).rmdir()
+    index = json.loads((tmp_path / "index.json").read_text())
+    bare = {"schema": index["schema"], "claims": index["claims"]}
+    (tmp_path / "index.json").write_text(json.dumps(bare))
+    assert prove(tmp_path, FALSE, ALWAYS) == 10
+    assert asked == [SYMMETRIC, ALWAYS, FALSE, ALWAYS]
+    assert outcomes(tmp_path) == ACCEPTED
+    assert [x["claim"] for x in json.loads((tmp_path / "index.json").read_text())["claims"]] == [
+        SYMMETRIC,
+        ALWAYS,
+        FALSE,
+    ]
+
+
+def test_a_folder_under_another_library_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    prove(tmp_path, SYMMETRIC)
+    path = tmp_path / "index.json"
+    path.write_text(json.dumps({**json.loads(path.read_text()), "library": "0" * 16}))
+    assert prove(tmp_path, ALWAYS) == 2
+    assert "under another library" in capsys.readouterr().err
+
+
+def test_python_takes_up_what_the_command_line_kept(tmp_path: Path, asked: Asked) -> None:
+    prove(tmp_path, SYMMETRIC, ALWAYS)
+    found = rp.prove(SYMMETRIC, ALWAYS, FALSE, out=tmp_path, jobs=1)
+    assert asked == [SYMMETRIC, ALWAYS, FALSE]
+    assert [*found.verdicts.values()] == [Verdict.PROVED, Verdict.PROVED, Verdict.REFUTED]
+    assert found.check().accepted
+    found.save(tmp_path / "copy")
+    assert outcomes(tmp_path / "copy") == ACCEPTED
+    with pytest.raises(UsageError, match="another question"):
+        rp.overlap("3,4", out=tmp_path, jobs=1)
+
+
+def test_planted_take_up_of_traces_for_drives_is_noticed(
+    tmp_path: Path, asked: Asked, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the check on what a kept counterexample answers, the claim about drives is not asked."""
+    jump = "v_lon(SV) <= 30 m/s -> G[0, 0.6] v_lon(SV) <= 31.8 m/s"
+    prove(tmp_path, jump)
+    monkeypatch.setattr(Claims, "_check_refuted", lambda *_: None)
+    assert prove(tmp_path, jump, more=["--engine", "milp", "--horizon", "3", "--dt", "1/5"]) == 10
+    assert asked == [jump]

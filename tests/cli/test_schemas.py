@@ -1,0 +1,409 @@
+"""All JSON that commands print and write is what docs/schema says, and the schemas refuse what is not."""
+
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+from referencing import Registry, Resource
+
+import roadproof as rp
+from cli.test_coverage import components
+from roadproof.analysis.coverage import study
+from roadproof.analysis.coverage.needed import Need
+from roadproof.analysis.coverage.study import Coverage
+from roadproof.cli.main import COMMANDS, main
+from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.heading import heading
+from roadproof.evidence.judged import Judged
+from roadproof.formats.write_highd import write_highd
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification, bundled_library
+from roadproof.spec.query import Query
+from roadproof.verdict import Verdict
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "docs" / "schema"
+SCHEMAS: Mapping[str, Any] = {x.name: json.loads(x.read_text("utf-8")) for x in sorted(FOLDER.glob("*.json"))}
+NAMES = {
+    x["properties"]["schema"]["const"]: n for n, x in SCHEMAS.items() if "schema" in x.get("properties", {})
+}
+DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
+INTERNAL = {"roadproof/recording-findings/3"}  # what evaluate keeps of one recording, for itself
+NOT_HEADED = {"drive.json", "certificate.json", "question.json", "answer.json", "common.json"}
+
+STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted
+OPTIONAL = {
+    "answer.json": {"stem", "road", "counterexample"},
+    "classify.json": {"doubts"},
+    "coverage.json": {"in_traffic", "trace"},
+    "drive.json": {"lanes", "overlaps_allowed", "natural"},
+    "explore.json": {"stem"},
+    "index.json": {"roadproof", "library", "options", "specs", "counterexample", "road"},
+    "monitor.json": {"exact"},
+    "redundancy.json": {"road"},
+    "verdicts.json": {"limits", "road"},
+    "witness.json": {"limits"},
+}
+# Objects that hold something for each of some names.
+MAPS = {
+    *("options", "parameters", "values", "vehicles", "lanes", "seconds", "sizes", "detectors", "scenarios"),
+    *("together", "notes", "failed", "elsewhere", "situations"),
+}
+Place = tuple[str | int, ...]
+Run = Callable[..., Any]
+
+
+def validator(name: str, schemas: Mapping[str, Any] = SCHEMAS) -> Draft202012Validator:
+    known = Registry().with_resources((n, Resource.from_contents(x)) for n, x in schemas.items())
+    return Draft202012Validator(schemas[name], registry=known)
+
+
+def accept(name: str, data: Any) -> None:
+    """Raises ``AssertionError`` with place and rule where the data is not what the schema says."""
+    faults = [
+        f"{'.'.join(map(str, x.absolute_path))}: {x.message[:300]}" for x in validator(name).iter_errors(data)
+    ]
+    assert not faults, f"{name}: {faults[:3]}"
+
+
+def places(data: Any, at: Place = ()) -> Iterator[Place]:
+    """Every field, of lists the first entry and the last; evidence inside is left to its own schema."""
+    yield at
+    if isinstance(data, dict) and not (at and "schema" in data):
+        for key in data:
+            yield from places(data[key], (*at, key))
+    elif isinstance(data, list) and data:
+        for k in sorted({0, len(data) - 1}):
+            yield from places(data[k], (*at, k))
+
+
+def value_at(data: Any, place: Place) -> Any:
+    for step in place:
+        data = data[step]
+    return data
+
+
+def spoiled(name: str, data: Any) -> Iterator[tuple[str, Any]]:
+    """The data with another type, without a field or with one more, each at every place."""
+    for place in places(data):
+        if place:
+            *above, step = place
+            made = deepcopy(data)
+            value_at(made, tuple(above))[step] = STRANGE
+            yield f"another type at {place}", made
+            free = bool(above) and above[-1] in MAPS
+            if isinstance(step, str) and not free and step not in OPTIONAL.get(name, ()):
+                made = deepcopy(data)
+                del value_at(made, tuple(above))[step]
+                yield f"nothing at {place}", made
+        if isinstance(value_at(data, place), dict):
+            made = deepcopy(data)
+            value_at(made, place).update(STRANGE)
+            yield f"one more at {place}", made
+
+
+def refuse_spoiled(name: str, data: Any, schemas: Mapping[str, Any] = SCHEMAS) -> None:
+    """Raises ``AssertionError`` where data is taken that is spoiled."""
+    checking = validator(name, schemas)
+    taken = [what for what, made in spoiled(name, data) if checking.is_valid(made)]
+    assert not taken, f"{name}: {taken[:5]}"
+
+
+def name_of(path: Path, data: Mapping[str, Any]) -> str:
+    return "answer.json" if path.parent.name == "answers" else NAMES[data["schema"]]
+
+
+def examine(*documents: Any, folder: Path | None = None) -> None:
+    """Documents, and all that is in a folder: each is what its schema says, and is refused once spoiled."""
+    named = [(NAMES[data["schema"]], data) for data in documents]
+    for path in sorted(folder.rglob("*.json")) if folder is not None else ():
+        data = json.loads(path.read_text("utf-8"))
+        named.append((name_of(path, data), data))
+    seen: set[str] = set()
+    for name, data in named:
+        accept(name, data)
+        if name not in NOT_HEADED:
+            assert [*data][:3] == [*heading("", bundled_library())]
+        if name not in seen:
+            refuse_spoiled(name, data)
+        seen.add(name)
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    """What a command prints with ``--json -``, under whatever verdict."""
+
+    def asked(command: str, *words: object, js: tuple[str, ...] = ("--json", "-")) -> Any:
+        capsys.readouterr()
+        assert main([command, *map(str, words), *js]) in (0, 3, 10, 20)
+        return json.loads(capsys.readouterr().out)
+
+    return asked
+
+
+@pytest.fixture(scope="module")
+def traffic(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("recordings")
+    write_highd(simulate(Traffic(seconds=20), 1), path)
+    return path
+
+
+# --- commands -------------------------------------------------------------------------------------
+
+
+def of_list(run: Run, out: Path, traffic: Path) -> None:
+    examine(run("list"), run("list", "--set", "ext"))
+
+
+def of_show(run: Run, out: Path, traffic: Path) -> None:
+    for what in (
+        "fasterThan(SV, POV)",
+        "every l in lanelets(L): some x in {SV, POV}: occ(x, l)",
+        "true U[0, 2 s] (G v_lon(SV) > 1 m/s or false)",
+        "-v_lon(SV) + 1/2 * rho * 2 m/s^2 > 2 m/s -> F[1 s, inf] not v_lon(SV) ^ 2 != v_lat(SV) ^ 2",
+    ):
+        examine(run("show", what, js=("--format", "json")))
+    for what in ("7", "cutIn"):
+        accept("show.json", run("show", what, js=("--format", "json")))
+
+
+def of_prove(run: Run, out: Path, traffic: Path) -> None:
+    own = (
+        "danger(SV,POV) -> danger(SV,POV)",
+        "v_lon(SV) > 0 m/s -> F danger(SV,POV)",
+        "false -> danger(SV,POV)",
+    )
+    jump = "aheadOf(SV,POV) -> G aheadOf(SV,POV)"
+    examine(run("prove", *own, "--jobs", 1), run("prove", *own, "--jobs", 1, "--out", out / "own"))
+    examine(run("prove", jump, "--no-drive", "--jobs", 1, "--out", out / "jump"), folder=out)
+    within = ("--engine", "smt", "--horizon", "6/5", "--dt", "3/5")
+    bounded = run("prove", "G v_lon(SV) < 200 m/s", *within, "--jobs", 1)
+    assert "limits" in bounded["verdicts"][0]
+    examine(bounded)
+
+
+def of_check(run: Run, out: Path, traffic: Path) -> None:
+    run(
+        "prove", "false -> danger(SV,POV)", "not (false -> danger(SV,POV))", "--jobs", 1, "--out", out / "own"
+    )
+    (out / "broken.json").write_text("{", "utf-8")
+    (out / "own" / "more.json").write_bytes(DRIVE.read_bytes())
+    told = run("check", out, DRIVE, "--jobs", 1)
+    assert {x["outcome"] for x in told["findings"]} == {"accepted", "rejected", "unreadable"}
+    examine(told)
+
+
+def of_witness(run: Run, out: Path, traffic: Path) -> None:
+    none = ("v_lon(SV) > 3 m/s and v_lon(SV) < 2 m/s", "F[0, 1 s] v_lon(SV) > 200 m/s")
+    told = run("witness", 4, *none, "--jobs", 1, "--no-pictures", "--out", out)
+    assert [x["verdict"] for x in told["verdicts"]] == ["WITNESSED", "IMPOSSIBLE", "NONE-WITHIN"]
+    examine(told, folder=out)
+
+
+def of_compare(run: Run, out: Path, traffic: Path) -> None:
+    told = run("compare", "danger(SV,POV)", "F danger(SV,POV)", "--out", out)
+    assert told["relation"] == "stronger"
+    examine(told, folder=out)
+
+
+def of_monitor(run: Run, out: Path, traffic: Path) -> None:
+    dense = run("monitor", 4, DRIVE)
+    other = run("monitor", 4, DRIVE, "--set", "ext", "--param", "rho=1", "--option", "speed=total")
+    assert {x["what"].split()[0] for x in other["overruled"]} == {"set", "parameter", "option"}
+    examine(dense, other, run("monitor", "F v_lon(SV) > 90 m/s", DRIVE, "--view", "recorded"))
+
+
+def of_evaluate(run: Run, out: Path, traffic: Path) -> None:
+    told = run("evaluate", traffic, "--out", out, "--no-pictures", "--jobs", 1)
+    assert json.loads((out / "results.json").read_text("utf-8")) == told
+    examine(told)
+
+
+def of_overlap(run: Run, out: Path, traffic: Path) -> None:
+    asked = ("--among", "4,5,8", "--jobs", 1)
+    told = run("overlap", *asked, "--no-pictures", "--out", out)
+    assert {x["verdict"] for x in told["verdicts"]} == {"WITNESSED", "IMPOSSIBLE"}
+    examine(told, folder=out)
+    examine(run("overlap", "--among", "4,5", "--jobs", 1))
+
+
+def of_order(run: Run, out: Path, traffic: Path) -> None:
+    asked = ("--among", "3-4", "--set", "base", "--set", "extA", "--jobs", 1)
+    told = run("order", *asked, "--no-pictures", "--out", out)
+    assert told["proved"]
+    assert told["missing"]
+    examine(told, folder=out)
+
+
+def of_redundancy(run: Run, out: Path, traffic: Path) -> None:
+    fast = "v_lon(SV) > 3 m/s and v_lon(SV) > 2 m/s"
+    (out / "mine.spec").write_text(
+        f'def scenario_90(SV, POV: vehicle, L: lane) "SV is fast" := {fast}\n', "utf-8"
+    )
+    asked = ("--spec", out / "mine.spec", "--among", 90, "--whole", "--effort", 2, "--jobs", 1)
+    told = run("redundancy", *asked, "--out", out / "out")
+    found = told["verdicts"]
+    assert all(any(x[kind] for x in found) for kind in ("certificate", "drive", "trace"))
+    examine(told, folder=out / "out")
+
+
+def of_coverage(run: Run, out: Path, traffic: Path) -> None:
+    asked = ("--road", "main-2", "--effort", 0.2, "--no-pictures", "--jobs", 1)
+    with pytest.MonkeyPatch.context() as patch:
+        few_classes(patch)
+        told = run("coverage", "--set", "ext", *asked, "--on", traffic, "--out", out / "gaps")
+        assert {x["verdict"] for x in told["classes"]} == {"WITNESSED"}
+        examine(told, folder=out / "gaps")
+        patch.setattr(study, "claims_of", claims("danger(SV,POV) -> danger(SV,POV)"))
+        patch.setattr(study, "replaced_by", lambda _: ("cutIn",))
+        drive = Judged(load_drive(DRIVE), bundled_library())
+        patch.setattr(study, "find_need", lambda _, name: Need(name, "ext", Verdict.WITNESSED, drive))
+        told = run("coverage", "--set", "complete", "--needed", *asked, "--out", out / "needs")
+        assert told["needs"]
+        examine(told, folder=out / "needs")
+
+
+def few_classes(patch: pytest.MonkeyPatch) -> None:
+    """One class, one claim, a part of the catalogue."""
+    look_up = study.find_in_catalogue
+    patch.setattr(study, "claims_of", claims("F danger(SV,POV) -> scenario_1(SV,POV,L)"))
+    patch.setattr(Coverage, "groups", components("behaviourPOV_4"))
+    patch.setattr(study, "find_in_catalogue", lambda *x: look_up(x[0], 0, 97, *x[3:]) if x[1] == 0 else [])
+
+
+def claims(text: str) -> Callable[[Specification], tuple[Query, ...]]:
+    return lambda specification: (read_claim(specification, text),)
+
+
+def of_classify(run: Run, out: Path, traffic: Path) -> None:
+    told = run("classify", "--among", 4, "--on", traffic, "--no-pictures", "--jobs", 1, "--out", out)
+    assert told["shares"]
+    examine(told, folder=out)
+
+
+def of_explore(run: Run, out: Path, traffic: Path) -> None:
+    slower = "v_lon(SV) > 29 m/s and F[0, 1 s] v_lon(SV) < 29 m/s"
+    vary = ("--vary", "SV.a_lon.min=-3:0", "--steps", 3, "--precision", 1)
+    varied = run("explore", slower, *vary, "--jobs", 1, "--no-pictures", "--out", out / "varied")
+    least = run("explore", "v_lon(SV) > 30 m/s", "--least", "v_lon(SV)", "--precision", 1, "--jobs", 1)
+    assert varied["explored"][0]["boundaries"]
+    assert least["explored"][0]["extremes"]
+    examine(varied, least, folder=out)
+
+
+ASKED: Mapping[str, Callable[[Run, Path, Path], None]] = {
+    name.removeprefix("of_"): function for name, function in globals().items() if name.startswith("of_")
+}
+
+
+@pytest.mark.parametrize("command", ASKED)
+def test_what_a_command_says_is_what_its_schema_says(
+    command: str, run: Run, tmp_path: Path, traffic: Path
+) -> None:
+    (tmp_path / "out").mkdir()
+    ASKED[command](run, tmp_path / "out", traffic)
+
+
+def test_every_command_is_asked() -> None:
+    assert {*COMMANDS} - {*ASKED} == {"simulate", "export"}  # which have no JSON
+
+
+# --- files that are shipped -----------------------------------------------------------------------
+
+
+def test_shipped_evidence_is_what_its_schema_says() -> None:
+    folders = (ROOT / "proofs", DRIVE.parent, ROOT / "tests" / "traffic" / "planted")
+    paths = [path for folder in folders for path in sorted(folder.glob("*.json"))]
+    assert len(paths) > 150
+    for path in paths:
+        data = json.loads(path.read_text("utf-8"))
+        accept(NAMES[data["schema"]], data)
+
+
+def test_spoiled_evidence_is_refused() -> None:
+    refuse_spoiled("drive.json", json.loads(DRIVE.read_text("utf-8")))
+    proof = ROOT / "proofs" / "P1-scenario-04-base.json"
+    refuse_spoiled("certificate.json", json.loads(proof.read_text("utf-8")))
+
+
+# --- the schemas ----------------------------------------------------------------------------------
+
+
+def parts_of(schema: Any) -> Iterator[Mapping[str, Any]]:
+    if isinstance(schema, dict):
+        yield schema
+    for inside in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
+        yield from parts_of(inside)
+
+
+@pytest.mark.parametrize("name", SCHEMAS)
+def test_schemas_are_schemas_and_leave_nothing_open(name: str) -> None:
+    schema = SCHEMAS[name]
+    Draft202012Validator.check_schema(schema)
+    assert (schema["$id"], schema["$schema"].rpartition("/")[2]) == (name, "schema")
+    for part in parts_of(schema):
+        if part.get("type") == "object":
+            closed = part.get("additionalProperties", part.get("unevaluatedProperties"))
+            by_kind = "allOf" in part  # each alternative is closed
+            assert by_kind or closed is False or isinstance(closed, dict), part
+        if part.get("type") == "array":
+            assert "items" in part or "prefixItems" in part, part
+        if "$ref" in part and isinstance(part["$ref"], str):
+            file, _, inside = part["$ref"].partition("#/")
+            value_at(SCHEMAS[file or name], tuple(inside.split("/")) if inside else ())
+
+
+def test_every_schema_of_the_source_is_written_down() -> None:
+    texts = (path.read_text("utf-8") for path in (ROOT / "src" / "roadproof").rglob("*.py"))
+    named = {found for text in texts for found in re.findall(r'SCHEMA = "(roadproof/[a-z-]+/[0-9]+)"', text)}
+    assert named == {*NAMES} | INTERNAL
+
+
+def test_the_page_lists_every_schema() -> None:
+    page = (FOLDER / "README.md").read_text("utf-8")
+    assert {*re.findall(r"\]\(([a-z-]+\.json)\)", page)} == {*SCHEMAS}
+    assert {*re.findall(r"`(roadproof/[a-z-]+/[0-9]+)`", page)} == {*NAMES}
+
+
+def loosened(change: str) -> dict[str, Any]:
+    """The schemas with one hole in that of ``list``."""
+    schemas = deepcopy(dict(SCHEMAS))
+    option = schemas["list.json"]["properties"]["options"]["items"]
+    match change:
+        case "a field is not required":
+            option["required"].remove("chosen")
+        case "a field may be anything":
+            option["properties"]["doc"] = {}
+        case _:
+            del option["additionalProperties"]
+    return schemas
+
+
+@pytest.mark.parametrize(
+    "change", ["a field is not required", "a field may be anything", "there may be more"]
+)
+def test_planted_holes_in_a_schema_are_noticed(change: str) -> None:
+    told = {
+        **heading("roadproof/list/1", bundled_library()),
+        "set": "base",
+        "scenarios": [],
+        "definitions": [],
+    }
+    told |= {"sets": [], "parameters": []}
+    told |= {"options": [{"name": "x", "values": ["a"], "chosen": "a", "doc": ""}]}
+    accept("list.json", told)
+    refuse_spoiled("list.json", told)
+    with pytest.raises(AssertionError):
+        refuse_spoiled("list.json", told, loosened(change))
+
+
+def test_the_answers_of_python_are_those_of_the_command_line() -> None:
+    told = rp.witness("v_lon(SV) > 3 m/s", jobs=1).as_data()
+    accept("witness.json", json.loads(json.dumps(told)))

@@ -1,0 +1,55 @@
+"""Drives that are kept: those of all 24 scenarios in the three sets, as ``witness --all`` found them.
+
+Made by ``roadproof witness --all --set base,extA,ext --no-pictures``, one a line.
+"""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+from roadproof.evidence.drive_file import DriveFile, read_drive
+from roadproof.exporting.subject import Subject
+from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.models import load_road
+from roadproof.world.road import Road
+
+DRIVES = Path(__file__).parent / "drives.jsonl"
+
+
+@cache
+def kept() -> dict[str, DriveFile]:
+    """The 72 drives by the names of their files."""
+    found = {}
+    for number, line in enumerate(DRIVES.read_text("utf-8").splitlines(), 1):
+        file = read_drive(json.loads(line), f"{DRIVES}, line {number}")
+        found[f"scenario-{file.scenario:02d}-{file.set_name}"] = file
+    return found
+
+
+def subjects() -> list[Subject]:
+    """The 72 drives as they are exported together."""
+    return [Subject(name, number, file) for number, (name, file) in enumerate(kept().items(), 1)]
+
+
+def motion(
+    *pieces: tuple[str | None, str, str],
+    start: tuple[str, str, str, str] = ("10", "2.6", "30", "0"),
+    size: tuple[str, str] = ("4.5", "1.8"),
+) -> Motion:
+    """A vehicle from (s, d, v_lon, v_lat), with pieces (duration, a_lon, a_lat)."""
+    made = tuple(Piece(None if t is None else Fraction(t), Fraction(a), Fraction(b)) for t, a, b in pieces)
+    return Motion(*map(Fraction, size), *map(Fraction, start), made)
+
+
+def subject(road: Road | str = "main-2", horizon: str = "4", **motions: Motion) -> Subject:
+    """A drive made by hand, of nothing in particular."""
+    home = load_road(road) if isinstance(road, str) else road
+    file = replace(next(iter(kept().values())), formula="true", scenario=None, lanes={}, road=home)
+    drive = Drive(motions or {"SV": motion((None, "0", "0"))})
+    return Subject("made", 1, replace(file, horizon=Fraction(horizon), drive=drive))
+
+
+TURN = motion(("0.5", "0", "0"), ("1.6", "-1", "1.25"), ("1.6", "0.5", "-1.25"), (None, "0", "0"))
+"""A change to the left lane at changing speed."""

@@ -1,0 +1,89 @@
+"""A question put in place, and what is said where the clock cuts it off."""
+
+import shutil
+from fractions import Fraction
+
+import pytest
+
+from asking import posed, search_for
+from roadproof.effort import Effort, Late
+from roadproof.errors import UsageError
+from roadproof.searching import ask, impossible
+from roadproof.searching.ask import answer
+from roadproof.searching.grid import make_grid
+from roadproof.shipped import shipped
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import bundled_library
+from roadproof.verdict import Verdict
+
+LIBRARY = bundled_library()
+SLOWER = "v_lon(SV) < v_lon(POV)"
+
+
+def models(**vehicles):
+    named = {name.removeprefix("every"): str(model) for name, model in vehicles.items()}
+    question = posed(search_for(SLOWER, vehicles=named))
+    return {name: vehicle.name for name, vehicle in question.vehicles.items()}
+
+
+def test_vehicles_are_cars_unless_told_otherwise(tmp_path):
+    van = tmp_path / "van.toml"
+    shutil.copy(shipped("models") / "vehicles/car.toml", van)
+    assert models() == {"SV": "car", "POV": "car"}
+    assert models(SV=van) == {"SV": "van", "POV": "car"}
+    assert models(every=van, POV="car") == {"SV": "van", "POV": "car"}
+
+
+def test_limits_of_one_vehicle_are_not_those_of_another():
+    vehicles = posed(search_for(SLOWER, limits={"SV": {"v_lon.max": Fraction(20)}})).vehicles
+    assert vehicles["SV"].v_lon[1] == 20 < vehicles["POV"].v_lon[1]
+
+
+@pytest.mark.parametrize(("horizon", "dt"), [(6, 0), (0, 1), (6, -1), (-6, 1), (-6, -1)])
+def test_a_grid_takes_time(horizon, dt):
+    with pytest.raises(UsageError, match="must be greater than 0"):
+        make_grid(Fraction(horizon), Fraction(dt))
+
+
+def test_what_the_clock_cuts_off_is_unknown_on_its_road(monkeypatch):
+    def late(request):
+        raise Late(3.0)
+
+    monkeypatch.setattr(ask, "ask", late)
+    outcome = answer(search_for("4"))
+    assert (outcome.verdict, outcome.scenario, outcome.road) == (Verdict.UNKNOWN, 4, "main-2")
+    assert outcome.query.text == "scenario_4(SV, POV, L)"
+    assert "cut off by the clock after 3 s" in outcome.reason
+
+
+def test_a_core_costs_no_more_than_is_left(monkeypatch):
+    asked = []
+    true_prove = impossible.prove
+
+    def prove(specification, claim, effort):
+        asked.append(effort.units)
+        return true_prove(specification, claim, effort)
+
+    monkeypatch.setattr(impossible, "prove", prove)
+    clash = "v_lon(SV) > 3 m/s and F v_lon(POV) > 3 m/s and v_lon(SV) < 2 m/s"
+    found = impossible.show_impossible(LIBRARY.select(), read_claim(LIBRARY.select(), clash), Effort(5))
+    assert found.told == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
+    assert found.minimal
+    assert asked[0] == 5
+    assert all(units <= impossible.SHORTER for units in asked[1:])
+
+
+def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatch):
+    true_find, calls = ask.find_witness, []
+
+    def find(question, means, unlike=()):
+        calls.append(len(unlike))
+        if unlike:
+            raise Late(3.0)
+        return true_find(question, means, unlike)
+
+    monkeypatch.setattr(ask, "find_witness", find)
+    outcome = ask.ask(search_for(SLOWER, count=3))
+    assert (outcome.verdict, len(outcome.drives), calls) == (Verdict.WITNESSED, 1, [0, 1])
+    assert "1 of 3 drives" in outcome.reason
+    assert "after 3 s" in outcome.reason

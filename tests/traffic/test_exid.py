@@ -1,0 +1,278 @@
+"""exiD recordings on Lanelet2 maps: planted drives of scenarios 9 to 24, by hand, and damaged."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.one_trace import read_pair
+from roadproof.evaluation.questions import Questions, ask, default_settings
+from roadproof.evaluation.recheck import recheck
+from roadproof.evidence.drive_file import load_drive
+from roadproof.formats.exid import read_exid
+from roadproof.formats.osm import read_osm, utm_of
+from roadproof.formats.recording import Recording
+from roadproof.formats.sources import find_source
+from roadproof.world.motion import state_at
+from traffic.make_recording import Track, make_recording
+from traffic.planar import Bend, straight
+from traffic.planar_exid import LOCATION, degrees_of, osm_of, write_exid
+from traffic.test_boundary import clothoid
+from traffic.test_topology import with_ramps
+
+DRIVES = Path(__file__).parent / "planted"
+RATE, SECONDS, PAUSE = 25, 7, 20
+
+
+def planted(begin: float) -> tuple[Recording, dict[int, tuple[int, ...]]]:
+    """The drives of scenarios 1 to 8, one after the other, rears from ``begin`` on; who drove in each."""
+    tracks, who = [], {}
+    for number in range(1, 9):
+        drive = load_drive(DRIVES / f"scenario-{number:02d}.json").drive
+        ahead = Fraction(begin) - min(m.s - m.length for m in drive.vehicles.values())
+        names = sorted(drive.vehicles, key=lambda name: (name != "SV", name))
+        who[number] = tuple(len(tracks) + k for k in range(len(names)))
+        for name in names:
+            motion = drive.vehicles[name]
+            states = [state_at(motion, Fraction(k, RATE)) for k in range(SECONDS * RATE + 1)]
+            rows = [
+                tuple(float(x) for x in (z.s + ahead, z.d, z.v_lon, z.v_lat, z.a_lon, z.a_lat))
+                for z in states
+            ]
+            first = (number - 1) * (SECONDS * RATE + PAUSE)
+            tracks.append(Track(2, first, rows, float(motion.length), float(motion.width)))
+    return make_recording(tracks), who
+
+
+def everything() -> Questions:
+    return ask(replace(default_settings(), scenarios=tuple(range(1, 25))), RATE)
+
+
+def bent(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return clothoid(s, d - 3.5)  # the line between the main lanes
+
+
+def rampwards(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A straight road turned by 200 degrees and far from the origin."""
+    turn = np.radians(200.0)
+    x, y = s * np.cos(turn) - d * np.sin(turn), s * np.sin(turn) + d * np.cos(turn)
+    return x + 400, y - 250, np.full_like(s, turn)
+
+
+CASES: dict[str, tuple[str, int, float, Bend]] = {
+    "merge": ("merge", 8, -95.0, straight),
+    "exit": ("depart", 16, -95.0, straight),
+    "merge, turned": ("merge", 8, -95.0, rampwards),
+    "exit, bent": ("depart", 16, -95.0, bent),
+    "weave, merging": ("weave", 8, -350.0, rampwards),
+    "weave, departing": ("weave", 16, 30.0, bent),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def found(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[int, dict[int, tuple[int, ...]], Recording, Findings]:
+    name, shift, begin, bend = CASES[request.param]
+    recording, who = planted(begin)
+    path = write_exid(recording, with_ramps(name), tmp_path_factory.mktemp("exid"), bend)
+    read = find_source(path).read()
+    return shift, who, read, evaluate_recording(read, everything())
+
+
+def test_planted_drives_are_found(found: tuple[int, dict[int, tuple[int, ...]], Recording, Findings]) -> None:
+    """All eight of the zone, in every set and for both minDanger."""
+    shift, who, _, findings = found
+    for number, names in who.items():
+        sv, pov, *rest = names
+        pov2 = rest[0] if rest else None
+        hits = {
+            (m.set_name, m.min_danger)
+            for m in findings.matches
+            if (m.sv, m.pov, m.pov2, m.scenario) == (sv, pov, pov2, number + shift)
+        }
+        assert hits == {(name, k) for name in ("base", "extA", "ext") for k in (0, 1)}, number + shift
+    assert {m.scenario for m in findings.matches} <= {shift + k for k in range(1, 9)}
+
+
+def test_the_recursive_evaluator_confirms_all(
+    found: tuple[int, dict[int, tuple[int, ...]], Recording, Findings],
+) -> None:
+    _, _, recording, findings = found
+    assert list(recheck(recording, everything(), findings)) == []
+
+
+def test_by_hand(tmp_path: Path) -> None:
+    """One car, on the ramp and then beside the main road, on a road that is turned."""
+    rows = [(-150 + 1.2 * k + k * k / 1250, -0.85, 30.0 + k / 25, 0.0, 1.0, 0.0) for k in range(60)]
+    recording = make_recording([Track(2, 4, rows, 4.4, 1.8)])
+    path = write_exid(recording, with_ramps("merge"), tmp_path, rampwards)
+    r = read_exid(tmp_path, "07")
+    assert (r.name, r.rate, r.first_frame.tolist(), r.kind.tolist()) == ("07", 25, [4], ["Car"])
+    assert {x.id: (x.zone, x.attribute) for x in r.lanelets} == {
+        str(k): (x.zone, x.attribute) for k, x in enumerate(with_ramps("merge").lanelets, start=1)
+    }
+    assert np.ptp(r.s - recording.s) < 1e-4
+    assert np.ptp(r.d - recording.d) < 1e-4
+    assert r.v_lon == pytest.approx(recording.v_lon, abs=1e-4)
+    assert r.v_lat == pytest.approx(0, abs=1e-4)
+    assert r.a_lon == pytest.approx(recording.a_lon, abs=1e-4)
+    assert (r.occupancy == 1 << [x.name for x in r.lanes].index("8")).all()
+    assert (r.zones == 2).all()
+    assert "merge lane 8 (lanelets 8, 7) inferred, since it ends at 7 beside lanelets that go on" in r.notes
+    assert find_source(path).format.name == "exiD"
+    assert [x.name for x in find_source(tmp_path).files] == [
+        f"location{LOCATION}.osm",
+        *(f"07_{x}.csv" for x in ("recordingMeta", "tracksMeta", "tracks")),
+    ]
+    assert read_pair(f"{path}:0").lanes == {"SV": r.lanes[int(r.lane[0])].name}
+
+
+def test_lat_and_lon(tmp_path: Path) -> None:
+    """The same map by degrees: nodes are where local coordinates put them, to the millimetre."""
+    road = with_ramps("merge")
+    for name, local in (("a", True), ("b", False)):
+        (tmp_path / f"{name}.osm").write_text(osm_of(road, rampwards, step=60.0, local=local))
+    one, other = (read_osm(tmp_path / f"{name}.osm", (300000.0, 5600000.0))[0] for name in "ab")
+    assert one.keys() == other.keys()
+    for name in one:
+        assert np.abs(one[name].left - other[name].left).max() < 1e-3
+        assert (one[name].successors, one[name].beside) == (other[name].successors, other[name].beside)
+
+
+def test_utm() -> None:
+    """The tower of Toronto (zone 17), whose place is published, and points on a middle meridian."""
+    assert utm_of(np.array([43.642566]), np.array([-79.387139]))[0] == pytest.approx(
+        [630084, 4833438], abs=1.5
+    )
+    assert utm_of(np.array([0.0]), np.array([9.0]))[0] == pytest.approx([500000, 0], abs=1e-6)
+    assert utm_of(np.array([-1.0]), np.array([9.0]))[0, 1] == pytest.approx(
+        1e7 - utm_of(np.array([1.0]), np.array([9.0]))[0, 1]
+    )
+    lat, lon = degrees_of(300000.0, 5600000.0)
+    assert utm_of(np.array([lat]), np.array([lon]))[0] == pytest.approx([300000, 5600000], abs=1e-6)
+
+
+def one_car(folder: Path) -> Path:
+    rows = [(-150 + 1.2 * k, -0.85, 30.0, 0.0, 0.0, 0.0) for k in range(60)]
+    return write_exid(make_recording([Track(2, 4, rows, 4.4, 1.8)]), with_ramps("merge"), folder, rampwards)
+
+
+def cell(file: str, row: int, column: str, value: str) -> Callable[[Path], None]:
+    def damage(folder: Path) -> None:
+        path = folder / f"07_{file}.csv"
+        rows = [line.split(",") for line in path.read_text().splitlines()]
+        for place in range(1, len(rows)) if row == 0 else (row - 1,):
+            rows[place][rows[0].index(column)] = value
+        path.write_text("".join(",".join(line) + "\n" for line in rows))
+
+    return damage
+
+
+def map_text(old: str, new: str, count: int = 1) -> Callable[[Path], None]:
+    def damage(folder: Path) -> None:
+        path = folder / "maps" / f"location{LOCATION}.osm"
+        text = path.read_text()
+        assert re.search(old, text), old
+        path.write_text(re.sub(old, new, text, count=count))
+
+    return damage
+
+
+def rename_map(folder: Path) -> None:
+    path = folder / "maps" / f"location{LOCATION}.osm"
+    path.rename(path.with_name("location13.osm"))
+
+
+def second_map(folder: Path) -> None:
+    path = folder / "maps" / f"location{LOCATION}.osm"
+    (folder / "maps" / "3_other.osm").write_bytes(path.read_bytes())
+
+
+def turn_over(folder: Path) -> None:
+    """y grows down."""
+    path = folder / "07_tracks.csv"
+    rows = [line.split(",") for line in path.read_text().splitlines()]
+    for column in ("yCenter", "yVelocity", "yAcceleration"):
+        at = rows[0].index(column)
+        for row in rows[1:]:
+            row[at] = str(-float(row[at]))
+    path.write_text("".join(",".join(line) + "\n" for line in rows))
+
+
+def aside(folder: Path) -> None:
+    """All is 100 m further in y."""
+    path = folder / "07_tracks.csv"
+    rows = [line.split(",") for line in path.read_text().splitlines()]
+    at = rows[0].index("yCenter")
+    for row in rows[1:]:
+        row[at] = str(float(row[at]) + 100)
+    path.write_text("".join(",".join(line) + "\n" for line in rows))
+
+
+BOMB = '<!DOCTYPE x [<!ENTITY a "ha"><!ENTITY b "&a;&a;">]>'
+OUTSIDE = '<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">]>'
+TRACKS = r"07_tracks.csv, row 5, column "
+DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
+    "NaN": (cell("tracks", 5, "xCenter", "nan"), TRACKS + "xCenter=nan: a number must be finite"),
+    "reversed time": (cell("tracks", 5, "frame", "5"), "vehicle and frame occur together once"),
+    "a gap": (cell("tracks", 61, "frame", "80"), "vehicle trackId=0, frame=80: the frame before it is 62"),
+    "unknown vehicle": (cell("tracks", 5, "trackId", "9"), "column trackId=9: the vehicle is not in"),
+    "another recording": (cell("tracks", 5, "recordingId", "8"), TRACKS + "recordingId=8: the file is of"),
+    "frame rate": (cell("recordingMeta", 2, "frameRate", "29.97"), "frameRate=29.97: a whole number"),
+    "too fast": (cell("tracks", 5, "xVelocity", "900"), TRACKS + "xVelocity=900.0: must lie between"),
+    "heading": (cell("tracks", 0, "heading", "17"), "lonVelocity=30.0: not the velocity along the heading"),
+    "unknown lanelet": (cell("tracks", 5, "laneletId", "77"), TRACKS + "laneletId=77: .* has no lanelet 77"),
+    "other lanes": (cell("tracks", 0, "laneletId", "1"), "laneletId=1: not the lane of the box's middle"),
+    "y grows down": (turn_over, "does y grow up, and is heading in degrees"),
+    "off the road": (aside, r"row 2, column trackId=0: on no lanelet of the map at any time"),
+    "size": (cell("tracksMeta", 2, "width", "0"), "07_tracksMeta.csv, row 2, column width=0.0: the size"),
+    "frames": (cell("tracksMeta", 2, "numFrames", "9"), "numFrames=9: must be finalFrame - initialFrame"),
+    "no map": (rename_map, r"locationId=3: one map is needed whose name has this number, but there are loc"),
+    "two maps": (second_map, r"there are 3_other.osm, location3.osm"),
+    "bomb": (map_text("<osm", BOMB + "<osm"), "location3.osm: the file has a document type"),
+    "outside": (map_text("<osm", OUTSIDE + "<osm"), "location3.osm: the file has a document type"),
+    "broken": (map_text("</osm>", ""), "location3.osm: no well-formed XML"),
+    "another root": (map_text("osm", "map", 9999), "location3.osm: the root is map, but osm is needed"),
+    "deep": (map_text("</osm>", "<a>" * 101 + "</a>" * 101 + "</osm>"), "element a is inside 100 others"),
+    "a node twice": (map_text('node id="2"', 'node id="1"'), "location3.osm: node 1 occurs twice"),
+    "no such node": (map_text('nd ref="2"', 'nd ref="9999"'), "way 1: nd 9999 is no node of the map"),
+    "no such way": (
+        map_text('role="left" ref="2"', 'role="left" ref="999"'),
+        "relation 1: left way 999 is no",
+    ),
+    "no left way": (map_text('role="left"', 'role="lef"'), "relation 1 has 0 members of role left"),
+    "both ways": (map_text('v="yes"', 'v="no"'), "relation 1: one_way=no"),
+    "no place": (
+        map_text('k="local_x" v="[^"]*"', 'k="local_x" v="x"'),
+        "local_x of node 1 is 'x'; a finite",
+    ),
+    "one place missing": (
+        map_text('<tag k="local_x"[^>]*/><tag k="local_y"[^>]*/>', ""),
+        "node 1 has no local_x",
+    ),
+    "no lanelet": (map_text('v="lanelet"', 'v="area"', 9999), "the map has no relation of type lanelet"),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGE)
+def test_damage_is_named(name: str, tmp_path: Path) -> None:
+    path = one_car(tmp_path)
+    assert find_source(path).read().vehicles == 1
+    damage, said = DAMAGE[name]
+    damage(tmp_path)
+    with pytest.raises(InputError, match=said):
+        find_source(path).read()
+
+
+def test_missing_files_are_named(tmp_path: Path) -> None:
+    path = one_car(tmp_path)
+    (tmp_path / "07_tracksMeta.csv").unlink()
+    with pytest.raises(InputError, match=r"07_tracksMeta.csv: the file cannot be read"):
+        find_source(path).read()

@@ -1,0 +1,334 @@
+"""CSV and Parquet recordings: by hand, against highD, on roads with zones, and damaged."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.one_trace import read_pair
+from roadproof.evaluation.questions import ask, default_settings
+from roadproof.formats.highd import read_highd
+from roadproof.formats.recording import Recording, keep_vehicles
+from roadproof.formats.samples import HEADER, read_columns, read_recording
+from roadproof.formats.sources import find_source, find_sources
+from roadproof.formats.straight import of_road, place
+from roadproof.formats.write_highd import write_highd
+from roadproof.logic.rewrite import with_values
+from roadproof.monitoring.batch import Batch
+from roadproof.monitoring.compiled import compile
+from roadproof.simulation.plant import Place, plant
+from roadproof.simulation.synthetic import simulate
+from roadproof.simulation.traffic import Traffic
+from roadproof.spec.bind import occupies
+from roadproof.world.models import load_road
+from roadproof.world.road import Lanelet, Road
+from traffic.drives import cut_in
+from traffic.sampled import TWO, csv_of, lower_road, toml_of, write_samples
+
+MERGE = toml_of(load_road("merge"))
+
+
+def table(*rows: str) -> str:
+    return "\n".join((",".join(HEADER), *rows)) + "\n"
+
+
+def test_by_hand(tmp_path: Path) -> None:
+    r = read_recording(write_samples(tmp_path, "a", table(*TWO), MERGE))
+    assert (r.name, r.rate, r.notes) == ("a", 10, ())
+    assert [x.name for x in r.lanes] == ["main-1", "main-2", "merge-1"]
+    assert r.beside == {frozenset(("main-1", "main-2")), frozenset(("main-1", "merge-1"))}
+    assert r.vehicle_id.tolist() == [1, 2]
+    assert (r.start.tolist(), r.first_frame.tolist()) == ([0, 3, 5], [0, 1])
+    assert (r.length.tolist(), r.kind.tolist()) == ([4.5, 5.0], ["Car", "Car"])
+    assert r.s.tolist() == [20, 22, 24, 62, 65]
+    assert r.occupancy.tolist() == [2, 2, 2, 1, 1]
+    assert r.lane.tolist() == [1, 1, 1, 0, 0]
+    assert r.zones.tolist() == [2] * 5  # from -100 m to 300 m all is merge zone
+
+
+def test_zones_at_their_ends(tmp_path: Path) -> None:
+    """The merge zone ends at 300 m: the box that reaches across it is in both, one that touches in one."""
+    rows = [f"{k / 10},7,{s},{d},30,0,0,0,4,2" for k, (s, d) in enumerate(((300, 2), (303, 2), (304, 2)))]
+    r = read_recording(write_samples(tmp_path, "a", table(*rows), MERGE))
+    assert r.zones.tolist() == [2, 3, 1]
+    assert r.lane.tolist() == [0, 0, 0]
+    assert [[x.id for x, held in zip(r.lanelets, row, strict=True) if held] for row in r.inside] == [
+        ["m1b"],
+        ["m1b", "m1c"],
+        ["m1c"],
+    ]
+
+
+@pytest.mark.parametrize("name", ["merge", "depart", "weave"])
+def test_places_are_those_of_the_formulas(name: str) -> None:
+    """occ(a, l) as the monitor computes it from s, d and sizes, on boxes that touch and that do not."""
+    road = load_road(name)
+    random = np.random.default_rng(3)
+    count = 3000
+    s = np.round(random.uniform(-420, 420, count) * 2) / 2
+    d = np.round(random.uniform(-4, 9, count) * 2) / 2
+    length, width = random.choice([4.0, 4.5, 8.5], count), random.choice([1.5, 2.0], count)
+    known = of_road(road, 1, Path("x"))
+    placed = place(known, np.ones(count, np.int64), s, d, length, width)
+    batch = Batch(
+        Fraction(1, 10),
+        np.ones(count, np.int64),
+        {("s", "SV"): s[None], ("d", "SV"): d[None]},
+        {("length", "SV"): length, ("width", "SV"): width},
+    )
+    asked = {x.id: with_values(occupies("SV", x), {}) for x in known.lanelets}
+    answers = compile(asked).evaluate(batch).answers
+    for j, lanelet in enumerate(known.lanelets):
+        assert np.array_equal(answers[lanelet.id].true, placed.inside[:, j])
+        assert placed.inside[:, j].any()
+    for k, lane in enumerate(known.lanes):
+        mine = [j for j, x in enumerate(known.lanelets) if x.lane == lane.name]
+        assert np.array_equal((placed.occupancy >> k) & 1 == 1, placed.inside[:, mine].any(axis=1))
+
+
+@pytest.fixture(scope="module")
+def traffic() -> Recording:
+    """With a planted cut-in on the lower lanes."""
+    recording = simulate(Traffic(seconds=30, lane_width=3.5), seed=4)
+    right = min(lane.d[0] for lane in recording.lanes if lane.direction == 2 and lane.d)
+    return plant(recording, cut_in(), Place(2, 20, 6, 10.0, right))[0]
+
+
+def found(recording: Recording) -> Findings:
+    return evaluate_recording(recording, ask(default_settings(), recording.rate))
+
+
+def test_csv_parquet_and_highd_tell_the_same(traffic: Recording, tmp_path: Path) -> None:
+    """The lower lanes of simulated traffic: matches, traces and detections are those of the highD files."""
+    write_highd(traffic, tmp_path / "highd")
+    read = read_highd(tmp_path / "highd", "01")
+    lower = keep_vehicles(read, read.direction == 2)
+    expected = found(lower)
+    assert {m.scenario for m in expected.matches} >= {1}
+    path = write_samples(tmp_path / "csv", "x", csv_of(lower), toml_of(lower_road(read)))
+    columns = read_columns(path).columns
+    (tmp_path / "parquet").mkdir()
+    pl.DataFrame(dict(columns)).with_columns(pl.col("vehicle").cast(pl.Int32)).write_parquet(
+        tmp_path / "parquet" / "x.parquet"
+    )
+    (tmp_path / "parquet" / "x_road.toml").write_bytes(path.with_name("x_road.toml").read_bytes())
+    shift = int(lower.first_frame.min())
+    for folder, name in ((tmp_path / "csv", "CSV"), (tmp_path / "parquet", "Parquet")):
+        source = find_source(folder)
+        assert source.format.name == name
+        assert [x.name for x in source.files] == ["x_road.toml", f"x.{name.lower()}"]
+        told = found(source.read())
+        assert [
+            replace(m, start_frame=m.start_frame + shift, end_frame=m.end_frame + shift) for m in told.matches
+        ] == list(expected.matches)
+        assert len(told.traces) == len(expected.traces)
+        assert told.detections == expected.detections
+
+
+def test_a_road_beside_highd(traffic: Recording, tmp_path: Path) -> None:
+    """A road that says what the markings say changes nothing; one with a merge zone gives its zones."""
+    write_highd(traffic, tmp_path)
+    plain = read_highd(tmp_path, "01")
+    road = lower_road(plain)
+    (tmp_path / "01_road.toml").write_text(toml_of(road))
+    with_road = read_highd(tmp_path, "01")
+    assert with_road.notes == ()
+    assert found(with_road) == found(plain)
+    assert find_source(tmp_path).files[0].name == "01_road.toml"
+    half = Fraction(200)
+    cut = [
+        replace(x, id=f"{x.id}{side}", zone=zone, s=s)
+        for x in road.lanelets
+        for side, zone, s in (("a", "main", (None, half)), ("b", "merge", (half, None)))
+    ]
+    (tmp_path / "01_road.toml").write_text(toml_of(Road("x", tuple(cut), road.adjacent)))
+    r = read_highd(tmp_path, "01")
+    down = r.direction[r.row_vehicle] == 2
+    assert np.array_equal(r.occupancy, plain.occupancy[:])
+    rear = r.s - r.length[r.row_vehicle]
+    on = down & (r.occupancy != 0)
+    assert np.array_equal((r.zones & 2 != 0)[on], (r.s > 200)[on])
+    assert np.array_equal((r.zones & 1 != 0)[on], (rear < 200)[on])
+    assert (r.zones[~down & (r.occupancy != 0)] == 1).all()
+
+
+def test_direction_1_of_highd(traffic: Recording, tmp_path: Path) -> None:
+    write_highd(traffic, tmp_path)
+    plain = read_highd(tmp_path, "01")
+    lanelets = [
+        Lanelet(
+            f"up{x.name}",
+            f"up{x.name}",
+            "depart",
+            "main",
+            (None, None),
+            (Fraction(str(x.d[0])), Fraction(str(x.d[1]))),
+        )
+        for x in plain.lanes
+        if x.direction == 1 and x.d
+    ]
+    (tmp_path / "01_road.toml").write_text(toml_of(Road("up", tuple(lanelets), frozenset()), "direction = 1"))
+    r = read_highd(tmp_path, "01")
+    up = r.direction[r.row_vehicle] == 1
+    assert (r.zones[up & (r.occupancy != 0)] == 4).all()
+    assert [x.name for x in r.lanes if x.direction == 2] == [x.name for x in plain.lanes if x.direction == 2]
+    (tmp_path / "01_road.toml").write_text(toml_of(Road("up", tuple(lanelets), frozenset()), "direction = 3"))
+    with pytest.raises(InputError, match=r"01_road.toml: direction=3, but it must be 2 or 1"):
+        read_highd(tmp_path, "01")
+
+
+def test_a_pair_of_a_csv_recording(tmp_path: Path) -> None:
+    path = write_samples(tmp_path, "a", table(*TWO), MERGE)
+    trace = read_pair(f"{path}:1,2")
+    assert (trace.lanes, trace.first, trace.batch.samples) == (
+        {"SV": "main-2", "POV": "main-1"},
+        "frame 1",
+        2,
+    )
+    assert [x.zone for x in trace.road.lanelets] == ["main", "merge", "main"] * 2 + ["merge"]
+    with pytest.raises(InputError, match="has no vehicle 3"):
+        read_pair(f"{path}:1,3")
+    with pytest.raises(InputError, match="they share the frames 1 to 2"):
+        read_pair(f"{path}:1,2", (0, 2))
+
+
+def test_names_are_numbered_and_time_may_begin_anywhere(tmp_path: Path) -> None:
+    rows = [
+        f"{round(7.3 + k / 30, 3)},{who},{s + k},{d},30,0,0,0,4,2,{kind}"
+        for who, s, d, kind in (("POV", 50, 2, "Truck"), ("SV", 0, 5, "Car"))
+        for k in range(4)
+    ]
+    text = table(*rows).replace("width\n", "width,kind\n")
+    r = read_recording(write_samples(tmp_path, "a", text, MERGE))
+    assert (r.rate, r.kind.tolist()) == (30, ["Truck", "Car"])
+    assert r.notes[:2] == ("vehicles are numbered: POV is 1, SV is 2", "frame 0 is time 7.3 s")
+
+
+def cell(row: int, column: str, value: str) -> Callable[[list[list[str]]], None]:
+    def apply(rows: list[list[str]]) -> None:
+        rows[row - 1][rows[0].index(column)] = value
+
+    return apply
+
+
+def drop(row: int) -> Callable[[list[list[str]]], None]:
+    return lambda rows: rows.pop(row - 1) and None
+
+
+def swap(rows: list[list[str]]) -> None:
+    rows[1], rows[2] = rows[2], rows[1]
+
+
+DAMAGE: dict[str, tuple[Callable[[list[list[str]]], object], str]] = {
+    "NaN": (cell(3, "s", "nan"), r"a.csv, row 3, column s=nan: a number must be finite"),
+    "text for a number": (cell(3, "v_lon", "fast"), r"a.csv, row 3, column v_lon='fast': a finite number"),
+    "reversed time": (swap, r"a.csv, row 3, column time=0.0: the rows of a vehicle come in order of time"),
+    "a time twice": (cell(3, "time", "0"), r"a.csv, row 3, column time=0.0: .* each time once"),
+    "mixed steps": (cell(4, "time", "0.25"), r"a.csv, row 4, column time=0.25: .*whole multiples of 1/"),
+    "a gap": (drop(3), r"a.csv, row 3, column time=0.2: .*without gaps"),
+    "another size": (cell(4, "length", "5"), r"row 4, column length=5.0: the size of a vehicle stays"),
+    "no size": (cell(4, "width", "0"), r"row 4, column width=0.0: the size of a vehicle is greater"),
+    "too fast": (cell(4, "v_lon", "300"), r"row 4, column v_lon=300.0: must lie between -250 and 250"),
+    "backwards": (cell(4, "s", "2"), r"row 4, column s=2.0: a vehicle never ends further back"),
+    "off the road": (
+        lambda rows: [cell(k, "d", "50")(rows) for k in (5, 6)],
+        r"a.csv, row 5, column vehicle=2: on no lanelet of the road at any time",
+    ),
+    "a jump": (cell(4, "s", "400"), r"row 4, column s=400.0 of vehicle 1: a vehicle does not move by more"),
+    "a missing cell": (lambda rows: rows[2].pop(), r"a.csv, row 3: the row has 9 fields, the format 10"),
+    "a missing column": (
+        lambda rows: [row.pop(3) for row in rows],
+        r"a.csv, row 1: missing columns d; the format has time,",
+    ),
+    "one sample each": (
+        lambda rows: [rows.pop(k) for k in (5, 3, 2)],
+        r"a.csv: no vehicle has two samples",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGE)
+def test_damage_is_named(name: str, tmp_path: Path) -> None:
+    rows = [row.split(",") for row in table(*TWO).splitlines()]
+    damage, said = DAMAGE[name]
+    damage(rows)
+    path = write_samples(tmp_path, "a", "".join(",".join(row) + "\n" for row in rows), MERGE)
+    with pytest.raises(InputError, match=said):
+        read_recording(path)
+
+
+ROADS = {
+    "no road": ("", "a.csv: a_road.toml is missing beside it"),
+    "no TOML": ("[[lanelet", "a_road.toml is no TOML"),
+    "no lanelet": ('name = "x"', r"a_road.toml: a road needs at least one \[\[lanelet\]\]"),
+    "a direction": ("direction = 2\n" + MERGE, "a_road.toml: 'direction' is unknown"),
+    "unknown zone": (
+        MERGE.replace('zone = "merge"', 'zone = "ramp"', 1),
+        "lanelet 2: zone='ramp', but it must be",
+    ),
+    "a gap in a lane": (
+        MERGE.replace('"-100"]', '"-90"]', 1),
+        "lanelet 'm1b' does not begin where 'm1a' ends",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_roads_that_are_wrong(name: str, tmp_path: Path) -> None:
+    road, said = ROADS[name]
+    path = write_samples(tmp_path, "a", table(*TWO), road)
+    if not road:
+        path.with_name("a_road.toml").unlink()
+    with pytest.raises(InputError, match=said):
+        read_recording(path)
+
+
+def test_parquet_that_is_wrong(tmp_path: Path) -> None:
+    csv = write_samples(tmp_path, "a", table(*TWO), MERGE)
+    right = pl.read_csv(csv)
+    path = tmp_path / "a.parquet"
+    for frame, said in (
+        (right.drop("d"), "a.parquet: missing columns d"),
+        (right.with_columns(x=1), "a.parquet: unknown columns x"),
+        (right.clear(), "a.parquet: the file has no rows"),
+        (right.with_columns(s=pl.lit(None, pl.Float64)), "row 2, column s=null: a finite number"),
+        (right.with_columns(s=pl.lit(float("nan"))), "row 2, column s=nan: a finite number"),
+        (right.with_columns(s=pl.lit("x")), "column s: String is no type for it; a finite number"),
+        (right.with_columns(vehicle=pl.lit("")), "row 2, column vehicle='': the cell must not be empty"),
+    ):
+        frame.write_parquet(path)
+        with pytest.raises(InputError, match=said):
+            read_recording(path)
+    right.write_parquet(path)
+    assert read_recording(path).vehicles == 2
+    content = path.read_bytes()
+    for damaged in (
+        content[:100],
+        b"PAR1",
+        content[:4] + b"\xff" * 50 + content[54:],
+        content.replace(b"v_lon", b"v_\xff\xffn"),
+    ):
+        path.write_bytes(damaged)
+        with pytest.raises(InputError, match=r"a\.parquet"):
+            read_recording(path)
+
+
+def test_one_format_a_folder(tmp_path: Path) -> None:
+    write_samples(tmp_path, "a", table(*TWO), MERGE)
+    write_samples(tmp_path, "b", table(*TWO), MERGE)
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    assert [x.name for x in find_sources(tmp_path)] == ["a", "b"]
+    assert [x.name for x in find_sources(tmp_path / "b.csv")] == ["b"]
+    with pytest.raises(InputError, match=r"2 recordings; name the file of one, such as a\.csv, b\.csv"):
+        find_source(tmp_path)
+    with pytest.raises(InputError, match="row 1: missing columns"):
+        find_source(tmp_path / "other.csv").read()
+    (tmp_path / "x.parquet").write_bytes(b"")
+    with pytest.raises(InputError, match="CSV and Parquet files in one folder"):
+        find_sources(tmp_path)
