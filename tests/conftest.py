@@ -1,12 +1,18 @@
-"""All of the package is imported before the first test.
+"""All of the package is imported before the first test, and random cases are the same in every run.
 
-A module that is imported while a test has replaced something would keep the replacement for good.
+A module that is imported while a test has replaced something would keep the replacement for good. New
+random cases are for ``make fuzz``.
 """
 
 import pkgutil
 from importlib import import_module
 
+from hypothesis import settings
+
 import roadproof
+
+settings.register_profile("same", derandomize=True, deadline=None)
+settings.load_profile("same")
 
 for _each in pkgutil.walk_packages(roadproof.__path__, "roadproof."):
     if not _each.name.endswith("__main__"):

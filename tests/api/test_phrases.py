@@ -134,6 +134,12 @@ def test_operators_and_text_are_one_formula(pair: Pair) -> None:
     assert text(parse_claim(str(built))) == str(built)
 
 
+def test_a_third_reads_back_as_it_is_written() -> None:
+    built = SV.v_lon < -(Fraction(1, 3) * SV.v_lon)
+    assert str(built) == "v_lon(SV) < -(1/3*v_lon(SV))"
+    assert text(parse_claim(str(built))) == str(built)
+
+
 @pytest.mark.parametrize(
     ("built", "written"),
     [

@@ -132,6 +132,25 @@ def test_a_closed_pipe_is_quiet_and_no_success() -> None:
     process.stderr.close()
 
 
+@pytest.mark.parametrize(
+    ("asked", "last"),
+    [
+        (["prove", "danger(SV,POV) -> danger(SV,POV)"], "index.json"),
+        (["witness", "4"], "scenario-04-base.png"),
+    ],
+)
+def test_evidence_is_kept_whole_when_the_reader_goes(asked: list[str], last: str, tmp_path: Path) -> None:
+    """As with ``| head -1``."""
+    words = [str(ROADPROOF), *asked, "--out", str(tmp_path / "mine")]
+    with subprocess.Popen(words, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        assert process.wait(60) == 0
+    assert (tmp_path / "mine" / last).exists()
+    done = subprocess.run([str(ROADPROOF), "check", str(tmp_path / "mine")], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
 def test_an_interrupt_ends_quietly() -> None:
     import signal
 

@@ -9,6 +9,7 @@ from roadproof.cli.basis import in_order, read_definitions
 from roadproof.cli.numbers import add_effort_options, add_working_options, read_effort
 from roadproof.cli.options import add_json_option, add_specification_options, read_seconds, write_json
 from roadproof.cli.progress import Counter, clear, warn
+from roadproof.cli.streams import print_at_once
 from roadproof.errors import UsageError
 from roadproof.verdict import Verdict
 
@@ -80,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
 
     def show(name: str, answer: "Answered") -> None:
         clear()
-        print(details(answer) if asked.are_own else line(answer), flush=True)
+        print_at_once(details(answer) if asked.are_own else line(answer), args.out is not None)
 
     each = None
     if args.json != "-" and (asked.are_own or args.verbose):

@@ -48,6 +48,19 @@ def forget_output() -> None:
     os.close(nothing)
 
 
+def print_at_once(text: str, kept: bool) -> None:
+    """Print a part of an answer; ``kept``: its evidence is, whether or not the reader has gone away.
+
+    Raises ``BrokenPipeError`` where nothing is kept.
+    """
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        if not kept:
+            raise
+        forget_output()
+
+
 def _in_plain_letters(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error

@@ -9,6 +9,7 @@ from roadproof.cli.numbers import add_working_options, read_effort, whole
 from roadproof.cli.options import add_json_option, chosen_sets, write_json
 from roadproof.cli.progress import Counter, clear, warn
 from roadproof.cli.search_options import add_search_options, where_asked
+from roadproof.cli.streams import print_at_once
 from roadproof.cli.what import add_what_arguments, some_or_all
 
 if TYPE_CHECKING:
@@ -66,9 +67,8 @@ def run(args: argparse.Namespace) -> int:
         files = [] if args.out is None else files_written(name, outcome, pictures)
         written.extend(files)
         clear()
-        print(as_line(outcome, args.verbose), flush=True)
-        if files:
-            print(f"  written to {args.out}: {', '.join(files)}", flush=True)
+        told = f"\n  written to {args.out}: {', '.join(files)}" if files else ""
+        print_at_once(as_line(outcome, args.verbose) + told, args.out is not None)
 
     each = in_order(names, show) if plain else None
     found = witness_all(searches, args.out, pictures, args.jobs, Counter(), warn, each)

@@ -104,6 +104,8 @@ def operand_levels(op: syntax.BinaryOperator) -> tuple[int, int]:
 
 def _show(expression: Expression, wanted: int, indent: int, width: int | None) -> str:
     """``expression`` where something of level ``wanted`` is expected, beginning in column ``indent``."""
+    if isinstance(expression, syntax.Literal_):
+        expression = _writable(expression)
     if width is not None:
         line = _show(expression, wanted, indent, None)
         if indent + len(line) <= width:
@@ -115,7 +117,9 @@ def _show(expression: Expression, wanted: int, indent: int, width: int | None) -
         case syntax.Literal_(bool(), _, _):
             return "true" if expression.value else "false"
         case syntax.Literal_(value, unit, _):
-            return _literal(Fraction(value), unit)
+            number = decimal(Fraction(value))
+            assert number is not None
+            return f"{number} {unit}" if unit else number
         case syntax.Name(name, _):
             return name
         case syntax.Call(name, arguments, _):
@@ -165,13 +169,18 @@ def _domain(domain: syntax.Name | syntax.Call | syntax.Group) -> str:
     return text(domain)
 
 
-def _literal(value: Fraction, unit: str) -> str:
-    """A number; a rational without finite decimals, which no text can hold, as a quotient."""
-    written = decimal(value)
-    if written is not None:
-        return f"{written} {unit}" if unit else written
-    quotient = f"{decimal(Fraction(value.numerator))}/{decimal(Fraction(value.denominator))}"
-    return f"({quotient} * 1 {unit})" if unit else f"({quotient})"
+def _writable(literal: syntax.Literal_) -> Expression:
+    """A rational without finite decimals, which no text can hold, as a quotient; any other as it is."""
+    value, at = Fraction(literal.value), literal.at
+    if decimal(value) is not None:
+        return literal
+    parts = (syntax.Literal_(Fraction(x), "", at) for x in (value.numerator, value.denominator))
+    quotient = syntax.Binary("/", *parts, at)
+    return (
+        syntax.Binary("*", quotient, syntax.Literal_(Fraction(1), literal.unit, at), at)
+        if literal.unit
+        else quotient
+    )
 
 
 def decimal(value: Fraction) -> str | None:
