@@ -148,8 +148,7 @@ def read_highd(folder: Path, name: str) -> Recording:
         zones=placed.zones,
         inside=placed.inside,
     )
-    more = check_plausible(recording, tracks)
-    more += check_lanes(tracks, recording, direction != way)
+    more = (*check_plausible(recording, tracks), *check_lanes(tracks, recording, direction != way))
     return with_notes(recording, (*more, *check_sight(meta, tracks, SAMPLE_COLUMNS, UPPER)))
 
 

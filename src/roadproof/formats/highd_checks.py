@@ -1,18 +1,17 @@
 """What the cells of highD files must not say, together: limits, the edges of boxes, contradictions."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.formats.noted import contradictions, nowhere, seldom
 from roadproof.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
     LARGEST_SPEED,
     OFF_CENTRE,
-    SHARE,
-    find_doubts,
-    off_road,
+    Implausible,
 )
 from roadproof.formats.recording import Bools, Floats, Integers, Recording
 from roadproof.formats.table import Table, sample_rows
@@ -60,31 +59,20 @@ def check_direction(meta: Table, tracks: Table, s: Floats, start: Integers) -> N
         raise InputError(f"{where}: in {tracks.path.name} the vehicle moves the other way")
 
 
-def check_lanes(tracks: Table, recording: Recording, marked: Bools) -> tuple[str, ...]:
+def check_lanes(tracks: Table, recording: Recording, marked: Bools) -> Iterator[str]:
     """Lanes must fit most vehicles: each is at least once on one, and laneId is the lane of the centre.
 
     ``marked``: the samples whose lanes come from the markings, which laneId counts. Raises ``InputError``.
     """
-    notes: tuple[str, ...] = ()
-    off = off_road(recording)
-    if off is not None:
-        row = int(recording.start[off.vehicle])
-        where = f"{tracks.path}, vehicle id={tracks['id'][row]}, column y={tracks['y'][row]}"
-        if off.refused:
-            raise InputError(
-                f"{where}: on no lane of its direction, like {off.count} vehicles; the markings do not fit"
-            )
-        notes = (f"{where}: on no lane of its direction at any time, like {off.count} vehicles",)
+
+    def at(row: int) -> str:
+        return f"vehicle id={tracks['id'][row]}, column y={tracks['y'][row]}"
+
+    yield from nowhere(tracks.path, recording, at, "lane of its direction", "the markings do not fit")
     names = np.array([int(x.name) if x.name.isdecimal() else 0 for x in recording.lanes] + [0])
     other = marked & (names[recording.lane] != tracks["laneId"])
-    differ = int(np.count_nonzero(other))
-    if differ:
-        cell = tracks.cell(int(np.argmax(other)), "laneId")
-        rule = f"laneId is not the lane of the box's centre in {differ} rows of {tracks.rows}"
-        if differ > SHARE * tracks.rows:
-            raise InputError(f"{tracks.path}, {cell}: {rule}; do markings and positions fit?")
-        notes += (f"{tracks.path.name}, {cell}: {rule}",)
-    return notes
+    rule = "laneId is not the lane of the box's centre"
+    yield from seldom(tracks, other, "laneId", rule, "do markings and positions fit?")
 
 
 def check_sight(meta: Table, tracks: Table, header: Sequence[str], upper: int) -> tuple[str, ...]:
@@ -137,12 +125,10 @@ def _column_of(name: SignalName | SizeName) -> str:
             raise ValueError(f"no rule of traffic.plausible is about {name}")
 
 
-def check_plausible(recording: Recording, tracks: Table) -> tuple[str, ...]:
+def check_plausible(recording: Recording, tracks: Table) -> Iterator[str]:
     """Notes on what the recording contradicts itself in. Raises ``InputError`` where that is too much."""
-    notes = []
-    for doubt in find_doubts(recording):
-        cell = f"{tracks.cell(doubt.row, _column_of(doubt.signal))} of vehicle {tracks['id'][doubt.row]}"
-        if doubt.refused:
-            raise InputError(f"{tracks.path}, {cell}: {doubt.told}")
-        notes.append(f"{tracks.path.name}, {cell}: {doubt.told}")
-    return tuple(notes)
+
+    def at(doubt: Implausible) -> str:
+        return f"{tracks.cell(doubt.row, _column_of(doubt.signal))} of vehicle {tracks['id'][doubt.row]}"
+
+    return contradictions(tracks.path, recording, at)

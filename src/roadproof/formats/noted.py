@@ -33,14 +33,18 @@ def contradictions(path: Path, recording: Recording, at: Callable[[Implausible],
         yield _noted(path, at(doubt), doubt.told, doubt.refused)
 
 
-def nowhere(path: Path, recording: Recording, at: Callable[[int], str], lanelets: str) -> Iterator[str]:
+def nowhere(
+    path: Path, recording: Recording, at: Callable[[int], str], lanelets: str, advice: str = ""
+) -> Iterator[str]:
     """A note on vehicles that are on no lane; ``at`` says where in the file a sample is.
 
-    ``lanelets``: what they are on none of, in words. Raises ``InputError`` where they are too many.
+    ``lanelets``: what they are on none of, in words. Raises ``InputError``, which ends with ``advice``, where
+    they are too many.
     """
     off = off_road(recording)
     if off is not None:
         told = f"on no {lanelets} at any time, like {off.count} vehicles"
+        told += f"; {advice}" if advice and off.refused else ""
         yield _noted(path, at(int(recording.start[off.vehicle])), told, off.refused)
 
 

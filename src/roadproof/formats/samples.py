@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.formats.noted import contradictions, nowhere
 from roadproof.formats.parquet import read_parquet
 from roadproof.formats.plausible import (
     LARGEST_ACCELERATION,

@@ -174,13 +174,11 @@ def _writable(literal: syntax.Literal_) -> Expression:
     value, at = Fraction(literal.value), literal.at
     if decimal(value) is not None:
         return literal
-    parts = (syntax.Literal_(Fraction(x), "", at) for x in (value.numerator, value.denominator))
-    quotient = syntax.Binary("/", *parts, at)
-    return (
-        syntax.Binary("*", quotient, syntax.Literal_(Fraction(1), literal.unit, at), at)
-        if literal.unit
-        else quotient
-    )
+    above, below = (syntax.Literal_(Fraction(x), "", at) for x in (value.numerator, value.denominator))
+    quotient = syntax.Binary("/", above, below, at)
+    if not literal.unit:
+        return quotient
+    return syntax.Binary("*", quotient, syntax.Literal_(Fraction(1), literal.unit, at), at)
 
 
 def decimal(value: Fraction) -> str | None:
