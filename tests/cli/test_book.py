@@ -9,6 +9,8 @@ import pytest
 from console import agree, files_of, matches, run, sessions_of
 
 ROOT = Path(__file__).parents[2]
+LONG = ("roadproof overlap --among 1-8", "roadproof classify --among 1-8")
+"""Questions of the README that ``make findings`` asks; shorter ones of these commands are in the book."""
 EXAMPLES = sorted(ROOT.glob("examples/*/README.md"))
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
@@ -32,7 +34,7 @@ def test_page(path: Path, tmp_path: Path) -> None:
         (folder / name).write_text(text, "utf-8")
     sessions = sessions_of(page)
     assert sessions, f"{path.name} has no sessions"
-    for session in sessions:
+    for session in (x for x in sessions if x.command not in LONG):
         printed = run(session.command, folder)
         same = agree(printed, session.expected)
         assert same, f"{path.name}:{session.line}: $ {session.command}\n" + "\n".join(printed)
