@@ -314,6 +314,22 @@ def application_in(specification: Specification, said: syntax.Expression) -> App
     return Application(Scenario(number, set_name or specification.set_name), arguments)
 
 
+def claimed(specification: Specification, said: int | str, where: str) -> str:
+    """What a test is said to show, as the name of a definition: a scenario by number, or a name as it is.
+
+    Raises ``InputError`` for a scenario that there is not, and for what is no name.
+    """
+    text = str(said).strip()
+    if are_numbers(text):
+        numbers = read_numbers(specification, text)
+        if len(numbers) != 1:
+            raise InputError(f"{where}: '{text}' names {len(numbers)} scenarios; name each by itself")
+        return name_of(numbers[0])
+    if not text.isidentifier():
+        raise InputError(f"{where}: '{text[:40]}' is no number of a scenario and no name")
+    return text
+
+
 def are_numbers(text: str) -> bool:
     """Whether a text is meant as numbers of scenarios, for ``read_numbers``, and not as a formula."""
     return _NUMBERS.fullmatch(text) is not None

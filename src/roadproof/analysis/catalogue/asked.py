@@ -1,0 +1,183 @@
+"""What tests are asked: which scenarios hold, and what their classes are made of, from any instant on.
+
+A class is a choice of disturbances with a choice of road sectors (``classify.classes``), so all classes
+follow from a few formulas: the rows. They share almost all of their parts with the scenarios, and are
+judged together with them, once for all.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from typing import TypeAlias
+
+from roadproof.analysis.classify.classes import Class, Classes, Group, Plan
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.spec.bind import bind
+from roadproof.spec.compose import both, negation
+from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import (
+    LANE,
+    Scenario,
+    applied,
+    danger_comes,
+    disturbance,
+    endangered,
+    name_of,
+    safe,
+    sector,
+    vehicles_of,
+)
+from roadproof.world.road import Road
+
+NOWHERE = "no class"
+"""What is shown by a test that is in none of the classes, though scenarios hold."""
+
+
+@dataclass(frozen=True)
+class Happens:
+    """The scenario ``number`` holds."""
+
+    number: int
+
+
+@dataclass(frozen=True)
+class Row:
+    """What happens in the scenario ``number`` and in all that differ from it in the road sector only."""
+
+    number: int
+
+
+@dataclass(frozen=True)
+class In:
+    """The vehicles are in the road sector of the scenario ``number``."""
+
+    number: int
+
+
+@dataclass(frozen=True)
+class Endangered:
+    """The vehicles are safe now, and come into danger."""
+
+
+Key: TypeAlias = Happens | Row | In | Endangered
+
+
+@dataclass
+class Asked:
+    """The questions to tests about scenarios ``numbers``; ``classes`` None where they are not divided.
+
+    Formulas are kept by roles and vehicles; bound ones also by road and lane.
+    """
+
+    specification: Specification
+    numbers: tuple[int, ...]
+    classes: Classes | None
+    values: Mapping[str, Fraction]
+    wholes: dict[tuple[tuple[str, ...], tuple[str, ...]], tuple[tuple[Key, ...], Formula]] = field(
+        default_factory=dict
+    )
+    bound: dict[tuple[Road, tuple[str, ...], tuple[str, ...], str], dict[Key, Formula]] = field(
+        default_factory=dict
+    )
+
+    @cached_property
+    def roles(self) -> tuple[tuple[str, ...], ...]:
+        """What the vehicles of the scenarios are called, each choice once."""
+        return tuple(dict.fromkeys(self._vehicles.values()))
+
+    @cached_property
+    def _vehicles(self) -> Mapping[int, tuple[str, ...]]:
+        home = self.specification
+        return {number: vehicles_of(home, Scenario(number, home.set_name)) for number in self.numbers}
+
+    @cached_property
+    def named(self) -> Mapping[tuple[tuple[str, ...], tuple[int, ...], tuple[int, ...]], str]:
+        """The name of each class by its vehicles, rows and sectors."""
+        made = () if self.classes is None else self.classes.all()
+        return {(one.vehicles, *_cell(one)): one.name for one in made}
+
+    def on(
+        self, road: Road, roles: tuple[str, ...], vehicles: tuple[str, ...], lane: str
+    ) -> Mapping[Key, Formula]:
+        """All questions to ``vehicles`` in these ``roles``, on a road with L for ``lane``."""
+        place = (road, roles, vehicles, lane)
+        if place not in self.bound:
+            keys, whole = self._whole(roles, vehicles)
+            bound = bind(whole, road, {LANE: lane}, self.values)
+            self.bound[place] = dict(zip(keys, f.children(_with_shared_parts(bound)), strict=True))
+        return self.bound[place]
+
+    def _whole(self, roles: tuple[str, ...], vehicles: tuple[str, ...]) -> tuple[tuple[Key, ...], Formula]:
+        """All questions, and their formulas as one conjunction, for any road."""
+        if (roles, vehicles) not in self.wholes:
+            asked = self._queries(roles, vehicles)
+            whole = _with_shared_parts(f.And(tuple(x.formula for x in asked.values())))
+            self.wholes[roles, vehicles] = (tuple(asked), whole)
+        return self.wholes[roles, vehicles]
+
+    def _queries(self, roles: tuple[str, ...], vehicles: tuple[str, ...]) -> dict[Key, Query]:
+        home = self.specification
+        asked: dict[Key, Query] = {Endangered(): danger_comes(home, *endangered(vehicles))}
+        for number in self.numbers:
+            if self._vehicles[number] == roles:
+                asked[Happens(number)] = applied(home, Scenario(number, home.set_name), vehicles)
+        if self.classes is not None:
+            for group in self.classes.plan.groups:
+                if group.vehicles == roles:
+                    asked |= self._rows(self.classes.plan, group, vehicles)
+        return asked
+
+    def _rows(self, plan: Plan, group: Group, vehicles: tuple[str, ...]) -> dict[Key, Query]:
+        home, (first, *others) = self.specification, vehicles
+        start = [safe(home, first, other) for other in others]
+        asked: dict[Key, Query] = {}
+        for number in group.disturbances:
+            if plan.has_places:
+                asked[Row(number)] = both(*start, disturbance(home, number, vehicles))
+            else:
+                asked[Row(number)] = applied(home, Scenario(number, home.set_name), vehicles)
+        if plan.has_places:
+            asked |= {In(number): sector(home, number, vehicles) for number in plan.sectors}
+        return asked
+
+    def scenarios_of(self, vehicles: Sequence[str]) -> dict[str, Query]:
+        """The scenarios between some of ``vehicles``, applied to these and L, by name."""
+        return {
+            name_of(number): applied(self.specification, Scenario(number, self.specification.set_name))
+            for number in self.numbers
+            if set(self._vehicles[number]) <= {*vehicles}
+        }
+
+    def class_query(self, name: str) -> Query:
+        """The class of that name: which rows hold and which do not, and in which sectors."""
+        assert self.classes is not None
+        one = next(x for x in self.classes.all() if x.name == name)
+        group = next(x for x in self.classes.plan.groups if x.vehicles == one.vehicles)
+        rows = self._rows(self.classes.plan, group, one.vehicles)
+        held, sectors = _cell(one)
+        true = {Row(n) for n in held} | {In(n) for n in sectors}
+        return both(*(query if key in true else negation(query) for key, query in rows.items()))
+
+    def shown(self, roles: tuple[str, ...], true: frozenset[Key]) -> list[str]:
+        """The names of all that is shown where these keys are true: scenarios, and the class.
+
+        A class that is proved to be empty is shown as ``NOWHERE``: the readers contradict each other.
+        """
+        names = [name_of(key.number) for key in true if isinstance(key, Happens)]
+        rows = tuple(sorted(key.number for key in true if isinstance(key, Row)))
+        sectors = tuple(sorted(key.number for key in true if isinstance(key, In)))
+        if self.classes is not None and rows and (sectors or not self.classes.plan.has_places):
+            names.append(self.named.get((roles, rows, sectors), NOWHERE))
+        return names
+
+
+def _with_shared_parts(formula: Formula) -> Formula:
+    """Equal parts as one object: readers look up what they know, and comparing trees takes long."""
+    return f.transform(formula, lambda part: part)
+
+
+def _cell(one: Class) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    return one.what.holds, () if one.where is None else one.where.holds

@@ -1,0 +1,231 @@
+"""What a concrete test shows: judged exactly where it is a drive, monitored where it is samples."""
+
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import permutations
+from pathlib import Path
+
+import numpy as np
+
+from roadproof.analysis.catalogue.asked import Asked, Endangered, Key
+from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.errors import InputError
+from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
+from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.formats.recording import Recording
+from roadproof.formats.sources import find_source
+from roadproof.judge.algebraic import approximate
+from roadproof.judge.exact import judge
+from roadproof.judge.truth import START, Cut, TruthSet
+from roadproof.logic import formula as f
+from roadproof.monitoring.compiled import compile
+from roadproof.signals import SignalName
+from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, name_of
+
+MOST_VEHICLES = 8
+"""In a scenario of CommonRoad of which no vehicles are named."""
+_STATE: tuple[SignalName, ...] = ("s", "d", "v_lon")
+DANGER = "danger"
+"""What a test shows in which vehicles are safe and come into danger, whatever scenario that is."""
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """What is looked at beside what a test fixes: all roles, all lanes, all instants."""
+
+    roles: bool = False
+    lanes: bool = False
+    start: bool = False
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A scenario, a class or ``DANGER`` that holds from the instant ``at`` (s) on, first of all there.
+
+    ``vehicles`` are called what the test calls them, in the order of the scenario's roles.
+    """
+
+    what: str
+    vehicles: tuple[str, ...]
+    lane: str
+    at: float
+
+
+@dataclass(frozen=True)
+class ConcreteAnswer:
+    """What a test shows. ``begins``: how it begins, numbers by name; ``claims``: with those of its file.
+
+    ``dense``: whether it was judged in dense time. ``fault``: why it could not be read.
+    """
+
+    entry: Concrete
+    claims: tuple[str, ...]
+    shown: tuple[Shown, ...] = ()
+    begins: Mapping[str, float] = field(default_factory=dict)
+    dense: bool = False
+    fault: str = ""
+
+    @property
+    def names(self) -> frozenset[str]:
+        """All that it shows."""
+        return frozenset(x.what for x in self.shown)
+
+
+def show(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswer:
+    """Look at one test. A test that cannot be read is answered with a fault."""
+    try:
+        if entry.place.endswith(".json") and not is_pair(entry.place):
+            return _of_drive(entry, load_drive(Path(entry.place)), asked, freedom)
+        return _of_traces(entry, asked, freedom)
+    except InputError as error:
+        return ConcreteAnswer(entry, entry.claims, fault=str(error))
+
+
+# --- drives --------------------------------------------------------------------------------------
+
+
+def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) -> ConcreteAnswer:
+    claims = entry.claims
+    if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
+        claims = (name_of(file.scenario),)
+    states = {name: (m.s, m.d, m.v_lon) for name, m in file.drive.vehicles.items()}
+    begins = _begins({name: tuple(map(float, state)) for name, state in states.items()})
+    return ConcreteAnswer(entry, claims, shown_by(file, asked, freedom), begins, True)
+
+
+def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
+    """What a drive shows, judged in dense time: all formulas at once, since they share their parts."""
+    shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
+    for roles, vehicles in _choices(asked, tuple(file.drive.vehicles), freedom.roles):
+        for lane in _lanes(file, freedom.lanes):
+            formulas = asked.on(file.road, roles, vehicles, lane)
+            judgement = judge(f.And(tuple(formulas.values())), file.drive)
+            truths = {key: judgement.truth(formula) for key, formula in formulas.items()}
+            for cut, true in _instants(truths, file, freedom.start):
+                for what in _what(asked, roles, true):
+                    at = approximate(cut.point)
+                    shown.setdefault((what, vehicles, lane), Shown(what, vehicles, lane, at))
+    return _sorted(shown.values())
+
+
+def _choices(
+    asked: Asked, names: tuple[str, ...], free: bool
+) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """Roles of scenarios with vehicles for them: those of the same names, or any."""
+    for roles in asked.roles:
+        if free:
+            yield from ((roles, chosen) for chosen in permutations(names, len(roles)))
+        elif set(roles) <= set(names):
+            yield roles, roles
+
+
+def _lanes(file: DriveFile, free: bool) -> tuple[str, ...]:
+    return (file.lanes[LANE],) if LANE in file.lanes and not free else file.road.lanes
+
+
+def _instants(
+    truths: Mapping[Key, TruthSet], file: DriveFile, free: bool
+) -> Iterator[tuple[Cut, frozenset[Key]]]:
+    """The start, or all instants within the horizon at which something changes, with what is true."""
+    cuts = {START}
+    if free:
+        cuts |= {cut for truth in truths.values() for cut in truth.cuts if cut.point <= file.horizon}
+    for cut in sorted(cuts):
+        yield cut, frozenset(key for key, truth in truths.items() if bisect_right(truth.cuts, cut) % 2)
+
+
+def _what(asked: Asked, roles: tuple[str, ...], true: frozenset[Key]) -> Iterator[str]:
+    yield from asked.shown(roles, true)
+    if Endangered() in true:
+        yield DANGER
+
+
+# --- samples -------------------------------------------------------------------------------------
+
+
+def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswer:
+    shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
+    begins: dict[str, float] = {}
+    for trace, told in _traces(entry, freedom):
+        names = tuple(trace.lanes)
+        free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
+        for roles, vehicles in _choices(asked, names, free):
+            for lane in trace.road.lanes:
+                for what, at in _monitored(trace, asked, roles, vehicles, lane):
+                    called = tuple(told.get(name, name) for name in vehicles)
+                    shown.setdefault((what, called, lane), Shown(what, called, lane, at))
+        begins = begins or _begins(_states(trace))
+    return ConcreteAnswer(entry, entry.claims, _sorted(shown.values()), begins)
+
+
+def _monitored(
+    trace: OneTrace, asked: Asked, roles: tuple[str, ...], vehicles: tuple[str, ...], lane: str
+) -> Iterator[tuple[str, float]]:
+    """What is shown, whatever comes after the trace, with the time of the first sample (s)."""
+    monitor = compile(asked.on(trace.road, roles, vehicles, lane))
+    answers = monitor.evaluate(trace.batch, "truncated", at="all").answers
+    truths = {key: answer.true[:, 0] for key, answer in answers.items()}
+    table = np.stack(list(truths.values()))
+    changes = np.flatnonzero(np.any(table[:, 1:] != table[:, :-1], axis=0)) + 1
+    for sample in (0, *changes.tolist()):
+        true = frozenset(key for key, truth in truths.items() if truth[sample])
+        for what in _what(asked, roles, true):
+            yield what, float(sample * trace.batch.dt)
+
+
+def _traces(entry: Concrete, freedom: Freedom) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
+    """The traces of a test, each with what the test calls the vehicles."""
+    path = Path(entry.place)
+    if is_pair(entry.place):
+        ids = entry.place.rpartition(":")[2].split(",")
+        trace = read_pair(entry.place)
+        yield trace, dict(zip(trace.lanes, ids, strict=True))
+    elif path.suffix in (".csv", ".parquet"):
+        yield read_samples(path), {}
+    else:
+        yield from _all_of(find_source(path).read(), entry.place)
+
+
+def _all_of(recording: Recording, place: str) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
+    """All pairs and triples of vehicles of one direction that are seen together, in all orders."""
+    if recording.vehicles > MOST_VEHICLES:
+        raise InputError(
+            f"{place}: {recording.vehicles} vehicles, but of at most {MOST_VEHICLES} all choices are looked "
+            f"at; name some in a catalogue.toml, as file = '{Path(place).name}:12,15'"
+        )
+    for names in (PAIR, TRIPLE):
+        for chosen in permutations(range(recording.vehicles), len(names)):
+            low = max(int(recording.first_frame[v]) for v in chosen)
+            high = min(int(recording.last_frame[v]) for v in chosen)
+            if high > low and len({int(recording.direction[v]) for v in chosen}) == 1:
+                trace = cut_trace(recording, place, dict(zip(names, chosen, strict=True)), (low, high))
+                yield trace, {n: str(recording.vehicle_id[v]) for n, v in zip(names, chosen, strict=True)}
+
+
+def _states(trace: OneTrace) -> dict[str, tuple[float, ...]]:
+    signals = trace.batch.signals
+    return {n: tuple(float(signals[x, n][0, 0]) for x in _STATE) for n in trace.lanes}
+
+
+# --- both ----------------------------------------------------------------------------------------
+
+
+def _begins(states: Mapping[str, tuple[float, ...]]) -> dict[str, float]:
+    """Speeds, and how far each other vehicle is ahead of and left of SV, or the first one (m/s, m)."""
+    first = SUBJECT if SUBJECT in states else next(iter(states))
+    s, d, v_lon = states[first]
+    begins = {f"v_lon({first})": v_lon}
+    for name, (other_s, other_d, speed) in sorted(states.items()):
+        if name == first:
+            continue
+        begins |= {
+            f"v_lon({name})": speed,
+            f"s({name}) - s({first})": other_s - s,
+            f"d({name}) - d({first})": other_d - d,
+        }
+    return begins
+
+
+def _sorted(shown: Iterable[Shown]) -> tuple[Shown, ...]:
+    return tuple(sorted(shown, key=lambda x: (x.at, x.what, x.vehicles, x.lane)))

@@ -1,0 +1,195 @@
+"""What a catalogue tests and what it misses, which tests are not what they claim, and which say the same."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from roadproof.analysis.catalogue.asked import NOWHERE, Asked
+from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.meaning import Fact, Facts
+from roadproof.analysis.catalogue.showing import DANGER, ConcreteAnswer
+from roadproof.spec.scenarios import name_of
+
+
+@dataclass(frozen=True)
+class Target:
+    """A scenario or a class that tests may show, in words; ``tested``: the tests that show or imply it.
+
+    ``possible``: abstract tests some drives of which show it. ``covered``: how the tests that show it begin,
+    least and greatest values by name.
+    """
+
+    name: str
+    words: str
+    tested: tuple[str, ...]
+    possible: tuple[str, ...]
+    covered: Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Remark:
+    """What is to be said of one test, or of two."""
+
+    tests: tuple[str, ...]
+    told: str
+
+
+@dataclass(frozen=True)
+class Tested:
+    """The targets in order, and what is remarked: ``faults`` of tests that are not what they claim or show
+    nothing, ``doubts``, tests that are ``alike``, and ``contradictions`` between what was proved and seen.
+    """
+
+    targets: tuple[Target, ...]
+    faults: tuple[Remark, ...]
+    doubts: tuple[Remark, ...]
+    alike: tuple[Remark, ...]
+    contradictions: tuple[Remark, ...]
+
+    @property
+    def missing(self) -> tuple[Target, ...]:
+        """The targets that no test shows."""
+        return tuple(x for x in self.targets if not x.tested)
+
+
+def tested(
+    asked: Asked,
+    concrete: Sequence[ConcreteAnswer],
+    abstract: Sequence[Abstract],
+    facts: Sequence[Fact],
+    words: Mapping[str, str],
+    near: float,
+) -> Tested:
+    """All of it. ``words``: each target by name, in words, in order; ``near``: how far tests that say the
+    same may begin apart, in m and m/s.
+    """
+    return Tested(
+        tuple(_target(name, told, concrete, facts) for name, told in words.items()),
+        (*_unreadable(concrete), *_of_concrete(concrete, words), *_of_abstract(abstract, facts)),
+        tuple(_doubts(facts)),
+        (*_same(concrete, near), *_implied(abstract, facts)),
+        tuple(
+            Remark((x.entry.id,), "scenarios hold on it, and no class of them, though that is proved to be")
+            for x in concrete
+            if NOWHERE in x.names
+        ),
+    )
+
+
+def targets_of(asked: Asked) -> dict[str, str]:
+    """Every scenario and every class by name, with what it is in words."""
+    targets = {name_of(number): f"scenario {number}" for number in asked.numbers}
+    if asked.classes is not None:
+        for one in asked.classes.all():
+            place = "" if one.place is None else f", {one.place.replace('_', ' and ')}"
+            targets[one.name] = one.description + place
+    return targets
+
+
+def _target(name: str, words: str, concrete: Sequence[ConcreteAnswer], facts: Sequence[Fact]) -> Target:
+    showing = [x for x in concrete if name in x.names]
+    implied = [x.test for x in facts if x.other == name and x.relation == "implies"]
+    runs = {x.test for x in facts if x.relation == "runs"}
+    possible = [x.test for x in facts if x.relation in ("shows", "runs") and name in (x.other, *x.also)]
+    sure = [*(x.entry.id for x in showing), *(x for x in implied if x in runs)]
+    covered: dict[str, tuple[float, float]] = {}
+    for x in showing:
+        for number, value in x.begins.items():
+            low, high = covered.get(number, (value, value))
+            covered[number] = min(low, value), max(high, value)
+    maybe = dict.fromkeys(x for x in possible if x not in sure)
+    return Target(name, words, tuple(dict.fromkeys(sure)), tuple(maybe), covered)
+
+
+# --- remarks -------------------------------------------------------------------------------------
+
+
+def _unreadable(concrete: Sequence[ConcreteAnswer]) -> Iterator[Remark]:
+    yield from (Remark((x.entry.id,), f"cannot be read: {x.fault}") for x in concrete if x.fault)
+
+
+def _of_concrete(concrete: Sequence[ConcreteAnswer], words: Mapping[str, str]) -> Iterator[Remark]:
+    for x in concrete:
+        if x.fault:
+            continue
+        shown = sorted(x.names - {DANGER, NOWHERE})
+        for claim in x.claims:
+            if claim not in words:
+                yield Remark((x.entry.id,), f"claims {claim}, {_NO_TARGET}")
+            elif claim not in x.names:
+                yield Remark((x.entry.id,), f"claims {claim}, and shows {', '.join(shown) or 'no scenario'}")
+        if not shown and not x.claims:
+            more = ", though danger comes: a gap of the scenarios" if DANGER in x.names else ""
+            yield Remark((x.entry.id,), f"shows no scenario{more}")
+
+
+_NO_TARGET = "but there is no scenario and no class of that name: classes that are proved empty are left out"
+
+
+def _of_abstract(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
+    by_test: dict[str, dict[str, Fact]] = {}
+    for x in facts:
+        by_test.setdefault(x.test, {}).setdefault(x.other, x)
+    for entry in abstract:
+        known = by_test.get(entry.id, {})
+        alone = known.get("")
+        if alone is not None and alone.relation == "empty":
+            yield Remark((entry.id,), "can never be run: that is proved")
+            continue
+        for claim in entry.claims:
+            fact: Fact | None = known.get(claim)
+            if fact is None and alone is not None and claim in alone.also:
+                continue
+            if fact is None or fact.relation in ("excludes", "open"):
+                told = "which it excludes: that is proved" if fact and fact.relation == "excludes" else _NONE
+                yield Remark((entry.id,), f"claims {claim}, {told}")
+
+
+_NONE = "which no drive of it shows that was found"
+
+
+def _doubts(facts: Sequence[Fact]) -> Iterator[Remark]:
+    for fact in facts:
+        if fact.relation == "open":
+            what = f"whether it can show {fact.other}" if fact.other else "whether it can be run"
+            yield Remark((fact.test,), f"{what} is in doubt: {fact.reason}")
+
+
+# --- alike ---------------------------------------------------------------------------------------
+
+
+def _same(concrete: Sequence[ConcreteAnswer], near: float) -> Iterator[Remark]:
+    """Tests that show the same and begin nearly as the first of them does."""
+    groups: dict[tuple[frozenset[str], tuple[str, ...]], list[list[ConcreteAnswer]]] = {}
+    for x in concrete:
+        if x.fault:
+            continue
+        known = groups.setdefault((x.names, tuple(x.begins)), [])
+        alike = next((those for those in known if _apart(those[0], x) <= near), None)
+        if alike is None:
+            known.append([x])
+        else:
+            alike.append(x)
+    for first, *others in (those for known in groups.values() for those in known):
+        if others:
+            apart = max(_apart(first, x) for x in others)
+            told = f"begin within {apart:.2g} of the first (m, m/s)" if apart else "begin alike"
+            yield Remark((first.entry.id, *(x.entry.id for x in others)), f"show the same and {told}")
+
+
+def _apart(one: ConcreteAnswer, other: ConcreteAnswer) -> float:
+    return max((abs(one.begins[name] - other.begins[name]) for name in one.begins), default=0.0)
+
+
+def _implied(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
+    ids = {entry.id for entry in abstract}
+    pairs = {(x.test, x.other) for x in facts if x.relation == "implies" and x.other in ids}
+    for one, other in sorted(pairs):
+        if (other, one) not in pairs:
+            yield Remark((one, other), "every drive of the first is one of the second: that is proved")
+        elif one < other:
+            yield Remark((one, other), "have the same drives: that is proved")
+
+
+def all_facts(answers: Mapping[str, Facts]) -> tuple[Fact, ...]:
+    """What is known of all abstract tests."""
+    return tuple(fact for facts in answers.values() for fact in facts)

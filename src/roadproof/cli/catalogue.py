@@ -1,0 +1,84 @@
+"""``roadproof catalogue``: what a catalogue of tests shows, what nobody tests, and drives for that."""
+
+import argparse
+from pathlib import Path
+
+from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
+from roadproof.cli.numbers import add_effort_options, add_working_options
+from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.cli.progress import Counter
+
+SUMMARY = "what a catalogue of tests shows, which scenarios and classes nobody tests, drives for these"
+
+_EXAMPLES = """\
+tests:
+  drive files (.json), samples (.csv, .parquet), scenarios of CommonRoad (.xml), vehicles of a recording
+  (01_tracks.csv:12,15), and what a catalogue.toml names, in a folder or by themselves. A catalogue.toml has
+    [[test]]
+    id = "CUT-IN-7"
+    title = "cut-in at high speed"
+    file = "cut-in-7.json"               a concrete test; or an abstract one, a formula:
+    formula = "scenario_4(SV,POV,L)"
+    at_start = { "v_lon(SV)" = "20 m/s .. 30 m/s" }       ranges at the start, and at all times
+    always = { "a_lon(POV)" = "-4 m/s^2 .. 0 m/s^2" }
+    road = "main-2"
+    vehicles = { POV = "truck" }
+    claims = [4, "class_4_main"]         what it is meant to show
+
+examples:
+  roadproof catalogue tests                            what is tested, and what is not
+  roadproof catalogue tests --complete more            drives for what is not, as tests in the folder more
+  roadproof catalogue tests more --out report          matrix.csv, junit.xml, a picture, evidence
+  roadproof catalogue tests --roles any --lanes any --start any
+
+A drive file fixes roles, lane and start; samples fix roles where vehicles are called SV and POV, and are
+looked at in all lanes from all instants on. Exit code 0 where all is tested and each test is what it claims,
+10 where not, 20 where something is in doubt.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("paths", metavar="DIR|FILE", nargs="+", help="folders of tests, or tests")
+    add_specification_options(parser)
+    add_parameter_option(parser)
+    parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1-8")
+    parser.add_argument("--no-classes", action="store_true", help="scenarios only")
+    for name, what in (("roles", "choices of roles"), ("lanes", "lanes"), ("start", "instants")):
+        text = f"look at all {what}, not only at what a test fixes"
+        parser.add_argument(f"--{name}", choices=("fixed", "any"), default="fixed", help=text)
+    parser.add_argument(
+        "--near",
+        type=float,
+        default=0.5,
+        metavar="X",
+        help="tests that show the same and begin within X m and m/s say the same (default: 0.5)",
+    )
+    parser.add_argument("--complete", type=Path, metavar="DIR", help="write drives for what nobody tests")
+    add_effort_options(parser, 60.0, "a drive")
+    add_working_options(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write matrix, JUnit, picture, evidence")
+    parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.analysis.catalogue.showing import Freedom
+    from roadproof.api.cataloguing import catalogue
+
+    home = read_definitions(args, [args.set_name])
+    found = catalogue(
+        *args.paths,
+        among=args.among,
+        using=home,
+        classes=not args.no_classes,
+        freedom=Freedom(args.roles == "any", args.lanes == "any", args.start == "any"),
+        near=args.near,
+        **asking(args, evidence_folder(args.out, args.json)),
+    )
+    code = hand_over(args, found)
+    if args.complete is not None:
+        completed = found.complete(args.complete, args.jobs, Counter())
+        if args.json != "-":
+            print(completed)
+    return code
