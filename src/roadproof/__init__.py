@@ -5,9 +5,9 @@
 <Verdict.PROVED: 'PROVED'>
 
 What is here: definitions (``load``), formulas built with operators (``SV POV L F G U some every …``),
-questions (``prove witness compare overlap order redundancy coverage classify explore monitor evaluate
-simulate check``, and ``ask`` for studies of yours), ``export`` for other tools, and the errors that they
-raise. Each is imported when it is first used.
+questions (``prove witness compare overlap order redundancy coverage classify explore catalogue monitor
+evaluate simulate check``, and ``ask`` for studies of yours), ``export`` for other tools, and the errors that
+they raise. Each is imported when it is first used.
 """
 
 from importlib import import_module
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from roadproof.api.asking import ask as ask
+    from roadproof.api.cataloguing import catalogue as catalogue
     from roadproof.api.checking import check as check
     from roadproof.api.classifying import classify as classify
     from roadproof.api.comparing import compare as compare
@@ -76,6 +77,7 @@ _HOMES = {
     "redundancy": "api.studies",
     "coverage": "api.covering",
     "classify": "api.classifying",
+    "catalogue": "api.cataloguing",
     "explore": "api.exploring",
     "ask": "api.asking",
     "monitor": "api.traces",

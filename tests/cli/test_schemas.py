@@ -54,7 +54,7 @@ OPTIONAL = {
 # Objects that hold something for each of some names.
 MAPS = {
     *("options", "parameters", "values", "vehicles", "lanes", "seconds", "sizes", "detectors", "scenarios"),
-    *("together", "notes", "failed", "elsewhere", "situations"),
+    *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered"),
 }
 Place = tuple[str | int, ...]
 Run = Callable[..., Any]
@@ -286,6 +286,25 @@ def of_classify(run: Run, out: Path, traffic: Path) -> None:
     told = run("classify", "--among", 4, "--on", traffic, "--no-pictures", "--jobs", 1, "--out", out)
     assert told["shares"]
     examine(told, folder=out)
+
+
+def of_catalogue(run: Run, out: Path, traffic: Path) -> None:
+    tests = out / "tests"
+    tests.mkdir()
+    (tests / "one.json").write_bytes(DRIVE.read_bytes())
+    (tests / "torn.json").write_bytes(DRIVE.read_bytes()[:300])
+    (tests / "catalogue.toml").write_text(
+        "[[test]]\nid = 'slow'\nformula = 'scenario_4(SV,POV,L)'\nclaims = [4]\n"
+        "at_start = { 'v_lon(SV)' = '10 m/s .. 20 m/s' }\n"
+        "[[test]]\nid = 'never'\nformula = 'v_lon(SV) > 3 m/s and v_lon(SV) < 2 m/s'\n",
+        "utf-8",
+    )
+    asked = ("--among", 4, "--jobs", 1)
+    told = run("catalogue", tests, *asked, "--no-pictures", "--out", out / "report")
+    assert {x["relation"] for x in told["facts"]} >= {"runs", "implies", "empty"}
+    assert told["faults"]
+    examine(told, folder=out / "report")
+    examine(run("catalogue", tests, *asked, "--no-classes"))
 
 
 def of_explore(run: Run, out: Path, traffic: Path) -> None:

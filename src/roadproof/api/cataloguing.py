@@ -41,7 +41,7 @@ class Catalogued(Studied[Meanings, Facts]):
     concrete: tuple[ConcreteAnswer, ...] = ()
     catalogue: Catalogue = field(default_factory=lambda: Catalogue(()))
     near: float = NEAR
-    pieces: ClassVar[str] = "abstract tests"
+    pieces: ClassVar[str] = "questions about abstract tests"
 
     @cached_property
     def tested(self) -> Tested:

@@ -25,7 +25,7 @@ _PACKAGE = "roadproof.cli"
 # What --help shows first; other sub-commands follow by name.
 _FIRST = (
     *("list", "show", "prove", "check", "witness", "compare", "monitor", "evaluate", "simulate", "export"),
-    *("overlap", "order", "redundancy", "coverage", "classify", "explore"),
+    *("overlap", "order", "redundancy", "coverage", "classify", "explore", "catalogue"),
 )
 
 

@@ -120,10 +120,18 @@ def draw_matrix(tests: Sequence[str], found: Tested) -> dict[str, bytes]:
     for label, target in zip(above.get_xticklabels(), scenarios, strict=True):
         label.set_color("black" if target.tested else _NONE)
     above.set_yticks(range(len(tests)), tests, fontsize=6)
+    wrong = {test for x in (*found.faults, *found.contradictions) for test in x.tests}
+    for label, test in zip(above.get_yticklabels(), tests, strict=True):
+        label.set_color(_NONE if test in wrong else "black")
+    above.grid(color="#eeeeee", lw=0.6)
+    above.set_axisbelow(True)
     above.set_ylim(len(tests) - 0.5, -0.5)
     above.set_xlim(-0.6, len(scenarios) - 0.4)
     above.xaxis.tick_top()
-    above.set_title("scenario (red: no test); dark: shown or implied, light: by some drives", fontsize=8)
+    above.set_title(
+        "scenarios, and tests; red: not tested, not what it claims; light: by some drives of it only",
+        fontsize=8,
+    )
     if classes:
         below, counts = axes[1], [len(x.tested) for x in classes]
         below.bar(range(len(classes)), counts, color=_SURE, width=0.8)

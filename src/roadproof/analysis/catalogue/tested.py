@@ -157,6 +157,9 @@ def _doubts(facts: Sequence[Fact]) -> Iterator[Remark]:
 # --- alike ---------------------------------------------------------------------------------------
 
 
+_SAME = 1e-6  # m, m/s: samples are rounded
+
+
 def _same(concrete: Sequence[ConcreteAnswer], near: float) -> Iterator[Remark]:
     """Tests that show the same and begin nearly as the first of them does."""
     groups: dict[tuple[frozenset[str], tuple[str, ...]], list[list[ConcreteAnswer]]] = {}
@@ -172,7 +175,7 @@ def _same(concrete: Sequence[ConcreteAnswer], near: float) -> Iterator[Remark]:
     for first, *others in (those for known in groups.values() for those in known):
         if others:
             apart = max(_apart(first, x) for x in others)
-            told = f"begin within {apart:.2g} of the first (m, m/s)" if apart else "begin alike"
+            told = f"begin within {apart:.2g} of the first (m, m/s)" if apart > _SAME else "begin alike"
             yield Remark((first.entry.id, *(x.entry.id for x in others)), f"show the same and {told}")
 
 
