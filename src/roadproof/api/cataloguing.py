@@ -227,7 +227,7 @@ def catalogue(
     basis = basis_of(home, effort, timeout)
     made = None
     if classes:
-        division = divide(basis, plan_of(home.alone, numbers), jobs, progress)
+        division = divide(basis, plan_of(home.alone, numbers), jobs, progress, in_few_words=False)
         if division.cut_off:
             told = "; ".join(x.reason for x in division.doubts)
             raise UsageError(f"which classes there are is in doubt ({told}): give more time, or no classes")

@@ -75,9 +75,16 @@ def in_full(job: Refining, reason: str) -> tuple[Cell, str]:
 
 
 def divide(
-    basis: Basis, plan: Plan, processes: int | None = None, progress: Progress | None = None
+    basis: Basis,
+    plan: Plan,
+    processes: int | None = None,
+    progress: Progress | None = None,
+    in_few_words: bool = True,
 ) -> Division:
-    """The cells of every axis of a plan, with ``basis.proof`` units of work for a proof that one is empty."""
+    """The cells of every axis of a plan, with ``basis.proof`` units of work for a proof that one is empty.
+
+    ``in_few_words``: whether each cell is said in few words, which takes longer than to find them all.
+    """
     specification, dividing = basis.specification, _Dividing(basis)
     axes = [what_axis(plan, group, specification) for group in plan.groups]
     if plan.has_places:
@@ -95,6 +102,8 @@ def divide(
         for k, each in enumerate(outlines)
         for cell in each.cells
     ]
+    if not in_few_words:
+        return _division(plan, outlines, jobs, [in_full(job, "") for job in jobs])
     refined = pool.work(dividing.refined, jobs, processes, in_full, progress, "cells")
     with closing(pool.in_order(refined)) as answers:
         cells = list(answers)

@@ -1,0 +1,379 @@
+"""Catalogues of tests: what each shows is what the judge says one by one, what is missing is found."""
+
+import json
+import shutil
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as xml
+
+import pytest
+
+import roadproof as rp
+from roadproof.analysis.catalogue import meaning, showing, tested
+from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
+from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.reading import read_catalogue
+from roadproof.analysis.catalogue.showing import DANGER, Freedom, show
+from roadproof.analysis.classify.classes import plan_of
+from roadproof.analysis.classify.divide import Division, divide
+from roadproof.api import cataloguing
+from roadproof.api.cataloguing import Catalogued, catalogue
+from roadproof.api.settings import basis_of
+from roadproof.cli.main import main
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
+from roadproof.judge.algebraic import approximate
+from roadproof.judge.exact import judge
+from roadproof.spec.bind import bind
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import Scenario, applied, name_of, vehicles_of
+
+HOME = rp.load()
+EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
+CLASSES = {
+    **{"cut-in": "class_1", "both-change": "class_1_5", "from-behind": "class_3", "braking": "class_4"},
+    **{"both-change-alone": "class_5", "change-behind-slower": "class_4_8", "lead": "class_8"},
+    **{"class_4_6_8": "class_4_6_8", "class_6_8": "class_6_8", "seven": "class_7", "cut-out": "class_2"},
+}
+"""A drive of the example for each class of 1 to 8 that it has."""
+DRIVES = [EXAMPLE / "drives" / f"{name}.json" for name in CLASSES]
+NUMBERS = tuple(range(1, 9))
+FIXED, ANY = Freedom(), Freedom(True, True, True)
+
+
+@pytest.fixture(scope="module")
+def division() -> Division:
+    return divide(basis_of(HOME, 60.0, None), plan_of(HOME.alone, NUMBERS), 1, in_few_words=False)
+
+
+@pytest.fixture(scope="module")
+def asked(division: Division) -> Asked:
+    return Asked(HOME.alone, NUMBERS, division.classes, HOME.all_values())
+
+
+def names(asked: Asked, path: Path, freedom: Freedom = FIXED) -> set[str]:
+    answer = show(Concrete("x", str(path)), asked, freedom)
+    assert not answer.fault
+    return {*answer.names}
+
+
+@pytest.fixture(scope="module")
+def queries(asked: Asked) -> dict[str, Query]:
+    """Each scenario, class and danger by itself."""
+    assert asked.classes is not None
+    found = {name_of(n): applied(HOME.alone, Scenario(n, "base")) for n in NUMBERS}
+    found |= {x.name: asked.class_query(x.name) for x in asked.classes.all()}
+    return found | {DANGER: HOME.read("initSafe(SV,POV) and F danger(SV,POV)")}
+
+
+def one_by_one(queries: Mapping[str, Query], path: Path) -> set[str]:
+    file = load_drive(path)
+    drive = file.drive
+    if "POV2" in drive.vehicles:
+        queries = {**queries, DANGER: HOME.read("initSafe(SV,POV2) and F danger(SV,POV2)")}
+    found = set()
+    for name, query in queries.items():
+        if set(query.vehicles) <= set(drive.vehicles):
+            lanes = dict.fromkeys(query.lanes, file.lanes["L"])
+            if judge(bind(query.formula, file.road, lanes, HOME.all_values()), drive).holds:
+                found.add(name)
+    return found
+
+
+def test_all_at_once_is_one_by_one(asked: Asked, queries: dict[str, Query]) -> None:
+    shown = {path.stem: names(asked, path) for path in DRIVES}
+    assert shown == {path.stem: one_by_one(queries, path) for path in DRIVES}
+    assert {name: [x for x in those if x.startswith("class_")] for name, those in shown.items()} == {
+        name: [one] for name, one in CLASSES.items()
+    }
+
+
+def written(path: Path, file: DriveFile) -> Path:
+    path.write_text(json.dumps(drive_data(file, {})), "utf-8")
+    return path
+
+
+def exchanged(file: DriveFile) -> DriveFile:
+    """SV is called POV, and POV is called SV."""
+    other = {"SV": "POV", "POV": "SV"}
+    return replace(
+        file, drive=replace(file.drive, vehicles={other[n]: m for n, m in file.drive.vehicles.items()})
+    )
+
+
+def test_roles_are_fixed_or_any(asked: Asked, tmp_path: Path) -> None:
+    path = EXAMPLE / "drives" / "braking.json"
+    turned = written(tmp_path / "turned.json", exchanged(load_drive(path)))
+    assert names(asked, path) == {"scenario_4", "class_4", DANGER}
+    assert "scenario_4" not in names(asked, turned)
+    assert "scenario_4" in names(asked, turned, Freedom(roles=True))
+
+
+def test_lanes_are_fixed_or_any(asked: Asked, tmp_path: Path) -> None:
+    file = load_drive(EXAMPLE / "drives" / "braking.json")
+    other = next(lane for lane in file.road.lanes if lane != file.lanes["L"])
+    moved = written(tmp_path / "moved.json", replace(file, lanes={"L": other}))
+    assert "scenario_4" not in names(asked, moved)
+    assert "scenario_4" in names(asked, moved, Freedom(lanes=True))
+
+
+def test_instants_are_those_of_the_judge(asked: Asked) -> None:
+    """All instants count: each thing is shown from the instant on at which it is true first."""
+    more = set()
+    for path in (DRIVES[0], DRIVES[4]):
+        file = load_drive(path)
+        answer = show(Concrete("x", str(path)), asked, Freedom(start=True))
+        more |= answer.names - names(asked, path)
+        for number in NUMBERS:
+            query = applied(HOME.alone, Scenario(number, "base"))
+            if set(query.vehicles) <= set(file.drive.vehicles):
+                formula = bind(query.formula, file.road, file.lanes, asked.values)
+                spans = judge(formula, file.drive).truth(formula).spans()
+                first = [x.at for x in answer.shown if x.what == name_of(number)]
+                assert first == [approximate(span.begin.point) for span in spans[:1]]
+    assert more >= {"scenario_6", "scenario_8"}  # from just after the start on
+
+
+@pytest.mark.parametrize("samples", ["braking.csv", "cut-in.xml"])
+def test_samples_show_what_their_drive_shows(samples: str, asked: Asked) -> None:
+    path = EXAMPLE / "samples" / samples
+    drive = EXAMPLE / "drives" / f"{path.stem}.json"
+    answer = show(Concrete("x", str(path)), asked, FIXED)
+    assert {x.what for x in answer.shown if x.at == 0} >= names(asked, drive)
+    assert not answer.dense
+
+
+def test_what_is_steady_shows_nothing(asked: Asked) -> None:
+    assert names(asked, EXAMPLE / "samples" / "steady.csv", ANY) == set()
+
+
+# --- planted faults: each is noticed by the comparison above, or by the answer itself --------------
+
+
+def a_row_is_lost(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = Asked.shown
+    monkeypatch.setattr(Asked, "shown", lambda s, r, true: shown(s, r, frozenset(true - {Row(4)})))
+
+
+def scenarios_in_other_lanes(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(showing, "_lanes", lambda file, free: file.road.lanes[-1:])
+
+
+def all_instants(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+    instants = showing._instants
+    monkeypatch.setattr(showing, "_instants", lambda truths, file, free: instants(truths, file, True))
+
+
+@pytest.mark.parametrize("plant", [a_row_is_lost, scenarios_in_other_lanes, all_instants])
+def test_a_planted_fault_is_noticed(
+    plant: Callable[[Asked, pytest.MonkeyPatch], None],
+    asked: Asked,
+    queries: dict[str, Query],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plant(asked, monkeypatch)
+    assert any(names(asked, path) != one_by_one(queries, path) for path in reversed(DRIVES[:5]))
+
+
+def test_a_drive_in_no_class_is_a_contradiction(asked: Asked) -> None:
+    assert asked.classes is not None
+    what = tuple(tuple(c for c in cells if c.holds != (4,)) for cells in asked.classes.what)
+    fewer = Asked(asked.specification, NUMBERS, replace(asked.classes, what=what), asked.values)
+    answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), fewer, FIXED)
+    assert NOWHERE in answer.names
+    found = tested.tested(fewer, [answer], [], [], tested.targets_of(fewer), 0.5)
+    assert [x.tests for x in found.contradictions] == [("x",)]
+
+
+# --- what is asked for as a whole -------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def few(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A drive for every class of 1 to 8 but four."""
+    folder = tmp_path_factory.mktemp("few")
+    for path in DRIVES:
+        if path.stem not in ("seven", "cut-out"):
+            shutil.copy(path, folder)
+    return folder
+
+
+def ask(*paths: Path, **more: Any) -> Catalogued:
+    return catalogue(*paths, among="1-8", jobs=1, **more)
+
+
+def test_what_is_missing_is_made_and_then_nothing_is_missing(
+    few: Path, tmp_path: Path, division: Division, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cataloguing, "divide", lambda *_, **__: division)
+    missing = {"class_3_6", "class_6", "class_7", "scenario_7", "class_2", "scenario_2"}
+    found = ask(few)
+    assert {*found.missing} == missing
+    assert found.exit_code == 10
+    made = found.complete(tmp_path / "more", jobs=1)
+    assert {x.target for x in made.completions if x.drive} == missing - {"scenario_2", "scenario_7"}
+    assert "4 drives" in str(made)
+    assert main(["check", str(tmp_path / "more"), "--jobs", "1"]) == 0
+    whole = ask(few, tmp_path / "more")
+    assert (whole.missing, whole.tested.faults, whole.exit_code) == ((), (), 0)
+    assert str(whole).endswith("complete")
+    (tmp_path / "more" / "class_6.json").unlink()
+    (tmp_path / "more" / "catalogue.toml").unlink()
+    assert ask(few, tmp_path / "more").missing == ("class_6",)
+
+
+def test_tables_and_reports(few: Path) -> None:
+    found = ask(few, classes=False)
+    header, *rows = (line.split(",") for line in found.to_csv().splitlines())
+    assert header == ["test", *(f"scenario_{n}" for n in NUMBERS)]
+    assert {row[0]: row[4] for row in rows}["braking"] == "x"
+    suites = xml.fromstring(found.to_junit())
+    failing = [case.get("name") for case in suites.iter("testcase") if case.find("failure") is not None]
+    assert failing == ["scenario_2", "scenario_7"]
+    assert found.verdicts["scenario_2"] == "GAPS"
+    assert found.to_frame().height == 8
+    assert found.plot().png.startswith(b"\x89PNG")
+
+
+ABSTRACT = """
+[[test]]
+id = "wide"
+formula = "scenario_4(SV,POV,L)"
+claims = [4]
+[[test]]
+id = "narrow"
+formula = "scenario_4(SV,POV,L)"
+at_start = { "v_lon(SV)" = "20 m/s .. 30 m/s" }
+always = { "a_lon(SV)" = "-9 m/s^2 .. 9 m/s^2" }
+claims = ["scenario_4"]
+[[test]]
+id = "other"
+formula = "scenario_3(SV,POV,L)"
+claims = [4]
+[[test]]
+id = "never"
+formula = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
+"""
+
+
+@pytest.fixture(scope="module")
+def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("abstract")
+    (folder / "catalogue.toml").write_text(ABSTRACT, "utf-8")
+    found = catalogue(folder, among="3-4", classes=False, jobs=1, out=folder / "report")
+    relations = {(x.test, x.other): x.relation for x in tested.all_facts(found.found.answers)}
+    assert relations == {
+        ("wide", ""): "runs",
+        ("wide", "scenario_3"): "excludes",
+        ("wide", "scenario_4"): "implies",
+        ("narrow", ""): "runs",
+        ("narrow", "scenario_3"): "excludes",
+        ("narrow", "scenario_4"): "implies",
+        ("narrow", "wide"): "implies",
+        ("other", ""): "runs",
+        ("other", "scenario_3"): "implies",
+        ("other", "scenario_4"): "excludes",
+        ("never", ""): "empty",
+    }
+    assert [(x.tests, x.told) for x in found.tested.faults] == [
+        (("other",), "claims scenario_4, which it excludes: that is proved"),
+        (("never",), "can never be run: that is proved"),
+    ]
+    assert found.missing == ()
+    return folder
+
+
+def test_answers_about_formulas_are_kept_and_checked(meant: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert main(["check", str(meant / "report"), "--jobs", "1"]) == 0
+    monkeypatch.setattr(meaning, "answer", lambda search: pytest.fail("it is kept"))
+    again = catalogue(meant, among="3-4", classes=False, jobs=1, out=meant / "report")
+    assert len(again.evidence) == 11
+
+
+@pytest.mark.parametrize(
+    "forged",
+    [
+        {"relation": "excludes"},
+        {"other": "scenario_3"},
+        {"premise": "true"},
+        {"conclusion": "scenario_3(SV, POV, L)"},
+        {"formula": "scenario_4(SV, POV, L) -> scenario_3(SV, POV, L)"},
+        {"verdict": "WITNESSED"},
+    ],
+    ids=lambda x: next(iter(x)),
+)
+def test_forged_facts_are_refused(forged: Mapping[str, str], meant: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "report"
+    shutil.copytree(meant / "report", folder)
+    shutil.rmtree(folder / "answers")
+    (folder / "question.json").unlink()
+    index = json.loads((folder / "index.json").read_text("utf-8"))
+    fact = next(x for x in index["facts"] if (x["test"], x["other"]) == ("wide", "scenario_4"))
+    fact.update(forged)
+    (folder / "index.json").write_text(json.dumps(index), "utf-8")
+    assert main(["check", str(folder), "--jobs", "1"]) in (3, 10)
+
+
+def test_a_doubt_is_a_doubt(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "catalogue.toml").write_text("[[test]]\nid='x'\nformula='scenario_4(SV,POV,L)'\n", "utf-8")
+
+    def lost(study: meaning.Meanings, piece: Any) -> dict[str, meaning.Facts]:
+        return study.doubt(piece, "its process was ended")
+
+    monkeypatch.setattr(meaning.Meanings, "settle", lost)
+    found = catalogue(tmp_path, among="4", classes=False, jobs=1)
+    assert found.exit_code == 20
+    assert "whether it can be run is in doubt: its process was ended" in str(found)
+
+
+# --- mistakes ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "there is no [[test]]"),
+        ("[[test]]\nid='x'", "either a file or a formula"),
+        ("[[test]]\nid='x'\nfile='a.json'\nformula='true'", "either a file or a formula"),
+        ("[[test]]\nid='x'\nfile='a.json'\nroad='main-2'", "road is for tests with a formula"),
+        ("[[test]]\nid='x'\nformula='true'\ncolour='red'", "'colour' is not known"),
+        ("[[test]]\nid=3\nformula='true'", "id=3"),
+        ("[[test]]\nid='x'\nformula='true'\nclaims=[99]", "there is no scenario '99'"),
+        ("[[test]]\nid='x'\nformula='true'\nclaims=4", "write a list"),
+        ("[[test]]\nid='x'\nformula='true'\nclaims=['1-8']", "names 8 scenarios"),
+        ("[[test]]\nid='x'\nformula='true'\nclaims=['a b']", "no number of a scenario and no name"),
+        ("[[test]]\nid='x'\nformula='v_lon(SV) >'", "test 1, formula, line 1, column"),
+        ("[[test]]\nid='x'\nformula='true'\nat_start={'v_lon(SV)'='20 m/s'}", "write a range"),
+        ("[[test]]\nid='x'\nformula='true'\nat_start={'v_lon(SV)'='20 m .. 30 m'}", "at_start"),
+        ("[[test]]\nid='x'\nformula='true'\n[[test]]\nid='x'\nformula='true'", "two tests are called so"),
+        ("[[test]]\nid='x'\nformula='true'\nroad='moon'", "there is no road 'moon'"),
+        ("other = 1", "'other' is not known"),
+    ],
+)
+def test_mistakes_in_a_catalogue(text: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "catalogue.toml").write_text(text, "utf-8")
+    with pytest.raises(RoadproofError, match=r".*") as error:
+        read_catalogue([tmp_path], HOME.alone)
+    assert told in str(error.value)
+
+
+def test_a_folder_without_tests_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no test in it"):
+        read_catalogue([tmp_path], HOME.alone)
+
+
+def test_what_is_no_test_is_counted(tmp_path: Path) -> None:
+    """Samples beside their drive are no test of their own; indices and certificates are none."""
+    drive = EXAMPLE / "drives" / "braking.json"
+    shutil.copy(drive, tmp_path / "a.json")
+    shutil.copy(EXAMPLE / "samples" / "braking.csv", tmp_path / "a.csv")
+    (tmp_path / "index.json").write_text("{}", "utf-8")
+    found = read_catalogue([tmp_path], HOME.alone)
+    assert [x.id for x in found.entries] == ["a"]
+    assert "2 more files" in found.notes[0]
+
+
+def test_vehicles_of_scenarios_are_known(asked: Asked) -> None:
+    assert {*asked.roles} == {vehicles_of(HOME.alone, Scenario(n, "base")) for n in NUMBERS}
