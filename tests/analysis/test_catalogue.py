@@ -4,6 +4,7 @@ import json
 import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as xml
@@ -326,6 +327,24 @@ def test_a_doubt_is_a_doubt(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
     found = catalogue(tmp_path, among="4", classes=False, jobs=1)
     assert found.exit_code == 20
     assert "whether it can be run is in doubt: its process was ended" in str(found)
+
+
+def test_other_values_of_parameters_are_told(asked: Asked) -> None:
+    calm = Asked(HOME.alone, NUMBERS, None, {**asked.values, "rho": Fraction(3)})
+    answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), calm, FIXED)
+    found = tested.tested(calm, [answer], [], [], tested.targets_of(calm), 0.5)
+    (fault,) = found.faults
+    assert fault.told == (
+        "claims scenario_4, and shows no scenario; its file has other values of rho than are asked for"
+    )
+
+
+def test_files_of_one_name_are_two_tests(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        shutil.copy(EXAMPLE / "drives" / "braking.json", tmp_path / name)
+    found = read_catalogue([tmp_path / "a", tmp_path / "b"], HOME.alone)
+    assert [x.id for x in found.entries] == ["braking", (tmp_path / "b" / "braking.json").as_posix()]
 
 
 # --- mistakes ---------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ are numbers of scenarios and names of classes that the test is meant to show.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +42,7 @@ def read_catalogue(paths: Iterable[Path | str], specification: Specification) ->
         if is_pair(str(path)):
             entries.append(Concrete(str(path), str(path)))
         elif Path(path).is_dir():
-            found = _folder(Path(path), specification)
+            found = _folder(Path(path), specification, {entry.id for entry in entries})
             entries += found.entries
             notes += found.notes
         else:
@@ -73,7 +73,8 @@ def _file(path: Path, specification: Specification) -> list[Entry]:
     return [Concrete(path.stem, str(path))]
 
 
-def _folder(folder: Path, specification: Specification) -> Catalogue:
+def _folder(folder: Path, specification: Specification, taken: Collection[str]) -> Catalogue:
+    """The tests of a folder. A file that nobody names is called as there, or by its path where that is taken."""
     entries: list[Entry] = []
     for path in sorted(folder.rglob(FILE_NAME)):
         entries += _listed(path, specification)
@@ -82,7 +83,9 @@ def _folder(folder: Path, specification: Specification) -> Catalogue:
     others = 0
     for path in sorted(x for x in folder.rglob("*") if x.is_file() and x not in named):
         if is_test(path):
-            entries.append(Concrete(path.relative_to(folder).with_suffix("").as_posix(), str(path)))
+            name = path.relative_to(folder).with_suffix("").as_posix()
+            known = {*taken, *(x.id for x in entries)}
+            entries.append(Concrete(path.as_posix() if name in known else name, str(path)))
         elif path.suffix in (".json", ".csv", ".parquet", ".xml", ".xosc"):
             others += 1
     told = f"{folder}: {others} more files of data are no tests, such as indices, certificates and recordings"

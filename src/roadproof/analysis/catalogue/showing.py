@@ -56,7 +56,8 @@ class Shown:
 class ConcreteAnswer:
     """What a test shows. ``begins``: how it begins, numbers by name; ``claims``: with those of its file.
 
-    ``dense``: whether it was judged in dense time. ``fault``: why it could not be read.
+    ``dense``: whether it was judged in dense time; ``others``: parameters that its file gives other values
+    than are asked for. ``fault``: why it could not be read.
     """
 
     entry: Concrete
@@ -64,6 +65,7 @@ class ConcreteAnswer:
     shown: tuple[Shown, ...] = ()
     begins: Mapping[str, float] = field(default_factory=dict)
     dense: bool = False
+    others: tuple[str, ...] = ()
     fault: str = ""
 
     @property
@@ -91,7 +93,8 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
         claims = (name_of(file.scenario),)
     states = {name: (m.s, m.d, m.v_lon) for name, m in file.drive.vehicles.items()}
     begins = _begins({name: tuple(map(float, state)) for name, state in states.items()})
-    return ConcreteAnswer(entry, claims, shown_by(file, asked, freedom), begins, True)
+    others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
+    return ConcreteAnswer(entry, claims, shown_by(file, asked, freedom), begins, True, others)
 
 
 def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:

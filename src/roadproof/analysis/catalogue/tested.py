@@ -116,10 +116,17 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], words: Mapping[str, str]) -
             if claim not in words:
                 yield Remark((x.entry.id,), f"claims {claim}, {_NO_TARGET}")
             elif claim not in x.names:
-                yield Remark((x.entry.id,), f"claims {claim}, and shows {', '.join(shown) or 'no scenario'}")
+                told = f"claims {claim}, and shows {', '.join(shown) or 'no scenario'}"
+                yield Remark((x.entry.id,), told + _with_other_values(x))
         if not shown and not x.claims:
             more = ", though danger comes: a gap of the scenarios" if DANGER in x.names else ""
             yield Remark((x.entry.id,), f"shows no scenario{more}")
+
+
+def _with_other_values(answer: ConcreteAnswer) -> str:
+    if not answer.others:
+        return ""
+    return f"; its file has other values of {', '.join(answer.others)} than are asked for"
 
 
 _NO_TARGET = "but there is no scenario and no class of that name: classes that are proved empty are left out"
@@ -135,6 +142,8 @@ def _of_abstract(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterato
         if alone is not None and alone.relation == "empty":
             yield Remark((entry.id,), "can never be run: that is proved")
             continue
+        if alone is not None and alone.relation == "runs" and not entry.claims and not _says_something(known):
+            yield Remark((entry.id,), "shows no scenario")
         for claim in entry.claims:
             fact: Fact | None = known.get(claim)
             if fact is None and alone is not None and claim in alone.also:
@@ -142,6 +151,11 @@ def _of_abstract(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterato
             if fact is None or fact.relation in ("excludes", "open"):
                 told = "which it excludes: that is proved" if fact and fact.relation == "excludes" else _NONE
                 yield Remark((entry.id,), f"claims {claim}, {told}")
+
+
+def _says_something(known: Mapping[str, Fact]) -> bool:
+    """Whether a test implies a scenario, or may show one."""
+    return any(x.relation in ("implies", "shows", "open") for other, x in known.items() if other)
 
 
 _NONE = "which no drive of it shows that was found"
