@@ -190,10 +190,10 @@ def _read(
         if road is not None:
             raise UsageError(f"--road: {on} is on the road of its recording; leave --road out")
         return read_pair(str(on), frames)
-    if Path(on).suffix in (".csv", ".parquet") and not TRACK_FILES.fullmatch(Path(on).name):
+    if Path(on).suffix in (".csv", ".parquet", ".xosc") and not TRACK_FILES.fullmatch(Path(on).name):
         return read_samples(Path(on), None if road is None else as_road(road))
     raise InputError(
-        f"{on}: a trace is a drive (.json), samples (.csv or .parquet), or vehicles of a recording "
+        f"{on}: a trace is a drive (.json), samples (.csv, .parquet or .xosc), or vehicles of a recording "
         "such as highd/01_tracks.csv:12,15"
     )
 

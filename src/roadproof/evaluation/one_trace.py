@@ -15,6 +15,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.evaluation.traces import gather
+from roadproof.formats import openscenario
 from roadproof.formats.pairs import row_of
 from roadproof.formats.recording import Bools, Integers, Recording
 from roadproof.formats.samples import HEADER, ROAD_ENDING, read_columns
@@ -154,11 +155,14 @@ def sample_drive(drive: Drive, road: Road, horizon: Fraction, dt: Fraction, sour
 
 
 def read_samples(path: Path, road: Road | None = None) -> OneTrace:
-    """The trace of a CSV or Parquet file (``formats.samples``), of which every vehicle is seen all the time.
+    """The trace of a file in which every vehicle is seen all the time: CSV, Parquet, OpenSCENARIO.
 
-    ``road``: by default that beside the file, or else main-2. Raises ``InputError`` with file, row, column,
-    value and rule.
+    ``road``: by default that which the file names or that beside it, or else main-2. Raises ``InputError``
+    with file, row, column, value and rule.
     """
+    if path.suffix == ".xosc":
+        table, named, _ = openscenario.read_columns(path)
+        return of_columns({name: table[name].tolist() for name in HEADER}, road or named, str(path))
     table = read_columns(path)
     if road is None:
         known = beside(path, ROAD_ENDING)

@@ -6,6 +6,7 @@ in the form of models/roads, says where its lanes are.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from roadproof.formats.plausible import (
 )
 from roadproof.formats.recording import Floats, Integers, Recording, with_notes
 from roadproof.formats.source import TRACK_FILES, Files, Format, beside, first_line, with_suffix
-from roadproof.formats.straight import of_road, place
+from roadproof.formats.straight import StraightRoad, of_road, place
 from roadproof.formats.table import Kind, Table, read_table
 from roadproof.signals import RECORDED, SIZES
 from roadproof.world.models import load_recorded_road
@@ -51,11 +52,16 @@ def read_recording(path: Path) -> Recording:
 
     Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
-    table, ids, notes = _by_vehicle(read_columns(path))
     road_file = path.with_name(f"{path.stem}{ROAD_ENDING}")
     if not road_file.is_file():
         raise InputError(f"{path}: {road_file.name} is missing beside it, which says where the lanes are")
     road = of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
+    return recording_of(read_columns(path), road, path.stem)
+
+
+def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = ()) -> Recording:
+    """The recording of columns called as in ``HEADER``, and ``kind``, on a road. Raises ``InputError``."""
+    table, ids, numbered = _by_vehicle(columns)
     first = np.flatnonzero(np.diff(ids, prepend=-1) != 0)
     start = np.append(first, table.rows)
     rate, frames, begin = _frames(table, ids)
@@ -67,7 +73,7 @@ def read_recording(path: Path) -> Recording:
         road, np.full(table.rows, DIRECTION), *(table[x] for x in ("s", "d")), *(table[x] for x in SIZES)
     )
     recording = Recording(
-        name=path.stem,
+        name=name,
         rate=rate,
         lanes=road.lanes,
         beside=road.beside,
@@ -89,7 +95,7 @@ def read_recording(path: Path) -> Recording:
         zones=placed.zones,
         lanelets=road.lanelets,
         inside=placed.inside,
-        notes=(*notes, *begin),
+        notes=(*notes, *numbered, *begin),
     )
     return with_notes(recording, _check_plausible(table, recording))
 
@@ -107,7 +113,7 @@ def _by_vehicle(table: Table) -> tuple[Table, Integers, tuple[str, ...]]:
     ids: Integers = number[index]
     order = np.argsort(ids, kind="stable")
     columns = {name: values[order] for name, values in table.columns.items()}
-    return Table(table.path, columns, table.rows, order), ids[order], notes
+    return replace(table, columns=columns, places=order), ids[order], notes
 
 
 def _frames(table: Table, ids: Integers) -> tuple[int, Integers, tuple[str, ...]]:

@@ -4,13 +4,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.formats import commonroad, exid, highd, samples
+from roadproof.formats import commonroad, exid, highd, openscenario, samples
 from roadproof.formats.source import Format, RecordingSource
 
 FORMATS: tuple[Format, ...] = (
     highd.FORMAT,
     exid.FORMAT,
     commonroad.FORMAT,
+    openscenario.FORMAT,
     samples.CSV,
     samples.PARQUET,
 )

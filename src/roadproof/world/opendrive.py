@@ -74,6 +74,19 @@ def read_lanelets(path: Path) -> tuple[Lanelet, ...]:
     return tuple(_lanelets(sections, [*begins, length], where))
 
 
+def origin_of(path: Path) -> tuple[float, float, float]:
+    """Where the reference line of a straight road begins in the plane (m), and its heading (rad).
+
+    Raises ``InputError``.
+    """
+    road = read_xml(path, "OpenDRIVE").find("road")
+    first = None if road is None else road.find("planView/geometry")
+    if first is None:
+        raise InputError(f"{path}: the road has no geometry")
+    x, y, heading = (float(_number(first, name, f"{path}, geometry 1")) for name in ("x", "y", "hdg"))
+    return x, y, heading
+
+
 def _check_straight(road: Element, length: Fraction, where: str) -> None:
     """Raises ``InputError`` for a plan view that is not one straight line."""
     pieces = road.findall("planView/geometry")

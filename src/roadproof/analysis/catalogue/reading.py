@@ -34,7 +34,7 @@ def read_catalogue(paths: Iterable[Path | str], specification: Specification) ->
     """The tests of folders and files, in order. Raises ``InputError``, ``TextError``.
 
     A folder's tests are those of each ``catalogue.toml`` in it, and every drive file, file of samples and
-    scenario of CommonRoad that none of these names.
+    scenario of CommonRoad or OpenSCENARIO that none of these names.
     """
     entries: list[Entry] = []
     notes: list[str] = []
@@ -52,7 +52,7 @@ def read_catalogue(paths: Iterable[Path | str], specification: Specification) ->
         told = ", ".join(map(str, paths))
         raise InputError(
             f"{told}: no test in it; tests are drive files (.json), samples (.csv, .parquet), scenarios of "
-            f"CommonRoad (.xml), and what a {FILE_NAME} names"
+            f"CommonRoad (.xml) and OpenSCENARIO (.xosc), and what a {FILE_NAME} names"
         )
     return Catalogue(tuple(entries), tuple(notes))
 
@@ -74,7 +74,7 @@ def _file(path: Path, specification: Specification) -> list[Entry]:
 
 
 def _folder(folder: Path, specification: Specification, taken: Collection[str]) -> Catalogue:
-    """The tests of a folder. A file that nobody names is called as there, or by its path where that is taken."""
+    """The tests of a folder; files that nobody names are called as in it, or by path if that is taken."""
     entries: list[Entry] = []
     for path in sorted(folder.rglob(FILE_NAME)):
         entries += _listed(path, specification)
@@ -105,6 +105,8 @@ def is_test(path: Path) -> bool:
             return header >= {*HEADER} and not TRACK_FILES.fullmatch(path.name) and _is_alone(path)
         case ".parquet":
             return _is_alone(path)
+        case ".xosc":
+            return "<OpenSCENARIO" in _beginning(path)
         case ".xml":
             return "<commonRoad" in _beginning(path)
         case _:

@@ -184,7 +184,7 @@ def _traces(entry: Concrete, freedom: Freedom) -> Iterator[tuple[OneTrace, Mappi
         ids = entry.place.rpartition(":")[2].split(",")
         trace = read_pair(entry.place)
         yield trace, dict(zip(trace.lanes, ids, strict=True))
-    elif path.suffix in (".csv", ".parquet"):
+    elif path.suffix in (".csv", ".parquet", ".xosc"):
         yield read_samples(path), {}
     else:
         yield from _all_of(find_source(path).read(), entry.place)
