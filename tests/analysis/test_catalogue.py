@@ -16,7 +16,7 @@ from roadproof.analysis.catalogue import meaning, showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.analysis.catalogue.showing import DANGER, Freedom, show
+from roadproof.analysis.catalogue.showing import DANGER, GAP, Freedom, show
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import Division, divide
 from roadproof.api import cataloguing
@@ -148,6 +148,19 @@ def test_samples_show_what_their_drive_shows(samples: str, asked: Asked) -> None
 
 def test_what_is_steady_shows_nothing(asked: Asked) -> None:
     assert names(asked, EXAMPLE / "samples" / "steady.csv", ANY) == set()
+
+
+def test_danger_that_no_scenario_covers_is_a_gap(asked: Asked, tmp_path: Path) -> None:
+    """A leader that brakes, among scenarios that know of cut-ins only."""
+    braking = load_drive(EXAMPLE / "drives" / "braking.json")
+    turned = show(Concrete("x", str(written(tmp_path / "a.json", exchanged(braking)))), asked, FIXED)
+    assert DANGER in turned.names
+    assert GAP not in turned.names  # it is a scenario in other roles
+    few = Asked(HOME.alone, (1, 2), None, asked.values)
+    gap = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), few, FIXED)
+    assert gap.names == {DANGER, GAP}
+    (fault,) = tested.tested(few, [replace(gap, claims=())], [], [], tested.targets_of(few), 0.5).faults
+    assert "a gap, which no scenario covers" in fault.told
 
 
 # --- planted faults: each is noticed by the comparison above, or by the answer itself --------------

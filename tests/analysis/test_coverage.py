@@ -9,7 +9,6 @@ import pytest
 from asking import prove
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage import needed
-from roadproof.analysis.coverage.catalogue import HORIZON, catalogue
 from roadproof.analysis.coverage.claims import (
     claims_of,
     missed,
@@ -21,6 +20,7 @@ from roadproof.analysis.coverage.claims import (
 )
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.needed import find_need, replaced_by
+from roadproof.analysis.coverage.simple import HORIZON, simple_drives
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.cli.main import main
 from roadproof.effort import Effort
@@ -156,7 +156,7 @@ def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) ->
     covered = prove_claim(basis, claims_of(COMPLETE)[0])
     assert covered.verdict is Verdict.UNKNOWN
     assert "cut off by the clock" in covered.reason
-    monkeypatch.setattr(needed, "catalogue", lambda *_: ())
+    monkeypatch.setattr(needed, "simple_drives", lambda *_: ())
     assert find_need(basis, "cutIn").verdict is Verdict.UNKNOWN
 
 
@@ -171,7 +171,7 @@ def test_a_trial_set_with_nothing_of_a_wider_set_is_not_that_set() -> None:
     options = trials.specification.options
     files = (
         DriveFile(None, "ext", "", HORIZON, {}, trials.values, options, road, drive)
-        for drive in catalogue(road, car)
+        for drive in simple_drives(road, car)
     )
     file = next(x for x in files if trials.misses(x, "complete", ()))
     assert not trials.misses(file, "complete", None)

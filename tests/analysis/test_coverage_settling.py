@@ -11,7 +11,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.answers import Answers
 from roadproof.analysis.coverage.claims import in_either_role, missed, sectors_of
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap, find_in_catalogue
+from roadproof.analysis.coverage.found import FoundGap, find_among_simple
 from roadproof.analysis.coverage.settling import Settling
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.cli.main import main
@@ -33,8 +33,8 @@ TRIALS = Trials(EXT, SURVEY.wider)
 
 @pytest.fixture(scope="module")
 def known() -> list[FoundGap]:
-    """Gaps of ext from a part of the catalogue."""
-    return find_in_catalogue(load_road("main-2"), 0, 61, CLASSES, TRIALS)
+    """Gaps of ext from some of the simple drives."""
+    return find_among_simple(load_road("main-2"), 0, 61, CLASSES, TRIALS)
 
 
 def settle(group: GapGroup, known: list[FoundGap] | None = None) -> Answers:
@@ -45,7 +45,7 @@ def group(name: str) -> GapGroup:
     return next(x for x in CLASSES.groups() if x.title == name)
 
 
-def test_the_catalogue_stays_within_the_limits_and_reaches_danger(known: list[FoundGap]) -> None:
+def test_simple_drives_stay_within_the_limits_and_reach_danger(known: list[FoundGap]) -> None:
     limits = load_vehicle("car")
     assert len(known) >= 5
     for found in known:

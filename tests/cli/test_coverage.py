@@ -46,9 +46,9 @@ def claims(*texts: str) -> Callable[[Specification], tuple[Query, ...]]:
 
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Few classes, one claim, a part of the catalogue; what comes is the roads that were looked up in it."""
+    """Few classes, one claim, some of the simple drives; what comes is the roads they were looked up for."""
     roads: list[str] = []
-    look_up = study.find_in_catalogue
+    look_up = study.find_among_simple
 
     def some_drives(road: Road, start: int, step: int, classes: GapClasses, trials: Trials) -> list[FoundGap]:
         roads.append(road.name)
@@ -56,7 +56,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
     monkeypatch.setattr(study, "claims_of", claims("F danger(SV,POV) -> scenario_1(SV,POV,L)"))
     monkeypatch.setattr(Coverage, "groups", components(*WANTED))
-    monkeypatch.setattr(study, "find_in_catalogue", some_drives)
+    monkeypatch.setattr(study, "find_among_simple", some_drives)
     return roads
 
 
@@ -96,7 +96,7 @@ def neither_gap_nor_proof(monkeypatch: pytest.MonkeyPatch, out: Path) -> tuple[i
     some = ("danger(SV,POV) -> danger(POV,SV)", "F danger(SV,POV) -> scenario_1(SV,POV,L)")
     monkeypatch.setattr(study, "claims_of", claims(*some))
     monkeypatch.setattr(Coverage, "groups", components("behaviourSV_8"))
-    monkeypatch.setattr(study, "find_in_catalogue", lambda *_: [])
+    monkeypatch.setattr(study, "find_among_simple", lambda *_: [])
     code = run(out, "--no-pictures")
     data = json.loads((out / "index.json").read_text())
     assert data["gaps"] == []
@@ -174,7 +174,7 @@ def test_claims_and_needs_are_kept_too(monkeypatch: pytest.MonkeyPatch, tmp_path
 
 
 def test_what_is_lost_is_in_doubt(few: list[str]) -> None:
-    """Whatever job ends its process twice: a claim, a definition, a part of the catalogue, a component."""
+    """Whatever job ends its process twice: a claim, a definition, some of the simple drives, a component."""
     coverage = replace(asked("ext", "complete"), needed=True)
     answers: dict[str, study.Kept] = {}
     asked_so_far: list[str] = []
@@ -203,7 +203,7 @@ def test_a_doubt_says_what_was_not_tried(few: list[str]) -> None:
         answers |= coverage.doubt(piece, "its process ended twice")
     [piece, _] = coverage.pieces(answers)
     assert isinstance(piece, study.Component)
-    assert piece.lost[0] == "a part of the catalogue was not looked through: its process ended twice"
+    assert piece.lost[0] == "some of the simple drives were not looked through: its process ended twice"
     doubtful = study.ClassAnswer(None, Verdict.UNKNOWN, reason="none on main-2")
     assert study._with_lost(doubtful, piece.lost[:1]).reason == f"none on main-2; {piece.lost[0]}"
     sure = study.ClassAnswer(None, Verdict.IMPOSSIBLE)

@@ -13,7 +13,8 @@ SUMMARY = "what a catalogue of tests shows, which scenarios and classes nobody t
 _EXAMPLES = """\
 tests:
   drive files (.json), samples (.csv, .parquet), scenarios of CommonRoad (.xml) and OpenSCENARIO (.xosc),
-  vehicles of a recording (01_tracks.csv:12,15), and what a catalogue.toml names, in a folder or by themselves. A catalogue.toml has
+  vehicles of a recording (01_tracks.csv:12,15), and what a catalogue.toml names, in a folder or by
+  themselves. A catalogue.toml has
     [[test]]
     id = "CUT-IN-7"
     title = "cut-in at high speed"

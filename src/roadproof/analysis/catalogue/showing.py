@@ -2,7 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import permutations
 from pathlib import Path
 
@@ -28,6 +28,8 @@ MOST_VEHICLES = 8
 _STATE: tuple[SignalName, ...] = ("s", "d", "v_lon")
 DANGER = "danger"
 """What a test shows in which vehicles are safe and come into danger, whatever scenario that is."""
+GAP = "gap"
+"""Danger that no scenario says how, for any lane and in any roles."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,17 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
     states = {name: (m.s, m.d, m.v_lon) for name, m in file.drive.vehicles.items()}
     begins = _begins({name: tuple(map(float, state)) for name, state in states.items()})
     others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
-    return ConcreteAnswer(entry, claims, shown_by(file, asked, freedom), begins, True, others)
+    shown = shown_by(file, asked, freedom)
+    return ConcreteAnswer(entry, claims, (*shown, *_gap(file, asked, shown)), begins, True, others)
+
+
+def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Shown]:
+    """The danger of a drive, from its start on, where no scenario holds for any lane and in any roles."""
+    danger = next((x for x in shown if x.what == DANGER and x.at == 0), None)
+    if danger is not None and {x.what for x in shown} == {DANGER}:
+        wider = {x.what for x in shown_by(file, asked, Freedom(roles=True, lanes=True))}
+        if wider == {DANGER}:
+            yield replace(danger, what=GAP)
 
 
 def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from roadproof.analysis.catalogue.asked import NOWHERE, Asked
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.meaning import Fact, Facts
-from roadproof.analysis.catalogue.showing import DANGER, ConcreteAnswer
+from roadproof.analysis.catalogue.showing import DANGER, GAP, ConcreteAnswer
 from roadproof.spec.scenarios import name_of
 
 
@@ -111,7 +111,7 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], words: Mapping[str, str]) -
     for x in concrete:
         if x.fault:
             continue
-        shown = sorted(x.names - {DANGER, NOWHERE})
+        shown = sorted(x.names - {DANGER, GAP, NOWHERE})
         for claim in x.claims:
             if claim not in words:
                 yield Remark((x.entry.id,), f"claims {claim}, {_NO_TARGET}")
@@ -119,8 +119,13 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], words: Mapping[str, str]) -
                 told = f"claims {claim}, and shows {', '.join(shown) or 'no scenario'}"
                 yield Remark((x.entry.id,), told + _with_other_values(x))
         if not shown and not x.claims:
-            more = ", though danger comes: a gap of the scenarios" if DANGER in x.names else ""
-            yield Remark((x.entry.id,), f"shows no scenario{more}")
+            yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}")
+
+
+def _of_danger(answer: ConcreteAnswer) -> str:
+    if GAP in answer.names:
+        return ", though danger comes: a gap, which no scenario covers for any lane and in any roles"
+    return ", though danger comes" if DANGER in answer.names else ""
 
 
 def _with_other_values(answer: ConcreteAnswer) -> str:

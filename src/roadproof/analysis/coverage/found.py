@@ -1,11 +1,11 @@
-"""Gaps to begin with: drives of the catalogue that a set misses, before anything is searched or proved."""
+"""Gaps to begin with: simple drives that a set misses, before anything is searched or proved."""
 
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 
-from roadproof.analysis.coverage.catalogue import HORIZON, catalogue
 from roadproof.analysis.coverage.classes import GapClasses
+from roadproof.analysis.coverage.simple import HORIZON, simple_drives
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
@@ -42,16 +42,16 @@ class FoundGap:
         return movers, changes, off, longest
 
 
-def find_in_catalogue(
+def find_among_simple(
     road: Road, start: int, step: int, classes: GapClasses, trials: Trials
 ) -> list[FoundGap]:
-    """The gaps among every ``step``-th drive of the catalogue; of those alike the ones with least effort."""
+    """The gaps among every ``step``-th of the simple drives; of those alike the ones with least effort."""
     specification, car = classes.specification, load_vehicle("car")
     begins = bind(danger_comes(specification, *PAIR).formula, road, {}, classes.values)
     gap = bind(classes.missed(classes.numbers_on(road)).formula, road, {}, classes.values)
     gap = transform(gap, lambda part: part)
     best: dict[tuple[str, tuple[str, ...]], FoundGap] = {}
-    for drive in islice(catalogue(road, car), start, None, step):
+    for drive in islice(simple_drives(road, car), start, None, step):
         if not judge(begins, drive).holds or not judge(gap, drive).holds:
             continue
         if first_overlap(drive, HORIZON) or first_breach(drive, dict.fromkeys(drive.vehicles, car), None):

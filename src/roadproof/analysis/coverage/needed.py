@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.catalogue import HORIZON, ZERO, catalogue
 from roadproof.analysis.coverage.claims import (
     PROOF,
     claims_of,
@@ -13,6 +12,7 @@ from roadproof.analysis.coverage.claims import (
     replaced_in,
     two_vehicle_numbers,
 )
+from roadproof.analysis.coverage.simple import HORIZON, ZERO, simple_drives
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.effort import Late
 from roadproof.evidence.drive_file import DriveFile
@@ -80,10 +80,10 @@ def find_need(basis: Basis, name: str) -> Need:
 
 
 def _dangerous(trials: Trials, road: Road) -> Iterator[Drive]:
-    """The drives of the catalogue on which danger arises, within the limits of the vehicles."""
+    """The simple drives on which danger arises, within the limits of the vehicles."""
     car = load_vehicle("car")
     begins = bind(danger_comes(trials.specification, *PAIR).formula, road, {}, trials.values)
-    for drive in catalogue(road, car):
+    for drive in simple_drives(road, car):
         if not judge(begins, drive).holds or first_overlap(drive, HORIZON) is not None:
             continue
         if first_breach(drive, dict.fromkeys(drive.vehicles, car), None) is None:

@@ -23,7 +23,7 @@ class NeededDefinition:
 
 @dataclass(frozen=True)
 class Chunk:
-    """A part of the catalogue, on one of the survey's roads."""
+    """Some of the simple drives, on one of the survey's roads."""
 
     road: int
     number: int
@@ -40,7 +40,7 @@ class Component:
 
 @dataclass(frozen=True)
 class Looked:
-    """The gaps in a part of the catalogue; ``lost``: why it was not looked through."""
+    """The gaps in some of the simple drives; ``lost``: why it was not looked through."""
 
     found: tuple[FoundGap, ...]
     lost: str = ""
@@ -58,6 +58,6 @@ def name_of(piece: Piece) -> str:
         case NeededDefinition(name):
             return f"needed-{name}"
         case Chunk(road, number):
-            return f"catalogue-{road}-{number}"
+            return f"simple-{road}-{number}"
         case Component(name):
             return name

@@ -1,7 +1,7 @@
 """Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes.
 
 Claims of coverage come first. Where they are proved, only the definitions are left that the set may not need;
-else the catalogue is looked through, and its gaps are what the classes begin with.
+else the simple drives are looked through, and gaps among them are what the classes begin with.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from typing import Any
 from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
 from roadproof.analysis.coverage.claims import Covered, claims_of, prove_claim
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap, find_in_catalogue
+from roadproof.analysis.coverage.found import FoundGap, find_among_simple
 from roadproof.analysis.coverage.needed import Need, find_need, parent_of, replaced_by
 from roadproof.analysis.coverage.occurring import GapTraffic, with_counts
 from roadproof.analysis.coverage.pieces import (
@@ -34,7 +34,7 @@ from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
 
 CHUNKS = 7
-"""The catalogue of a road is looked through in so many pieces."""
+"""The simple drives of a road are looked through in so many pieces."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Coverage:
                 answer = find_need(basis, name)
             case Chunk(road, number):
                 where, classes, trials = self.survey.roads[road], self._classes, self._trials
-                answer = Looked(tuple(find_in_catalogue(where, number, CHUNKS, classes, trials)))
+                answer = Looked(tuple(find_among_simple(where, number, CHUNKS, classes, trials)))
             case Component(name, known, lost):
                 group = self.groups[name]
                 settling = Settling(self.survey, group, [*known], self._classes, self._trials)
@@ -124,7 +124,7 @@ class Coverage:
             case NeededDefinition(name):
                 answer = Need(name, parent_of(self.survey.basis.specification), Verdict.UNKNOWN)
             case Chunk():
-                answer = Looked((), f"a part of the catalogue was not looked through: {reason}")
+                answer = Looked((), f"some of the simple drives were not looked through: {reason}")
             case Component(name):
                 parts = self.groups[name].parts
                 answer = tuple(ClassAnswer(part, Verdict.UNKNOWN, reason=reason) for part in parts)
@@ -133,7 +133,7 @@ class Coverage:
     # --- answers that are kept -------------------------------------------------------------------
 
     def is_sure(self, answer: Kept) -> bool:
-        """Gaps of the catalogue are no answer, and what has no evidence is quickly asked again."""
+        """Gaps among the simple drives are no answer, and what has no evidence is quickly asked again."""
         match answer:
             case Covered():
                 return answer.certificate is not None

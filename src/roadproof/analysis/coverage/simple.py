@@ -1,4 +1,4 @@
-"""A catalogue of simple drives of two vehicles: who moves across the road how, and when danger comes.
+"""Simple drives of two vehicles: who moves across the road how, and when danger comes.
 
 It is tried before any solver is asked, since many gaps are found in it, in a form that is easy to read.
 Nothing rests on it: every drive is judged.
@@ -48,8 +48,8 @@ class Along:
     slows_down: Fraction | None = None
 
 
-def catalogue(road: Road, vehicle: Vehicle) -> Iterator[Drive]:
-    """All drives of the catalogue on a road of parallel lanes.
+def simple_drives(road: Road, vehicle: Vehicle) -> Iterator[Drive]:
+    """All simple drives on a road of parallel lanes.
 
     One of the vehicles does not move across, or both move alike. Where there are more than two lanes, only
     drives on which both move, with a lane between them at the start.
