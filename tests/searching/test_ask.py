@@ -15,6 +15,7 @@ from roadproof.shipped import shipped
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.verdict import Verdict
+from roadproof.world.models import load_vehicle
 
 LIBRARY = bundled_library()
 SLOWER = "v_lon(SV) < v_lon(POV)"
@@ -32,6 +33,16 @@ def test_vehicles_are_cars_unless_told_otherwise(tmp_path):
     assert models() == {"SV": "car", "POV": "car"}
     assert models(SV=van) == {"SV": "van", "POV": "car"}
     assert models(every=van, POV="car") == {"SV": "van", "POV": "car"}
+
+
+@pytest.mark.parametrize("kind", ["truck", "bus", "motorcycle"])
+@pytest.mark.parametrize("role", ["SV", "POV"])
+def test_every_kind_of_vehicle_in_every_role(role, kind):
+    (judged,) = answer(search_for("4", vehicles={role: kind})).drives
+    model = load_vehicle(kind)
+    motion = judged.file.drive.vehicles[role]
+    assert (motion.length, motion.width) == (model.length, model.width)
+    assert model.v_lon[0] <= motion.v_lon <= model.v_lon[1]
 
 
 def test_limits_of_one_vehicle_are_not_those_of_another():

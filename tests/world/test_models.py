@@ -55,6 +55,17 @@ def test_reference_roads():
         assert all(x.d[1] - x.d[0] == Fraction(7, 2) for x in load_road(name).lanelets)
 
 
+def test_kinds_of_vehicles_fit_their_lanes_and_each_other():
+    """Every model is read, fits a lane of 3.5 m, and cruises within its limits; the smaller one is shorter."""
+    models = {name: load_vehicle(name) for name in names_of("vehicles")}
+    assert [*models] == ["bus", "car", "motorcycle", "truck"]
+    for model in models.values():
+        assert model.width < Fraction(7, 2)
+        assert model.v_lon[0] <= model.cruise[0] < model.cruise[1] <= model.v_lon[1]
+    lengths = [models[name].length for name in ("motorcycle", "car", "bus", "truck")]
+    assert lengths == sorted(lengths)
+
+
 def test_a_users_road_is_read_exactly(tmp_path):
     road = load_road(written(tmp_path, ROAD))
     assert road.name == "model"
