@@ -17,7 +17,8 @@ from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import DANGER, GAP, Freedom, show
-from roadproof.analysis.classify.classes import plan_of
+from roadproof.analysis.classify.cells import Cell
+from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import Division, divide
 from roadproof.api import cataloguing
 from roadproof.api.cataloguing import Catalogued, catalogue
@@ -27,6 +28,7 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
 from roadproof.judge.algebraic import approximate
 from roadproof.judge.exact import judge
+from roadproof.report.catalogue import as_text
 from roadproof.spec.bind import bind
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, applied, name_of, vehicles_of
@@ -249,6 +251,23 @@ def test_tables_and_reports(few: Path) -> None:
     assert found.verdicts["scenario_2"] == "GAPS"
     assert found.to_frame().height == 8
     assert found.plot().png.startswith(b"\x89PNG")
+
+
+def test_road_sectors_are_told_apart(asked: Asked) -> None:
+    numbers = (4, 12)
+    plan = plan_of(HOME.alone, numbers)
+    what = tuple((Cell((number,), (number,), ()),) for number in (4,))
+    where = tuple(Cell((number,), (number,), ()) for number in plan.sectors)
+    both = Asked(HOME.alone, numbers, Classes(plan, what, where), asked.values)
+    answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), both, FIXED)
+    found = tested.tested(both, [answer], [], [], tested.targets_of(both), 0.5)
+    assert {x.name: (x.sector, x.tested) for x in found.targets} == {
+        "scenario_4": ("main", ("x",)),
+        "scenario_12": ("merge", ()),
+        "class_4_main": ("main", ("x",)),
+        "class_4_merge": ("merge", ()),
+    }
+    assert "  main: 1 of 1 are tested\n  merge: 0 of 1 are tested" in as_text(1, found, [])
 
 
 ABSTRACT = """

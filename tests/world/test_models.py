@@ -56,7 +56,7 @@ def test_reference_roads():
 
 
 def test_kinds_of_vehicles_fit_their_lanes_and_each_other():
-    """Every model is read, fits a lane of 3.5 m, and cruises within its limits; the smaller one is shorter."""
+    """Every model is read, fits a lane of 3.5 m, and cruises within its limits; from short to long."""
     models = {name: load_vehicle(name) for name in names_of("vehicles")}
     assert [*models] == ["bus", "car", "motorcycle", "truck"]
     for model in models.values():

@@ -85,6 +85,7 @@ class Catalogued(Studied[Meanings, Facts]):
             {
                 "target": x.name,
                 "words": x.words,
+                "sector": x.sector,
                 "verdict": str(self.verdicts[x.name]),
                 "tests": len(x.tested),
                 "tested_by": ", ".join(x.tested),
@@ -103,6 +104,7 @@ class Catalogued(Studied[Meanings, Facts]):
                 {
                     "name": x.name,
                     "words": x.words,
+                    "sector": x.sector,
                     "tested": list(x.tested),
                     "possible": list(x.possible),
                     "covered": {name: list(bounds) for name, bounds in x.covered.items()},

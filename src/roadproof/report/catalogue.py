@@ -16,7 +16,8 @@ _SURE, _POSSIBLE, _NONE = "#1f5fbf", "#9dbbe3", "#b5473c"
 def as_text(tests: int, found: Tested, notes: Sequence[str]) -> str:
     """How much is tested, what is missing, and every remark."""
     lines = [f"{tests} test{'s' * (tests != 1)}"]
-    lines += [_counted(kind, those) for kind, those in kinds(found).items() if those]
+    for kind, those in kinds(found).items():
+        lines += [_counted(kind, those), *_by_sector(those)] if those else []
     lines += _listed("not tested", [f"{x.name}: {x.words}" for x in found.missing])
     for heading, remarks in headings(found).items():
         lines += _listed(heading, [remark_line(x) for x in remarks])
@@ -32,6 +33,12 @@ def kinds(found: Tested) -> dict[str, list[Target]]:
 def _counted(kind: str, targets: Sequence[Target]) -> str:
     done = sum(bool(x.tested) for x in targets)
     return f"{kind}: {done} of {len(targets)} are tested"
+
+
+def _by_sector(targets: Sequence[Target]) -> list[str]:
+    """A line for each road sector, where there are several."""
+    sectors = dict.fromkeys(x.sector for x in targets if x.sector)
+    return [_counted(f"  {x.replace('_', ' and ')}", [y for y in targets if y.sector == x]) for x in sectors]
 
 
 def headings(found: Tested) -> dict[str, Sequence[Remark]]:

@@ -14,12 +14,13 @@ from roadproof.spec.scenarios import name_of
 class Target:
     """A scenario or a class that tests may show, in words; ``tested``: the tests that show or imply it.
 
-    ``possible``: abstract tests some drives of which show it. ``covered``: how the tests that show it begin,
-    least and greatest values by name.
+    ``sector`` is where it happens, "" where the scenarios are not divided. ``possible``: abstract tests some
+    drives of which show it. ``covered``: how the tests that show it begin, least and greatest values by name.
     """
 
     name: str
     words: str
+    sector: str
     tested: tuple[str, ...]
     possible: tuple[str, ...]
     covered: Mapping[str, tuple[float, float]]
@@ -62,8 +63,9 @@ def tested(
     """All of it. ``words``: each target by name, in words, in order; ``near``: how far tests that say the
     same may begin apart, in m and m/s.
     """
+    sectors = sectors_of(asked)
     return Tested(
-        tuple(_target(name, told, concrete, facts) for name, told in words.items()),
+        tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
         (*_unreadable(concrete), *_of_concrete(concrete, words), *_of_abstract(abstract, facts)),
         tuple(_doubts(facts)),
         (*_same(concrete, near), *_implied(abstract, facts)),
@@ -85,7 +87,22 @@ def targets_of(asked: Asked) -> dict[str, str]:
     return targets
 
 
-def _target(name: str, words: str, concrete: Sequence[ConcreteAnswer], facts: Sequence[Fact]) -> Target:
+def sectors_of(asked: Asked) -> dict[str, str]:
+    """The road sector of each scenario and class by name; none where there are no classes or one sector."""
+    if asked.classes is None or not asked.classes.plan.has_places:
+        return {}
+    plan = asked.classes.plan
+    sectors = {
+        name_of(number): plan.sectors[first]
+        for group in plan.groups
+        for number, (_, first) in group.rows.items()
+    }
+    return sectors | {one.name: str(one.place) for one in asked.classes.all()}
+
+
+def _target(
+    name: str, words: str, sector: str, concrete: Sequence[ConcreteAnswer], facts: Sequence[Fact]
+) -> Target:
     showing = [x for x in concrete if name in x.names]
     implied = [x.test for x in facts if x.other == name and x.relation == "implies"]
     runs = {x.test for x in facts if x.relation == "runs"}
@@ -97,7 +114,7 @@ def _target(name: str, words: str, concrete: Sequence[ConcreteAnswer], facts: Se
             low, high = covered.get(number, (value, value))
             covered[number] = min(low, value), max(high, value)
     maybe = dict.fromkeys(x for x in possible if x not in sure)
-    return Target(name, words, tuple(dict.fromkeys(sure)), tuple(maybe), covered)
+    return Target(name, words, sector, tuple(dict.fromkeys(sure)), tuple(maybe), covered)
 
 
 # --- remarks -------------------------------------------------------------------------------------
