@@ -14,7 +14,8 @@ import pytest
 import roadproof as rp
 from roadproof.analysis.catalogue import meaning, showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
-from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.entries import Abstract, Concrete
+from roadproof.analysis.catalogue.meaning import Fact
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import DANGER, GAP, Freedom, show
 from roadproof.analysis.classify.cells import Cell
@@ -191,6 +192,24 @@ def test_a_planted_fault_is_noticed(
 ) -> None:
     plant(asked, monkeypatch)
     assert any(names(asked, path) != one_by_one(queries, path) for path in reversed(DRIVES[:5]))
+
+
+def test_a_scenario_that_is_neither_shown_nor_excluded_is_no_doubt_unless_it_is_claimed() -> None:
+    query = HOME.read("scenario_4(SV,POV,L)")
+    entry = Abstract("x", query)
+    runs = Fact("x", "", "runs", query)
+    still_open = Fact("x", "scenario_8", "open", query, HOME.read("scenario_8(SV,POV,L)"), "not on this road")
+    few = Asked(HOME.alone, (8,), None, HOME.all_values())
+
+    def doubts(entry: Abstract) -> list[str]:
+        found = tested.tested(few, [], [entry], [runs, still_open], tested.targets_of(few), 0.5)
+        assert not [x for x in found.faults if x.told.startswith("claims")]
+        return [x.told for x in found.doubts]
+
+    assert doubts(entry) == []
+    assert doubts(replace(entry, claims=("scenario_8",))) == [
+        "whether it can show scenario_8 is in doubt: not on this road"
+    ]
 
 
 def test_a_drive_in_no_class_is_a_contradiction(asked: Asked) -> None:

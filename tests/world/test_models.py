@@ -1,5 +1,8 @@
 """Road and vehicle models: what comes along, what users write, what contradicts itself."""
 
+import os
+import subprocess
+import sys
 from fractions import Fraction
 
 import pytest
@@ -64,6 +67,22 @@ def test_kinds_of_vehicles_fit_their_lanes_and_each_other():
         assert model.v_lon[0] <= model.cruise[0] < model.cruise[1] <= model.v_lon[1]
     lengths = [models[name].length for name in ("motorcycle", "car", "bus", "truck")]
     assert lengths == sorted(lengths)
+
+
+def test_a_road_is_shown_alike_in_every_process():
+    """Answers are kept under fingerprints of what was asked, and sets have another order in each process."""
+    code = "from roadproof.world.models import load_road; print(repr(load_road('main-3')))"
+    shown = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in "123"
+    }
+    assert len(shown) == 1
 
 
 def test_a_users_road_is_read_exactly(tmp_path):

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal, TypeAlias
 
 from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.completing import Completion, complete
@@ -19,7 +19,7 @@ from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import divide
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Among, Definitions, load
-from roadproof.api.settings import basis_of
+from roadproof.api.settings import basis_of, one_of
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
@@ -30,6 +30,7 @@ from roadproof.study import pool
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict
 
+_Look: TypeAlias = Literal["fixed", "any"]
 NEAR = 0.5
 BATCH = 20
 
@@ -204,7 +205,9 @@ def catalogue(
     among: Among = None,
     using: Definitions | None = None,
     classes: bool = True,
-    freedom: Freedom | None = None,
+    roles: _Look = "fixed",
+    lanes: _Look = "fixed",
+    start: _Look = "fixed",
     near: float = NEAR,
     effort: float = 60.0,
     timeout: float | None = None,
@@ -216,12 +219,14 @@ def catalogue(
     """Which scenarios and classes the tests in folders and files show, and which nobody tests.
 
     ``classes``: whether scenarios are divided into classes (``classify``), which need whole rows of the table
-    in ``among``; ``freedom``: what is looked at beside the roles, the lane and the start that a test fixes.
+    in ``among``; ``roles``, ``lanes``, ``start``: whether those are looked at that a test fixes, or "any".
     ``near``: how far apart tests that say the same may begin, in m and m/s. ``out``: a folder for evidence on
     abstract tests. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     begun = time.monotonic()
     home = using or load()
+    for name, choice in (("roles", roles), ("lanes", lanes), ("start", start)):
+        one_of(name, choice, _Look)
     if not near >= 0:
         raise UsageError(f"near={near}: write a number, 0 or more")
     tests = read_catalogue(paths, home.alone)
@@ -237,7 +242,8 @@ def catalogue(
     asked = Asked(home.alone, numbers, made, home.all_values())
     abstract = tuple(x for x in tests.entries if isinstance(x, Abstract))
     concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
-    answers = _shown(concrete, asked, freedom or Freedom(), jobs, progress)
+    freedom = Freedom(roles == "any", lanes == "any", start == "any")
+    answers = _shown(concrete, asked, freedom, jobs, progress)
     more = {"concrete": answers, "catalogue": tests, "near": near}
     study = Meanings(basis, abstract, asked)
     return Catalogued.asked(study, out, jobs, progress, say, more=lambda: more, begun=begun)

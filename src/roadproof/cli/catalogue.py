@@ -64,7 +64,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.analysis.catalogue.showing import Freedom
     from roadproof.api.cataloguing import catalogue
 
     home = read_definitions(args, [args.set_name])
@@ -73,7 +72,9 @@ def run(args: argparse.Namespace) -> int:
         among=args.among,
         using=home,
         classes=not args.no_classes,
-        freedom=Freedom(args.roles == "any", args.lanes == "any", args.start == "any"),
+        roles=args.roles,
+        lanes=args.lanes,
+        start=args.start,
         near=args.near,
         **asking(args, evidence_folder(args.out, args.json)),
     )

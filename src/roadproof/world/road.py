@@ -32,6 +32,11 @@ class Road:
     lanelets: tuple[Lanelet, ...]
     adjacent: frozenset[frozenset[str]]
 
+    def __repr__(self) -> str:
+        """The same in every process, as answers are kept under fingerprints of what was asked."""
+        beside = sorted(sorted(pair) for pair in self.adjacent)
+        return f"Road(name={self.name!r}, lanelets={self.lanelets!r}, adjacent={beside!r})"
+
     @property
     def lanes(self) -> tuple[str, ...]:
         """Names of the lanes, in the order of their lanelets."""

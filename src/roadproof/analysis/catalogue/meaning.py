@@ -14,7 +14,7 @@ from typing import Any, Literal, TypeAlias, get_args
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.analysis.catalogue.showing import DANGER, Freedom, shown_by
+from roadproof.analysis.catalogue.showing import Freedom, shown_by
 from roadproof.analysis.placing import judged_as
 from roadproof.effort import Late
 from roadproof.errors import InputError
@@ -140,8 +140,7 @@ class Meanings:
         alone = Fact(entry.id, "", "runs", entry.query, drive=drive, also=shown)
         scenarios = self.asked.scenarios_of(entry.query.vehicles)
         found = [self._of_scenario(entry, name, query, drive, shown) for name, query in scenarios.items()]
-        classes = (name for name in shown if name not in scenarios and name != DANGER)
-        for name in classes:
+        for name in (x for x in shown if x in self.asked.named.values()):
             implied = self._proved(entry, name, "implies", self.asked.class_query(name))
             found += [] if implied is None else [implied]
         return (alone, *found)

@@ -67,13 +67,9 @@ def tested(
     return Tested(
         tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
         (*_unreadable(concrete), *_of_concrete(concrete, words), *_of_abstract(abstract, facts)),
-        tuple(_doubts(facts)),
+        tuple(_doubts(abstract, facts)),
         (*_same(concrete, near), *_implied(abstract, facts)),
-        tuple(
-            Remark((x.entry.id,), "scenarios hold on it, and no class of them, though that is proved to be")
-            for x in concrete
-            if NOWHERE in x.names
-        ),
+        tuple(_contradictions(concrete, facts)),
     )
 
 
@@ -170,9 +166,10 @@ def _of_abstract(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterato
             fact: Fact | None = known.get(claim)
             if fact is None and alone is not None and claim in alone.also:
                 continue
-            if fact is None or fact.relation in ("excludes", "open"):
-                told = "which it excludes: that is proved" if fact and fact.relation == "excludes" else _NONE
-                yield Remark((entry.id,), f"claims {claim}, {told}")
+            if fact is None:
+                yield Remark((entry.id,), f"claims {claim}, which no drive of it shows that was found")
+            elif fact.relation == "excludes":
+                yield Remark((entry.id,), f"claims {claim}, which it excludes: that is proved")
 
 
 def _says_something(known: Mapping[str, Fact]) -> bool:
@@ -180,14 +177,20 @@ def _says_something(known: Mapping[str, Fact]) -> bool:
     return any(x.relation in ("implies", "shows", "open") for other, x in known.items() if other)
 
 
-_NONE = "which no drive of it shows that was found"
-
-
-def _doubts(facts: Sequence[Fact]) -> Iterator[Remark]:
+def _doubts(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
+    """Tests that may never be run, and claims neither shown nor excluded; other scenarios are no matter."""
+    claims = {entry.id: entry.claims for entry in abstract}
     for fact in facts:
-        if fact.relation == "open":
+        if fact.relation == "open" and (not fact.other or fact.other in claims[fact.test]):
             what = f"whether it can show {fact.other}" if fact.other else "whether it can be run"
             yield Remark((fact.test,), f"{what} is in doubt: {fact.reason}")
+
+
+def _contradictions(concrete: Sequence[ConcreteAnswer], facts: Sequence[Fact]) -> Iterator[Remark]:
+    tests = [x.entry.id for x in concrete if NOWHERE in x.names]
+    tests += [x.test for x in facts if NOWHERE in x.also]
+    for test in dict.fromkeys(tests):
+        yield Remark((test,), "scenarios hold on it, and no class of them, though that is proved to be")
 
 
 # --- alike ---------------------------------------------------------------------------------------
