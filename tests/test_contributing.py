@@ -24,7 +24,7 @@ READERS_OF_NODES = {
         "encode/unroll.py",
     ),
     *("proving/grounding.py", "evidence/derivation.py", "evidence/state.py", "evidence/refutation.py"),
-    *("logic/formula.py", "logic/fragment.py", "logic/restore.py"),
+    *("logic/formula.py", "logic/fragment.py", "logic/motion.py", "logic/restore.py"),
 }
 
 

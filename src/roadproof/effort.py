@@ -77,6 +77,10 @@ class Meter:
         if self.whole is not None:
             self.whole.spend(units)
 
+    def effort(self) -> Effort:
+        """What is left, for a search with a meter of its own. Raises ``Late``."""
+        return Effort(max(1.0, self.left()), self.seconds_left())
+
     def part(self, limit: float) -> "Meter":
         """A meter for a part of the search, of at most ``limit`` units."""
         return Meter(limit, self.seconds, self, begun=self.begun)

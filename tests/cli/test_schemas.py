@@ -40,12 +40,12 @@ NOT_HEADED = {"drive.json", "certificate.json", "question.json", "answer.json", 
 
 STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted
 OPTIONAL = {
-    "answer.json": {"stem", "road", "counterexample"},
+    "answer.json": {"stem", "road", "counterexample", "assuming"},
     "classify.json": {"doubts"},
     "coverage.json": {"in_traffic", "trace"},
     "drive.json": {"lanes", "overlaps_allowed", "natural"},
     "explore.json": {"stem"},
-    "index.json": {"roadproof", "library", "options", "specs", "counterexample", "road"},
+    "index.json": {"roadproof", "library", "options", "specs", "counterexample", "road", "assuming"},
     "monitor.json": {"exact"},
     "redundancy.json": {"road"},
     "verdicts.json": {"limits", "road"},
@@ -187,6 +187,15 @@ def of_prove(run: Run, out: Path, traffic: Path) -> None:
     bounded = run("prove", "G v_lon(SV) < 200 m/s", *within, "--jobs", 1)
     assert "limits" in bounded["verdicts"][0]
     examine(bounded)
+    moved = (
+        "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)",
+        "assuming motion, a_lon(SV) <= 2 m/s^2: v_lon(SV) <= 20 m/s -> G[0, 2 s] v_lon(SV) <= 24 m/s",
+        "atLane(SV,L) -> G atLane(SV,L) or (atLane(SV,L) U not atLane(SV,L))",
+        "s(SV) < s(POV) -> G s(SV) < s(POV)",
+    )
+    told = run("prove", *moved, "--assume", "motion", "--jobs", 1, "--out", out / "motion")
+    assert [x["refuted_by"] for x in told["verdicts"]] == [None, None, None, "drive"]
+    examine(told, folder=out / "motion")
 
 
 def of_check(run: Run, out: Path, traffic: Path) -> None:

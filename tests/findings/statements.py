@@ -16,7 +16,7 @@ SESSIONS = (
             f"examples/{name}/README.md",
             tuple(p for p in sorted((ROOT / "examples" / name).iterdir()) if p.name != "README.md"),
         )
-        for name in ("time-to-collision", "traffic")
+        for name in ("motion", "time-to-collision", "traffic")
     ),
 )
 

@@ -54,8 +54,10 @@ class Answered:
             "scenario": task.scenario,
             "set": task.set_name,
             "claim": task.claim,
+            "assuming": list(task.assuming),
             "expected": str(self.expected),
             "verdict": str(settled.verdict),
+            "refuted_by": settled.refuted_by,
             "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
             "seconds": round(result.seconds, 4),
             "reason": result.reason,
@@ -122,7 +124,8 @@ class Claims:
             settled = settle_bounded(Search(specification, query, *self.within))
         else:
             label = piece.id + (f"-{piece.part}" if piece.part else "")
-            settled = settle(specification, query, self.effort, label, piece.scenario, self.seek_drive)
+            more = piece.scenario, self.seek_drive, piece.assuming
+            settled = settle(specification, query, self.effort, label, *more)
         return {name_of(piece): Answered(piece, settled)}
 
     def doubt(self, piece: Task, reason: str) -> dict[str, Answered]:
@@ -141,6 +144,7 @@ class Claims:
             "scenario": task.scenario,
             "set": task.set_name,
             "claim": task.claim,
+            **({"assuming": list(task.assuming)} if task.assuming else {}),
             "verdict": str(answer.verdict),
             "evidence": shelf.certificate(f"{task.name}.json", result.certificate),
         }
@@ -153,9 +157,10 @@ class Claims:
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answered]:
         said = record["claim"]
-        name, verdict = name_of_claim(said["claim"], said["set"]), Verdict(said["verdict"])
+        assuming, verdict = tuple(said.get("assuming", ())), Verdict(said["verdict"])
+        name = name_of_claim(said["claim"], said["set"], assuming)
         told = (said["property"], said["part"], "", said["scenario"], said["set"], said["claim"])
-        task = self.named.get(name) or Task(*told, verdict)
+        task = self.named.get(name) or Task(*told, verdict, assuming)
         if task.claim.split() != said["claim"].split():
             raise InputError(f"the answer '{name}' is about another claim: {said['claim'][:120]}")
         refuted = verdict is Verdict.REFUTED
@@ -187,7 +192,7 @@ class Claims:
 
 def name_of(task: Task) -> str:
     """Under which name the answer to a claim is kept, whatever the list calls it."""
-    return name_of_claim(task.claim, task.set_name)
+    return name_of_claim(task.claim, task.set_name, task.assuming)
 
 
 def as_data(

@@ -37,7 +37,12 @@ def former_claims(folder: Path, claims: Claims) -> Entries:
             f"{folder} holds claims that were read with other options or specification files, or under "
             "another library: name another folder with --out"
         )
-    return {name_of_claim(str(x["claim"]), str(x["set"])): x for x in data.items("claims")}
+    return {name_of_entry(x): x for x in data.items("claims")}
+
+
+def name_of_entry(entry: Mapping[str, Any]) -> str:
+    """Under which name the answer is kept that an entry of an index is about."""
+    return name_of_claim(str(entry["claim"]), str(entry["set"]), entry.get("assuming", ()))
 
 
 def _read_alike(data: Fields, folder: Path, claims: Claims) -> bool:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
@@ -11,18 +11,19 @@ from roadproof.analysis.claims import Answered, Claims, name_of
 from roadproof.analysis.proof_folder import former_claims, write_claims
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
-from roadproof.api.settings import RoadLike, one_of, setting, work_of
+from roadproof.api.settings import RoadLike, VehicleLike, models_of, one_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_if_any
 from roadproof.proving.properties import OWN, Task, choose, template_properties
 from roadproof.report import claims as claims_text
-from roadproof.spec.query import Query
+from roadproof.spec.motion import MOTION, Under, limits_of, split, under
 from roadproof.spec.scenarios import are_numbers, read_numbers
 from roadproof.spec.values import Number
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict, exit_code
+from roadproof.world.vehicle import Vehicle
 
 _Engine: TypeAlias = Literal["dense", "smt", "milp"]
 _Expected: TypeAlias = Literal["PROVED", "REFUTED"]
@@ -79,8 +80,10 @@ class Proofs(Studied[Claims, Answered]):
         return [
             {
                 "claim": " ".join(x.task.claim.split()),
+                "assuming": ", ".join(x.task.assuming),
                 "set": x.task.set_name,
                 "verdict": str(x.verdict),
+                "refuted_by": x.settled.refuted_by,
                 "expected": str(x.expected),
                 "reason": x.settled.result.reason,
                 "seconds": x.settled.result.seconds,
@@ -122,6 +125,8 @@ def prove(
     *what: What,
     using: Definitions | None = None,
     expect: _Expected = "PROVED",
+    assume: Literal["motion"] | None = None,
+    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
     engine: _Engine = "dense",
     road: RoadLike | None = None,
     horizon: Number = 6,
@@ -139,6 +144,8 @@ def prove(
     A claim is a formula, a property of the list such as "P1", or scenarios such as 4 or "1-8", of which all
     that the list says is settled; without one all of the list is. With ``engine`` "smt" or "milp" a claim is
     about drives on one ``road`` up to a ``horizon`` (s), and PROVED-BOUNDED says within which limits.
+    ``assume`` "motion": your own claims are about vehicles that move, with continuous places and speeds,
+    ``vehicles`` within the limits of a model for all, or of models by name.
     ``expect``: the verdict that is expected of your own claims; ``drive``: whether one is looked for that
     refutes. ``effort``: units of work for a claim, each about a second of a solver; ``timeout``: seconds
     after which the clock ends it. ``out``: a folder in which answers are kept as they come. ``using``: one
@@ -153,7 +160,8 @@ def prove(
     home = using or load()
     if home.values:
         raise UsageError(f"a claim is about all values of {', '.join(home.values)}: ask without params")
-    asked = claims_of(home, what, using.alone.set_name if using else None, Verdict(expect))
+    said = assuming(assume, vehicles)
+    asked = claims_of(home, what, using.alone.set_name if using else None, Verdict(expect), said)
     asked = replace(asked, effort=work_of(effort, timeout), seek_drive=drive)
     if engine != "dense":
         if not asked.are_own:
@@ -162,8 +170,41 @@ def prove(
     return Proofs.asked(asked, out, jobs, progress, say)
 
 
+@dataclass(frozen=True)
+class Assuming:
+    """What claims are asked under: whether vehicles move, and models by name whose limits they keep."""
+
+    motion: bool = False
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
+
+    def of(self, home: Definitions, claim: Under) -> Under:
+        """``claim`` under this as well. Raises ``InputError``, ``UsageError``."""
+        query = claim.query
+        for name in self.vehicles:
+            if name and name not in query.vehicles:
+                known = ", ".join(query.vehicles) or "no vehicle"
+                raise UsageError(f"vehicle {name}: the claim speaks of {known}")
+        models = {x: self.vehicles.get(x, self.vehicles.get("")) for x in query.vehicles}
+        limits = [x for name, y in models.items() if y is not None for x in limits_of(query, name, y)]
+        said = claim.said or (MOTION,) * self.motion
+        return under(home.specification, query, (*said, *limits))
+
+
+def assuming(assume: str | None, vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None) -> Assuming:
+    """What is assumed, in the words of Python. Raises ``UsageError``, ``InputError``."""
+    if assume not in (None, MOTION):
+        raise UsageError(f"assume={assume!r}: write {MOTION!r}")
+    if vehicles and assume is None:
+        raise UsageError("limits of vehicles are assumed with motion only: ask with assume motion")
+    return Assuming(assume is not None, models_of(vehicles))
+
+
 def claims_of(
-    home: Definitions, what: Sequence[What], set_name: str | None, expected: Verdict = Verdict.PROVED
+    home: Definitions,
+    what: Sequence[What | Under],
+    set_name: str | None,
+    expected: Verdict = Verdict.PROVED,
+    said: Assuming | None = None,
 ) -> Claims:
     """What is claimed: the list's claims in a set, in all where None; or one's own in that of ``home``.
 
@@ -171,16 +212,19 @@ def claims_of(
     """
     named: list[str] = []
     numbers: set[int] = set()
-    own: list[Query] = []
+    own: list[Under] = []
+    assumed = said or Assuming()
     for x in what:
         if isinstance(x, str) and _PROPERTY.fullmatch(x):
             named.append(x)
         elif isinstance(x, int | str) and not isinstance(x, bool) and are_numbers(str(x)):
             numbers |= {*read_numbers(home.specification, str(x))}
         else:
-            own.append(home.read(x))
+            own.append(assumed.of(home, _read(home, x)))
     if own and (named or numbers):
         raise UsageError("ask for properties or for claims of your own, not for both at once")
+    if not own and assumed.motion:
+        raise UsageError("motion is assumed of claims of your own: the list is about all traces")
     tasks = _own(home, own, expected) or choose(template_properties(), named, set_name, sorted(numbers))
     if not tasks:
         words = ", ".join(map(str, what))
@@ -188,10 +232,22 @@ def claims_of(
     return Claims(tuple(tasks), {x.set_name: home.specification.in_set(x.set_name) for x in tasks})
 
 
-def _own(home: Definitions, claims: list[Query], expected: Verdict) -> list[Task]:
+def _read(home: Definitions, what: What | Under) -> Under:
+    if isinstance(what, Under):
+        return what
+    if not isinstance(what, str):
+        return Under(home.read(what))
+    said, claim = split(what)
+    return Under(home.read(claim), said)
+
+
+def _own(home: Definitions, claims: list[Under], expected: Verdict) -> list[Task]:
     parts = [str(k) if len(claims) > 1 else "" for k in range(1, len(claims) + 1)]
     name = home.specification.set_name
-    return [Task(OWN, k, "", None, name, x.text, expected) for k, x in zip(parts, claims, strict=True)]
+    return [
+        Task(OWN, k, "", None, name, x.query.text, expected, x.said)
+        for k, x in zip(parts, claims, strict=True)
+    ]
 
 
 def within_limits(
@@ -205,5 +261,7 @@ def within_limits(
     """The same claims, about drives on one road up to a horizon. Raises ``InputError``, ``UsageError``."""
     from roadproof.searching.question import SearchOptions
 
+    if any(task.assuming for task in asked.tasks):
+        raise UsageError(f"engine={engine!r} is about drives anyway: assume nothing, or ask engine='dense'")
     place = replace(setting(home, road, horizon=horizon, dt=dt), values={})
     return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))

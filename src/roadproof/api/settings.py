@@ -43,17 +43,22 @@ def setting(
     """
     from roadproof.searching.question import Setting
 
-    models = vehicles if isinstance(vehicles, Mapping) else {} if vehicles is None else {"": vehicles}
     return Setting(
         None if road is None else as_road(road),
         dict(lanes or {}),
-        {name: x if isinstance(x, Vehicle) else load_vehicle(str(x)) for name, x in models.items()},
+        models_of(vehicles),
         values=values_with(using.library, using.values),
         horizon=positive("horizon", horizon, "s"),
         dt=None if dt is None else positive("dt", dt, "s"),
         reach=positive("reach", reach, "m"),
         collisions=collisions,
     )
+
+
+def models_of(vehicles: VehicleLike | Mapping[str, VehicleLike] | None) -> dict[str, Vehicle]:
+    """Models of vehicles by name, "" for all. Raises ``InputError``."""
+    models = vehicles if isinstance(vehicles, Mapping) else {} if vehicles is None else {"": vehicles}
+    return {name: x if isinstance(x, Vehicle) else load_vehicle(str(x)) for name, x in models.items()}
 
 
 def searches_of(

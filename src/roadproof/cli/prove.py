@@ -9,6 +9,7 @@ from roadproof.cli.basis import in_order, read_definitions
 from roadproof.cli.numbers import add_effort_options, add_working_options, read_effort
 from roadproof.cli.options import add_json_option, add_specification_options, read_seconds, write_json
 from roadproof.cli.progress import Counter, clear, warn
+from roadproof.cli.search_options import named
 from roadproof.cli.streams import print_at_once
 from roadproof.errors import UsageError
 from roadproof.verdict import Verdict
@@ -27,10 +28,14 @@ examples:
   roadproof prove 'scenario_4(SV,POV,L) -> scenario_4@ext(SV,POV,L)'
   roadproof prove 'given A, B: vehicle: danger(A,B) -> danger(B,A)' --out proofs
   roadproof prove --claims mine.txt --json -          one claim a paragraph
+  roadproof prove --assume motion 'G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)'
   roadproof prove 'dangerArises(SV,POV) -> F aheadOf(SV,POV)' --engine smt --horizon 3 --dt 3/5
 
 A claim is about all traces, all roads, all vehicle sizes and all parameter values within their declared
-bounds. PROVED comes with a certificate, which `roadproof check` accepts; REFUTED with a counterexample.
+bounds. PROVED comes with a certificate, which `roadproof check` accepts; REFUTED with a counterexample: a
+drive, or a trace that may jump. With --assume motion a claim is about all motions: places and speeds are
+continuous, speeds the rates of places, lanes are left through their edge; then only a drive refutes. A claim
+may say so itself: 'assuming motion: CLAIM'.
 With --engine smt or milp a claim is about drives on one road, up to a horizon: PROVED-BOUNDED says which.
 A folder of --out grows: what it has evidence for is not asked again, also where a run was broken off.
 """
@@ -48,6 +53,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=[str(Verdict.PROVED), str(Verdict.REFUTED)],
         default=str(Verdict.PROVED),
         help="verdict that is expected of your own claims (default: PROVED)",
+    )
+    parser.add_argument(
+        "--assume",
+        choices=("motion",),
+        help="your claims are about traces that are motions of vehicles",
+    )
+    parser.add_argument(
+        "--vehicle",
+        dest="vehicles",
+        metavar="[NAME=]MODEL",
+        action="append",
+        default=[],
+        help="with --assume motion: within the limits of a model, for all vehicles or for one",
     )
     add_effort_options(parser, each="a claim")
     parser.add_argument(
@@ -95,16 +113,17 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _asked(args: argparse.Namespace) -> "Claims":
-    from roadproof.api.proofs import claims_of, within_limits
+    from roadproof.api.proofs import assuming, claims_of, within_limits
     from roadproof.proving.properties import read_claims
-    from roadproof.spec.elaborate import read_claim
+    from roadproof.spec.motion import read_under
 
     home = read_definitions(args, [args.set_name or "base"])
     written = [] if args.file is None else read_claims(args.file)
     if args.file is not None and not (written or args.claims):
         raise UsageError(f"{args.file} holds no claim: write one a paragraph")
-    what = [*args.claims, *(read_claim(home.specification, claim) for claim in written)]
-    asked = claims_of(home, what, args.set_name, Verdict(args.expect))
+    what = [*args.claims, *(read_under(home.specification, claim) for claim in written)]
+    said = assuming(args.assume, dict(named(args.vehicles, "")))
+    asked = claims_of(home, what, args.set_name, Verdict(args.expect), said)
     asked = replace(asked, effort=read_effort(args), seek_drive=not args.no_drive)
     if args.engine == "dense":
         return asked

@@ -1,8 +1,9 @@
 """Certificates of claims proved for all time: files that a second program can check.
 
 A certificate names the claim, the set, the options and assumptions, the instances and lemmas, and
-holds the ground queries as SMT-LIB. Checking reads the claim again with the library at hand, derives
-every query from the instances, compares it with the file, and asks a solver that is passed in.
+holds the ground queries as SMT-LIB. Checking reads the claim again with the library at hand, makes anew
+what it assumes of motion, derives every query from the instances, compares it with the file, and asks a
+solver that is passed in.
 """
 
 import json
@@ -15,10 +16,13 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import Lemma, Site, derive_lemma_queries, derive_query
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.strict import Fields, read_json, text
+from roadproof.evidence.strict import Fields, read_assuming, read_json, text
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification
+from roadproof.spec.library import Library, Specification, unknown
+from roadproof.spec.motion import NOTHING, SCHEMAS, Assumed, Axiom, assumption
 from roadproof.spec.query import Query
 
 SCHEMA = "roadproof/certificate/1"
@@ -39,6 +43,7 @@ class Certificate:
     names: Mapping[Site, str]
     lemmas: tuple[Lemma, ...]
     queries: tuple[tuple[str, str], ...]
+    assumed: Assumed = NOTHING
 
 
 def certify(
@@ -49,23 +54,23 @@ def certify(
     lemmas: tuple[Lemma, ...],
     label: str = "",
     scenario: int | None = None,
+    assumed: Assumed = NOTHING,
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof.
 
     Raises ``InputError`` where the text of a query that was put together reads as another formula.
     """
-    formula = query.formula
-    if not query.written and read_claim(specification, query.text).formula != formula:
+    if not query.written and read_claim(specification, query.text).formula != query.formula:
         raise InputError(f"the claim's text does not mean what was proved: {query.text}")
     atoms = Atoms()
-    abstracted = atoms.abstract(formula)
+    abstracted = goal_of(specification, query, assumed, atoms)
     bounds = specification.library.bounds
     ground = derive_query(abstracted, atoms, instances, names, lemmas, bounds, query.lanes)
     queries = [("claim", ground)]
     for number, lemma in enumerate(lemmas, 1):
         cases = derive_lemma_queries(atoms, lemma.literals, bounds)
         queries += [(f"lemma {number}, case {k} of {len(cases)}", q) for k, q in enumerate(cases, 1)]
-    assumptions = tuple(f"{n} {bounds[n]} 0" for n in parameters_of(formula) if bounds.get(n))
+    assumptions = tuple(f"{n} {bounds[n]} 0" for n in parameters_of(abstracted) if bounds.get(n))
     return Certificate(
         label,
         scenario,
@@ -77,7 +82,17 @@ def certify(
         dict(names),
         lemmas,
         tuple(queries),
+        assumed,
     )
+
+
+def goal_of(specification: Specification, query: Query, assumed: Assumed, atoms: Atoms) -> Formula:
+    """What is proved, abstracted: the claim, under what it assumes, made anew from words.
+
+    Raises ``InputError`` for what nobody may assume.
+    """
+    claim = atoms.abstract(query.formula)
+    return f.implication(atoms.abstract(assumption(specification, query, assumed)), claim)
 
 
 def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> str | None:
@@ -109,6 +124,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
             certificate.lemmas,
             certificate.property,
             certificate.scenario,
+            certificate.assumed,
         )
     except RoadproofError as error:
         return Acceptance.REJECTED, f"the query cannot be derived: {error}"
@@ -162,6 +178,7 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
         "property": certificate.property,
         "scenario": certificate.scenario,
         "claim": certificate.claim,
+        **_assumed_data(certificate.assumed),
         "set": certificate.set_name,
         "options": dict(certificate.options),
         "view": VIEW,
@@ -177,6 +194,14 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
     }
 
 
+def _assumed_data(assumed: Assumed) -> dict[str, Any]:
+    """What is assumed, and the facts about motion that the proof uses; nothing where nothing is."""
+    if not assumed.said:
+        return {}
+    axioms = [{"schema": x.schema, "arguments": x.named()} for x in assumed.axioms]
+    return {"assuming": list(assumed.said), "axioms": axioms}
+
+
 def read_certificate(path: Path) -> Certificate:
     """A certificate from a file. Raises ``InputError`` where it is none."""
     return read_certificate_data(read_json(path), str(path))
@@ -184,7 +209,7 @@ def read_certificate(path: Path) -> Certificate:
 
 _FIELDS = (
     *("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions"),
-    *("formulas", "times", "instances", "lemmas", "queries"),
+    *("formulas", "times", "instances", "lemmas", "queries", "assuming", "axioms"),
 )
 
 
@@ -214,7 +239,26 @@ def read_certificate_data(content: object, where: str) -> Certificate:
         dict(names),
         tuple(_lemma(entry, f"{where}, lemmas") for entry in data.items("lemmas")),
         tuple(_query(entry, f"{where}, queries") for entry in data.items("queries")),
+        _assumed(data),
     )
+
+
+def _assumed(data: Fields) -> Assumed:
+    """The inverse of ``_assumed_data``."""
+    if not {"assuming", "axioms"} & {*data.content}:
+        return NOTHING
+    said, entries = read_assuming(data), data.items("axioms")
+    return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries))
+
+
+def _axiom(content: object, where: str) -> Axiom:
+    data = Fields(content, where, ("schema", "arguments"))
+    schema, arguments = data.text("schema"), data.named_texts("arguments")
+    if schema not in SCHEMAS:
+        raise InputError(f"{where}: {unknown('schema of motion', schema[:40], SCHEMAS)}")
+    if tuple(arguments) != SCHEMAS[schema]:
+        raise InputError(f"{where}: schema {schema} takes {', '.join(SCHEMAS[schema])}, in this order")
+    return Axiom(schema, tuple(arguments.values()))
 
 
 def _rows(data: Fields, field: str) -> list[list[Any]]:

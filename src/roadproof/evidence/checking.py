@@ -22,6 +22,7 @@ from roadproof.logic.rewrite import parameters_of
 from roadproof.spec.bind import default_values, values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
+from roadproof.spec.motion import statement
 from roadproof.spec.scenarios import Scenario, applied, name_of
 
 _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit
@@ -59,13 +60,15 @@ class Checker:
     def _certificate(self, path: Path, file: Certificate) -> Finding:
         outcome, reason = certificate.rule(file, self.library, self.ask)
         label = self.find_label(file.claim, file.set_name)
-        told = label_of(file)
-        if outcome is Acceptance.ACCEPTED and told is not None and told != label:
-            outcome, reason = Acceptance.REJECTED, misnamed("it", told, label)
+        label = None if file.assumed.said else label
+        named_by = label_of(file)
+        if outcome is Acceptance.ACCEPTED and named_by is not None and named_by != label:
+            outcome, reason = Acceptance.REJECTED, misnamed("it", named_by, label)
         if outcome is Acceptance.UNREADABLE:
             reason = with_hint(reason, file.claim)
         named = shown(label, file.set_name)
-        return Finding(str(path), "certificate", outcome, reason, "PROVED", named, file.claim)
+        told = statement(file.assumed.said, file.claim)
+        return Finding(str(path), "certificate", outcome, reason, "PROVED", named, told)
 
     def _drive(self, path: Path, content: object) -> Finding:
         file = drive_file.read_drive(content, str(path))

@@ -28,6 +28,7 @@ from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.traces import judge_trace
 from roadproof.spec.library import Library
+from roadproof.spec.motion import statement
 
 INDEX = "index.json"
 OTHER_LIBRARY = "whether its words meant the same in the other library that its index names"
@@ -193,7 +194,8 @@ def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Findin
 
 def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
-    said = Finding(entry.where, "index", Acceptance.ACCEPTED, "", verdict, entry.label, entry.claim or "")
+    claim = statement(entry.assuming, entry.claim) if entry.claim else ""
+    said = Finding(entry.where, "index", Acceptance.ACCEPTED, "", verdict, entry.label, claim)
     rejected = replace(said, outcome=Acceptance.REJECTED)
     reason = entry.fault or stray_evidence(entry)
     if reason:
@@ -220,7 +222,7 @@ def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     if reason:
         return replace(said, outcome=Acceptance.REJECTED, reason=reason)
     unchecked = tuple(dict.fromkeys((*finding.unchecked, *entry.unchecked)))
-    return replace(said, claim=entry.claim or finding.claim, checked=finding.checked, unchecked=unchecked)
+    return replace(said, claim=claim or finding.claim, checked=finding.checked, unchecked=unchecked)
 
 
 def _strays(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:

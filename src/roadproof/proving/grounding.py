@@ -49,13 +49,17 @@ class Window:
 
 @dataclass
 class Universal:
-    """A universal over time: at every moment of ``window``, what ``body`` says there."""
+    """A universal over time: at every moment of ``window``, what ``body`` says there.
+
+    ``easily`` is enough for ``body``, and speaks of that moment alone.
+    """
 
     site: Site
     switch: str
     window: Window
     body: Callable[[Moment], str]
     is_flat: bool
+    easily: Callable[[Moment], str]
     done: list[Moment] = field(default_factory=list)
 
 
@@ -173,18 +177,25 @@ class Grounding:
                     when = self._name_time(site, window.low)
                     self._require(switch, *window.smt(when), self.truth(body, positive, when))
                 else:
-                    self._wait(site, switch, window, body, lambda when: self.truth(body, positive, when))
+                    self._wait(site, switch, window, body, positive)
             case f.Until(left, interval, right) if positive:
                 window = self._window(moment, interval)
                 end = self._name_time(site, window.low)
                 self._require(switch, *window.smt(end), self.truth(right, True, end))
                 before = Window(window.low, end, strict=True)
-                self._wait(site, switch, before, left, lambda when: self.truth(left, True, when))
-            case f.Until(_, interval, _):
+                self._wait(site, switch, before, left, True)
+            case f.Until(_, interval, right):
                 until = formula
                 window = self._window(moment, interval)
-                self._wait(
-                    site, switch, window, None, lambda when: self._fails(until, site, window.low, when)
+                self.universals.append(
+                    Universal(
+                        site,
+                        switch,
+                        window,
+                        lambda when: self._fails(until, site, window.low, when),
+                        False,
+                        lambda when: self._easily(right, False, when),
+                    )
                 )
             case f.Some(variable, domain, body) | f.Every(variable, domain, body):
 
@@ -237,16 +248,35 @@ class Grounding:
     def _require(self, switch: str, *parts: str) -> None:
         self.session.tell(f"(assert (=> {switch} (and {' '.join(parts)})))")
 
-    def _wait(
-        self,
-        site: Site,
-        switch: str,
-        window: Window,
-        body: Formula | None,
-        instance: Callable[[Moment], str],
-    ) -> None:
-        flat = body is not None and f.is_state(body) and not _has_quantifier(body)
-        self.universals.append(Universal(site, switch, window, instance, flat))
+    def _wait(self, site: Site, switch: str, window: Window, body: Formula, positive: bool) -> None:
+        flat = f.is_state(body) and not _has_quantifier(body)
+        self.universals.append(
+            Universal(
+                site,
+                switch,
+                window,
+                lambda when: self.truth(body, positive, when),
+                flat,
+                lambda when: self._easily(body, positive, when),
+            )
+        )
+
+    def _easily(self, formula: Formula, positive: bool, moment: Moment) -> str:
+        """What is enough for ``formula`` to be true, or false, and speaks of ``moment`` alone."""
+        match formula:
+            case f.Truth() | f.Named():
+                return self.truth(formula, positive, moment)
+            case f.Not(body):
+                return self._easily(body, not positive, moment)
+            case f.And(parts) | f.Or(parts):
+                word = "and" if isinstance(formula, f.And) == positive else "or"
+                return f"({word} {' '.join(self._easily(p, positive, moment) for p in parts)})"
+            case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
+                return "false"
+            case f.Compare() | f.Occupies():
+                raise ValueError("abstract the formula first")
+            case _:
+                assert_never(formula)
 
     def _name_time(self, site: Site, earliest: Moment) -> Moment:
         name = self.names.setdefault(site, f"{self.prefixes[0]}{len(self.names) + 1}")

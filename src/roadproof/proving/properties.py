@@ -11,6 +11,7 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.spec.library import read_specification, unknown
+from roadproof.spec.motion import statement
 from roadproof.verdict import Verdict
 
 OWN = "claim"  # the id of claims that users bring
@@ -20,7 +21,10 @@ _INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
 
 @dataclass(frozen=True)
 class Task:
-    """One claim in one set, with the verdict that is expected; ``scenario`` None: of no single one."""
+    """One claim in one set, with the verdict that is expected; ``scenario`` None: of no single one.
+
+    ``assuming``: what the claim is asked under, in words.
+    """
 
     id: str
     part: str
@@ -29,19 +33,21 @@ class Task:
     set_name: str
     claim: str
     expected: Verdict
+    assuming: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
         """A name that no other claim has, fit for a file: ``P1-scenario-04-base``, ``claim-3f0a9c71``."""
         if self.id == OWN:
-            return name_of_claim(self.claim, self.set_name)
+            return name_of_claim(self.claim, self.set_name, self.assuming)
         middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
         return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}"
 
 
-def name_of_claim(claim: str, set_name: str) -> str:
-    """A name for a claim in a set, fit for a file: ``claim-3f0a9c71-base``."""
-    digest = hashlib.sha256(" ".join(claim.split()).encode()).hexdigest()
+def name_of_claim(claim: str, set_name: str, assuming: Sequence[str] = ()) -> str:
+    """A name for a claim in a set, under what is assumed, fit for a file: ``claim-3f0a9c71-base``."""
+    asked = statement(assuming, " ".join(claim.split()))
+    digest = hashlib.sha256(asked.encode()).hexdigest()
     return f"{OWN}-{digest[:8]}-{set_name}"
 
 

@@ -2,25 +2,27 @@
 
 import math
 import time
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.effort import Effort, Meter
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.certificate import Certificate, certify
-from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names
+from roadproof.evidence.certificate import Certificate, certify, goal_of
+from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names, prefix_form
 from roadproof.evidence.refutation import Countermodel
+from roadproof.evidence.times import ZERO
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.proving.countermodel import realise
 from roadproof.proving.roster import Roster, roster_for
-from roadproof.proving.search import GaveUp, InstanceSearch, Proof
+from roadproof.proving.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.proving.states import StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import Specification
+from roadproof.spec.motion import NOTHING, Assumed, Axiom, assumption, axiom_formula
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 
@@ -35,6 +37,8 @@ TURNS: tuple[tuple[bool, float], ...] = (
 )
 ON_FEW_LANES = 1.0
 VACUITY = 0.5
+NO_TRACE = "the only countermodels found over points in time are no traces"
+NO_PROOF = "no proof was found from what is known of motion"
 
 
 @dataclass(frozen=True)
@@ -64,21 +68,25 @@ def prove(
     effort: Effort | None = None,
     label: str = "",
     scenario: int | None = None,
+    assumed: Assumed = NOTHING,
 ) -> Result:
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
 
     Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
     above zero, roads, and signals as functions of time. A proof counts only once its certificate, derived
-    apart, has been answered unsat. Raises ``Late`` where the clock cuts it off.
+    apart, has been answered unsat. Where something is ``assumed`` nothing is refuted: a trace that has it at
+    finitely many instants need be no motion. Raises ``Late`` where the clock cuts it off, ``InputError`` for
+    what nobody may assume.
     """
     begun = time.monotonic()
     meter = (effort or Effort()).meter()
     atoms = Atoms()
-    abstracted = atoms.abstract(query.formula)
+    claim = atoms.abstract(query.formula)
+    premise = atoms.abstract(assumption(specification, query, assumed))
     defaults = default_values(specification.library)
     bounds = specification.library.bounds
     states = StateChecker(atoms, bounds, defaults)
-    attempt = _Attempt(query, atoms, bounds, defaults, states, meter)
+    attempt = _Attempt(query, atoms, bounds, defaults, states, meter, bool(assumed.said))
 
     def result(
         verdict: Verdict,
@@ -91,15 +99,21 @@ def prove(
 
     names: dict[Site, str] = {}
     proofs: list[Proof] = []
-    for goal in conjuncts(abstracted):
-        found = attempt.decide(goal, names)
+    for goal in conjuncts(claim):
+        found = attempt.decide(f.implication(premise, goal), names)
         if isinstance(found, Countermodel):
             return result(Verdict.REFUTED, "", None, found)
         if isinstance(found, GaveUp):
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
+    needed = _needed(specification, query, assumed.axioms, proofs)
+    if len(needed) < len(assumed.axioms):
+        fewer = Assumed(assumed.said, needed)
+        again = prove(specification, query, meter.effort(), label, scenario, fewer)
+        if again.holds:
+            return replace(again, seconds=time.monotonic() - begun, work=meter.spent + again.work)
     try:
-        certificate = _certificate(specification, query, abstracted, atoms, proofs, names, label, scenario)
+        certificate = _certificate(specification, query, assumed, proofs, names, label, scenario)
     except InputError as error:
         return result(Verdict.UNKNOWN, f"a proof was found, but no certificate can be made of it: {error}")
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
@@ -110,8 +124,8 @@ def prove(
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
             return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
-    premise = _premise(abstracted)
-    if premise is not None and attempt.never_holds(premise):
+    condition = _premise(claim)
+    if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
     return result(Verdict.PROVED, "", certificate)
 
@@ -142,12 +156,13 @@ class _Attempt:
     defaults: Mapping[str, Fraction]
     states: StateChecker
     meter: Meter
+    moving: bool
 
     def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
         """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
         last = GaveUp(self.meter.reason())
         turns = TURNS[-1:] if f.is_state(goal) else TURNS
-        roster = roster_for(goal, self.query.lanes)
+        roster = None if self.moving else roster_for(goal, self.query.lanes)
         for number, (wishful, units) in enumerate(turns, 1):
             if roster is not None and number == len(turns[:2]):
                 few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
@@ -165,18 +180,21 @@ class _Attempt:
         """What one search finds, a model of it made into a trace and judged."""
         found = search.run(meter)
         while not isinstance(found, Proof | GaveUp):
-            countermodel = realise(self.query, self.atoms, found, self.defaults, self.bounds)
+            countermodel = None if self.moving else self._realised(found)
             if countermodel is not None:
                 return countermodel
             if not search.widen():
-                return GaveUp("the only countermodels found over points in time are no traces")
+                return GaveUp(NO_PROOF if self.moving else NO_TRACE)
             found = search.run(meter)
         return found
 
-    def never_holds(self, premise: Formula) -> bool:
-        """Whether the negation of ``premise`` is proved quickly, its query derived apart as for a claim."""
+    def _realised(self, found: Model) -> Countermodel | None:
+        return realise(self.query, self.atoms, found, self.defaults, self.bounds)
+
+    def never_holds(self, premise: Formula, condition: Formula) -> bool:
+        """Whether it is proved quickly that ``condition`` is false, its query derived apart, too."""
         names: dict[Site, str] = {}
-        goal = f.negation(premise)
+        goal = f.implication(premise, f.negation(condition))
         proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
         if not isinstance(proof, Proof):
             return False
@@ -190,15 +208,14 @@ class _Attempt:
         self, goal: Formula, names: dict[Site, str], wishful: bool, roster: Roster | None = None
     ) -> InstanceSearch:
         return InstanceSearch(
-            goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful, roster
+            goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful, roster, self.moving
         )
 
 
 def _certificate(
     specification: Specification,
     query: Query,
-    abstracted: Formula,
-    atoms: Atoms,
+    assumed: Assumed,
     proofs: list[Proof],
     names: dict[Site, str],
     label: str,
@@ -213,6 +230,19 @@ def _certificate(
         for lemma in proof.lemmas:
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
+    atoms = Atoms()
+    abstracted = goal_of(specification, query, assumed, atoms)
     met = met_names(abstracted, atoms, instances, names, specification.library.bounds, query.lanes)
     made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-    return certify(specification, query, instances, met, made, label, scenario)
+    return certify(specification, query, instances, met, made, label, scenario, assumed)
+
+
+def _needed(
+    specification: Specification, query: Query, axioms: Sequence[Axiom], proofs: Sequence[Proof]
+) -> tuple[Axiom, ...]:
+    """Those of ``axioms`` of which a proof has instances: each is a universal that holds at time 0."""
+    sites = {site for proof in proofs for site in proof.instances}
+    atoms = Atoms()
+    atoms.abstract(query.formula)
+    formulas = {x: atoms.abstract(axiom_formula(specification, query, x)) for x in axioms}
+    return tuple(x for x in axioms if Site(prefix_form(formulas[x]), True, str(ZERO)) in sites)

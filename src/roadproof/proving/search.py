@@ -70,7 +70,8 @@ class InstanceSearch:
 
     ``wishful`` asks for models with few instants, which ends the hunt for a countermodel sooner and
     a hard proof later. ``names`` is shared between searches whose proofs are to be put together.
-    With a ``roster`` only countermodels are found, on a road of just its lanes and lanelets.
+    With a ``roster`` only countermodels are found, on a road of just its lanes and lanelets. ``sparing``:
+    nothing is instantiated where the model already has what is enough for it at that moment.
     """
 
     def __init__(
@@ -83,6 +84,7 @@ class InstanceSearch:
         names: dict[Site, str],
         wishful: bool,
         roster: Roster | None = None,
+        sparing: bool = False,
     ) -> None:
         prefixes = free_prefix("t", bounds), free_prefix("M", {*lanes, *road_names(claim)})
         self.grounding = Grounding(
@@ -97,6 +99,7 @@ class InstanceSearch:
             variables = sorted({x.variable for x in open_quantifiers(claim)})
             self.grounding.elements |= dict.fromkeys(variables[:1], f.Domain("lanes"))
         self.states = states
+        self.sparing = sparing
         self.bound_moments = _bounds_of(claim)
         for bound in self.bound_moments:
             self.grounding.declare_moment(bound)
@@ -120,18 +123,26 @@ class InstanceSearch:
                 out = meter.is_out()
                 return GaveUp(meter.reason() if out else "z3 gave no answer to the ground query")
             values = self._values()
-            if self._instantiate(values, meter):
+            if self._instantiate(values, meter, flat_only=self.sparing):
                 if len(self.grounding.elements) > MOST_ELEMENTS:
                     return GaveUp(f"no end after {MOST_ELEMENTS} lanes and lanelets that must exist")
                 continue
             states = self._states(values)
             refused = self._lemmas(states, values, meter)
-            if refused is None:
-                signals = {instant: self.states.signals(state) for instant, state in states.items()}
-                return Model(values, states, signals, dict(self.grounding.elements), self._facts())
             if isinstance(refused, GaveUp):
                 return refused
+            if refused is None and not (self.sparing and self._look_on(values, meter)):
+                signals = {instant: self.states.signals(state) for instant, state in states.items()}
+                return Model(values, states, signals, dict(self.grounding.elements), self._facts())
         return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation")
+
+    def _look_on(self, values: dict[str, Fraction], meter: Meter) -> bool:
+        """Instantiate also what speaks of further moments; whether there is more to be looked at.
+
+        What was asked of the model without being told to the solver yet has to be possible, too.
+        """
+        known = len(self.grounding.applied)
+        return self._instantiate(values, meter) or len(self.grounding.applied) > known
 
     def widen(self) -> bool:
         """Add moments between and around those known; False where that was done often enough."""
@@ -188,8 +199,11 @@ class InstanceSearch:
             frontier = shifted
         return pool
 
-    def _instantiate(self, values: dict[str, Fraction], meter: Meter) -> bool:
-        """Instantiate what the model violates; whether there was anything."""
+    def _instantiate(self, values: dict[str, Fraction], meter: Meter, flat_only: bool = False) -> bool:
+        """Instantiate what the model violates; whether there was anything.
+
+        ``flat_only``: but for what speaks of further moments.
+        """
         grounding = self.grounding
         switches = [u.switch for u in grounding.universals] + [u.switch for u in grounding.road_universals]
         active = {s for s, on in zip(switches, grounding.session.values(switches), strict=True) if on}
@@ -200,8 +214,11 @@ class InstanceSearch:
             if universal.switch in active:
                 wanted += [(universal, moment) for moment in _missing(universal, pool, values)]
         flat = [(u, m, u.body(m)) for u, m in wanted if u.is_flat]
-        truths = grounding.session.values([body for _, _, body in flat])
         chosen = [(u, m) for u, m in wanted if not u.is_flat]
+        if self.sparing:
+            flat += [] if flat_only else [(u, m, u.easily(m)) for u, m in chosen]
+            chosen = []
+        truths = grounding.session.values([body for _, _, body in flat])
         chosen += [(u, m) for (u, m, _), true in zip(flat, truths, strict=True) if not true]
         meter.spend(INSTANCE * len(chosen))
         for universal, moment in chosen:

@@ -7,6 +7,7 @@ from itertools import groupby
 from roadproof.analysis.claims import Answered
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel
+from roadproof.spec.motion import Assumed, statement
 from roadproof.spec.scenarios import LANE
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
@@ -18,7 +19,13 @@ def line(answered: Answered) -> str:
     scenario = "" if task.scenario is None else f" {task.scenario}"
     mark = "" if answered.verdict is answered.expected else f", expected {answered.expected}"
     seconds = answered.settled.result.seconds
-    return f"{task.id}{scenario} {task.set_name}: {answered.verdict}{mark} ({seconds:.2f} s)"
+    return f"{task.id}{scenario} {task.set_name}: {verdict(answered)}{mark} ({seconds:.2f} s)"
+
+
+def verdict(answered: Answered) -> str:
+    """The verdict; of a claim that is refuted also by what, since not every trace can be driven."""
+    by = answered.settled.refuted_by
+    return str(answered.verdict) if by is None else f"{answered.verdict} by a {by}"
 
 
 def table(answered: Sequence[Answered]) -> str:
@@ -28,10 +35,10 @@ def table(answered: Sequence[Answered]) -> str:
         answered, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
     ):
         found = list(group)
-        verdicts = sorted({str(s.verdict) for s in found})
-        expected = str(found[0].expected)
+        verdicts = sorted({verdict(s) for s in found})
+        expected = found[0].expected
         slowest = max(s.settled.result.seconds for s in found)
-        mark = "" if verdicts == [expected] else f"   expected {expected}"
+        mark = "" if all(s.verdict is expected for s in found) else f"   expected {expected}"
         count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
         rows.append(
             f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
@@ -44,7 +51,7 @@ def details(answered: Answered) -> str:
     """The verdict with its evidence: certificate in numbers, drive or trace."""
     task, settled = answered.task, answered.settled
     result = settled.result
-    lines = [f"{settled.verdict}  {' '.join(task.claim.split())}"]
+    lines = [f"{verdict(answered)}  {statement(task.assuming, ' '.join(task.claim.split()))}"]
     within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
     lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
     if result.reason:
@@ -57,11 +64,22 @@ def details(answered: Answered) -> str:
             f"{len(certificate.lemmas)} lemma{'s' if len(certificate.lemmas) != 1 else ''}"
             + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
         )
+        lines += _show_axioms(certificate.assumed)
     if settled.drive is not None:
         lines += _show_drive(settled.drive)
     elif result.countermodel is not None:
         lines += _show_countermodel(result.countermodel)
     return "\n".join(lines)
+
+
+def _show_axioms(assumed: Assumed) -> list[str]:
+    """What the proof uses of motion, by its schemas."""
+    if not assumed.said:
+        return []
+    if not assumed.axioms:
+        return ["  it holds without any of that: nothing known of motion was needed"]
+    shown = (f"{x.schema}({', '.join(x.arguments)})" for x in assumed.axioms)
+    return [f"  of motion: {', '.join(shown)}"]
 
 
 def _show_drive(judged: Judged) -> list[str]:
@@ -84,7 +102,7 @@ def _short(value: Fraction) -> str:
 
 def _show_countermodel(countermodel: Countermodel) -> list[str]:
     lines = [
-        "  false on this trace over points in time, judged; it may jump, and no drive was found:",
+        "  false on this trace over points in time, judged; it may jump:",
         f"    between two instants it keeps the state of the one {countermodel.held}",
     ]
     if countermodel.parameters:

@@ -4,15 +4,18 @@ What searches for drives is imported when one is looked for: most claims are pro
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from roadproof.effort import Effort, Late
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.judged import Judged
+from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
 from roadproof.spec.library import Specification
+from roadproof.spec.motion import under_limits
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from roadproof.searching.ask import Search
 
 DRIVE = 5.0  # units of work for a drive that refutes
+BEFORE = 5.0  # units for a proof from what is known of motion, before a drive is looked for
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,13 @@ class Settled:
         """A drive refutes also where no countermodel over points in time was found."""
         return Verdict.REFUTED if self.drive is not None else self.result.verdict
 
+    @property
+    def refuted_by(self) -> Literal["drive", "trace"] | None:
+        """Whether a vehicle can drive what refutes the claim; None where nothing does."""
+        if self.verdict is not Verdict.REFUTED:
+            return None
+        return "trace" if self.drive is None else "drive"
+
 
 def settle(
     specification: Specification,
@@ -47,26 +58,65 @@ def settle(
     label: str = "",
     scenario: int | None = None,
     seek_drive: bool = True,
+    said: Sequence[str] = (),
 ) -> Settled:
     """Prove or refute a claim; a refuted or undecided one also by a drive, where there is one.
 
-    UNKNOWN where the clock cuts the search off.
+    ``said``: what is assumed, in words; of motions only a drive refutes. UNKNOWN where the clock cuts the
+    search off.
     """
     begun = time.monotonic()
+    if said:
+        return _settle_of_motions(specification, query, said, effort, label, scenario, seek_drive)
     try:
         result = prove(specification, query, effort, label, scenario)
     except Late as late:
         return in_doubt(str(late), begun)
     if not seek_drive or result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
         return Settled(result)
+    try:
+        return Settled(result, _drive_against(query, specification, effort))
+    except Late as late:
+        return Settled(result) if result.verdict is Verdict.REFUTED else in_doubt(str(late), begun)
+
+
+def _settle_of_motions(
+    specification: Specification,
+    query: Query,
+    said: Sequence[str],
+    effort: Effort,
+    label: str,
+    scenario: int | None,
+    seek_drive: bool,
+) -> Settled:
+    """A quick proof, else a drive on which the claim is false within the limits said, else a long proof."""
+    begun = time.monotonic()
+    asked = specification, query, said
+    try:
+        result = prove_of_motions(*asked, effort.of(min(BEFORE, effort.units)), label, scenario)
+        if result.holds:
+            return Settled(result)
+        drive = _drive_against(under_limits(*asked), specification, effort) if seek_drive else None
+        if drive is not None:
+            return Settled(replace(result, reason=""), drive)
+        if effort.units > BEFORE:
+            result = prove_of_motions(*asked, effort, label, scenario)
+    except Late as late:
+        return in_doubt(str(late), begun)
+    sought = "no drive was found that refutes it" if seek_drive else "no drive that refutes it was looked for"
+    seconds = time.monotonic() - begun
+    reason = result.reason if result.holds else f"{result.reason}; {sought}"
+    return Settled(replace(result, reason=reason, seconds=seconds))
+
+
+def _drive_against(claim: Query, specification: Specification, effort: Effort) -> Judged | None:
+    """A drive on which ``claim`` is false; None where none is found, or it is not about drives."""
     from roadproof.searching.refute import refuting_drive
 
     try:
-        return Settled(result, refuting_drive(specification, query, effort.of(min(DRIVE, effort.units))))
-    except (InputError, UsageError):  # the claim is not about drives
-        return Settled(result)
-    except Late as late:
-        return Settled(result) if result.verdict is Verdict.REFUTED else in_doubt(str(late), begun)
+        return refuting_drive(specification, claim, effort.of(min(DRIVE, effort.units)))
+    except (InputError, UsageError):
+        return None
 
 
 def settle_bounded(search: "Search") -> Settled:

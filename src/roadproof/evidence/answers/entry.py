@@ -22,6 +22,7 @@ from roadproof.logic.formula import Formula
 from roadproof.spec.bind import values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
+from roadproof.spec.motion import under_limits
 
 # What the evidence of an entry is to show of its claim: a proof of it, a proof that it never holds, a drive
 # on which it holds, a drive (or a trace) on which it does not; nothing, where the verdict promises nothing.
@@ -55,7 +56,7 @@ class Entry:
     """``key`` is what only one entry of an index may have; ``file`` is a name inside the index's folder.
 
     ``claim`` None: what the file says, where ``fault_of`` finds no fault in it. ``trace`` is a counterexample
-    inside the index.
+    inside the index. ``assuming``: what the claim is said under.
     """
 
     common: Common
@@ -71,6 +72,7 @@ class Entry:
     unchecked: tuple[str, ...] = ()
     fault: str = ""
     fault_of: Callable[[str], str] | None = None
+    assuming: tuple[str, ...] = ()
 
 
 def common_of(data: Fields, library: Library, set_name: str, where: str = "") -> Common:
@@ -129,6 +131,9 @@ def mismatch(entry: Entry, said: Certificate | DriveFile) -> str:
             difference = _other_values(entry, said)
             if difference:
                 return difference
+        elif said.assumed.said != entry.assuming:
+            there, here = (", ".join(x) or "nothing" for x in (said.assumed.said, entry.assuming))
+            return f"{entry.where} assumes {here}, but its file {there}"
         return _other_claim(entry, said)
     except RoadproofError as error:
         return f"{entry.where}: {error}"
@@ -153,6 +158,10 @@ def _other_claim(entry: Entry, said: Certificate | DriveFile) -> str:
     if written.strip() == entry.claim.strip() and entry.shows in ("proof", "drive"):
         return ""
     wanted = entry.common.formula(entry.claim)
+    if entry.shows == "counterexample" and entry.assuming:
+        specification = entry.common.specification
+        claim = read_claim(specification, entry.claim)
+        wanted = under_limits(specification, claim, entry.assuming).formula
     if entry.shows in ("impossibility", "counterexample"):
         wanted = f.negation(wanted)
     if entry.common.formula(written) == wanted:

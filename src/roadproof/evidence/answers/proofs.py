@@ -5,10 +5,12 @@ from typing import Any
 
 from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields
+from roadproof.evidence.strict import Fields, read_assuming
 
 SCHEMA = "roadproof/index/1"
-_ENTRY = ("property", "part", "scenario", "set", "claim", "verdict", "evidence", "counterexample")
+_ENTRY = (
+    *("property", "part", "scenario", "set", "claim", "assuming", "verdict", "evidence", "counterexample"),
+)
 OWN = "claim"  # what a claim is called that is no template property
 
 
@@ -22,12 +24,16 @@ def _entry(line: Fields, background: Background) -> Entry:
     claim, set_name, verdict = line.text("claim"), line.text("set"), line.text("verdict")
     scenario = line.whole("scenario") if line.get("scenario") is not None else None
     told = (line.text("property"), line.text("part"), scenario)
-    label = background.find_label(claim, set_name)
+    assuming = read_assuming(line) if "assuming" in line.content else ()
+    label = None if assuming else background.find_label(claim, set_name)
     own = told[0] == OWN and scenario is None and (not told[1] or told[1].isdecimal())
+    fault = "" if told == label or own else misnamed(line.where, told, label)
+    if assuming and line.has("counterexample"):
+        fault = f"{line.where} assumes motion, so that only a drive refutes it: a trace may jump"
     return Entry(
         background.at(set_name),
         line.where,
-        (" ".join(claim.split()), set_name),
+        (" ".join(claim.split()), set_name, assuming),
         verdict,
         shown(label, set_name),
         shows_of(verdict, line.where),
@@ -35,7 +41,8 @@ def _entry(line: Fields, background: Background) -> Entry:
         evidence_name(line, "evidence"),
         _trace(line),
         unchecked=unchecked_of(verdict),
-        fault="" if told == label or own else misnamed(line.where, told, label),
+        fault=fault,
+        assuming=assuming,
     )
 
 

@@ -1,0 +1,247 @@
+"""What a claim may be proved under: that its vehicles move, and within which limits.
+
+``assuming motion: CLAIM`` says that the claim holds on every trace that is a motion (``logic.motion``);
+``assuming motion, a_lon(SV) <= 3 m/s^2: CLAIM`` on every one that keeps a limit. What is proved is
+``axioms -> claim``. An axiom is kept as the name of its schema and the texts of its arguments, and its
+formula is made of them each time it is needed: no other formula can be assumed.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from roadproof.errors import InputError, Position, TextError
+from roadproof.logic import formula as f
+from roadproof.logic import motion, syntax
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.rewrite import terms_of, vehicles_of
+from roadproof.logic.show import as_syntax, text
+from roadproof.logic.terms import Term
+from roadproof.signals import LIMITED
+from roadproof.spec import arithmetic
+from roadproof.spec.compose import always, both, implication
+from roadproof.spec.elaborate import elaborate, read_claim
+from roadproof.spec.elaboration import Elaborator
+from roadproof.spec.library import Specification, unknown
+from roadproof.spec.quantity import Quantity
+from roadproof.spec.query import Query
+from roadproof.world.vehicle import Vehicle
+
+MOTION = "motion"
+SOURCE = "what is assumed"
+_HEAD = re.compile(r"\s*assuming\s+(motion\b[^:]*):", re.ASCII)
+_START = Position(1, 1)
+MOST_AXIOMS = 500
+
+SCHEMAS: Mapping[str, tuple[str, ...]] = {
+    "at-most": ("left", "right"),
+    "below": ("left", "right"),
+    "meets": ("left", "right"),
+    "leaves": ("inside",),
+    "within": ("left", "right", "speed", "time"),
+    "after": ("left", "right", "speed", "time"),
+}
+"""The schemas, and what each is made of: terms, but for ``inside``, a formula."""
+
+
+@dataclass(frozen=True)
+class Axiom:
+    """An instance of a schema: the texts of its arguments, in the order of ``SCHEMAS``."""
+
+    schema: str
+    arguments: tuple[str, ...]
+
+    def named(self) -> dict[str, str]:
+        """The arguments by name."""
+        return dict(zip(SCHEMAS[self.schema], self.arguments, strict=True))
+
+
+@dataclass(frozen=True)
+class Assumed:
+    """``said``: nothing, or motion and then limits, as words. ``axioms``: what a proof needs of it."""
+
+    said: tuple[str, ...] = ()
+    axioms: tuple[Axiom, ...] = ()
+
+
+@dataclass(frozen=True)
+class Under:
+    """A claim, and what it says that it assumes."""
+
+    query: Query
+    said: tuple[str, ...] = ()
+
+
+NOTHING = Assumed()
+
+
+# --- words ---------------------------------------------------------------------------------------
+
+
+def statement(said: Sequence[str], claim: str) -> str:
+    """A claim with what it assumes in front, which ``split`` takes apart."""
+    return f"assuming {', '.join(said)}: {claim}" if said else claim
+
+
+def split(written: str) -> tuple[tuple[str, ...], str]:
+    """What a claim says that it assumes, and the rest; its places in lines and columns stay."""
+    found = _HEAD.match(written)
+    if found is None:
+        return (), written
+    blank = "".join(c if c == "\n" else " " for c in found[0])
+    return tuple(" ".join(x.split()) for x in found[1].split(",")), blank + written[found.end() :]
+
+
+def read_under(specification: Specification, written: str, source: str = "claim") -> Under:
+    """A claim with what it says that it assumes. Raises ``InputError``."""
+    said, claim = split(written)
+    return under(specification, read_claim(specification, claim, source), said)
+
+
+def under(specification: Specification, query: Query, said: Sequence[str]) -> Under:
+    """A claim under what is assumed, each limit written alike whoever wrote it. Raises ``InputError``."""
+    limits = (x.text for x in _limits(specification, query, said))
+    return Under(query, tuple(dict.fromkeys([*said[:1], *limits])))
+
+
+def limits_of(query: Query, name: str, model: Vehicle) -> Iterator[str]:
+    """What a model says of the signals of a vehicle that a claim speaks of, and of their rates."""
+    found = {x for side in terms_of(query.formula) for x in t.leaves(side) if isinstance(x, t.Signal)}
+    spoken = {x.name for x in found if x.vehicle == name}
+    while more := {motion.RATES[x] for x in spoken if x in motion.RATES} - spoken:
+        spoken |= more
+    for signal in (x for x in LIMITED if x in spoken):
+        low, high = getattr(model, signal)
+        dimension = t.SIGNAL_DIMENSIONS[signal]
+        for said in (
+            f.Compare(t.Signal(signal, name), ">=", t.Number(low, dimension)),
+            f.Compare(t.Signal(signal, name), "<=", t.Number(high, dimension)),
+        ):
+            yield text(as_syntax(said))
+
+
+def under_limits(specification: Specification, query: Query, said: Sequence[str]) -> Query:
+    """The claim under the limits that it assumes: what a drive refutes, which is a motion anyway.
+
+    Raises ``InputError`` for what nobody may assume.
+    """
+    limits = [always(x) for x in _limits(specification, query, said)]
+    return implication(both(*limits), query) if limits else query
+
+
+def _limits(specification: Specification, query: Query, said: Sequence[str]) -> list[Query]:
+    if not said:
+        return []
+    if said[0] != MOTION:
+        raise InputError(f"assume={said[0][:40]!r}: only motion can be assumed, and limits after it")
+    return [_limit(specification, query, x) for x in said[1:]]
+
+
+def _limit(specification: Specification, query: Query, written: str) -> Query:
+    """A signal of a vehicle of the claim compared with a number."""
+    read = _elaborated(specification, query, written)
+    made = read.formula
+    if not (
+        isinstance(made, f.Compare)
+        and isinstance(made.left, t.Signal)
+        and t.constant_value(made.right) is not None
+    ):
+        raise InputError(
+            f"'{written[:80]}' is no limit: compare a signal with a number, such as a_lon(SV) <= 3 m/s^2"
+        )
+    return Query(read.claim, made, read.vehicles, read.lanes)
+
+
+# --- axioms --------------------------------------------------------------------------------------
+
+
+def assumption(specification: Specification, query: Query, assumed: Assumed) -> Formula:
+    """All that ``query`` is proved under, made anew from words. Raises ``InputError`` where it is not true
+    of every motion within the limits that are said, or speaks of what the claim does not."""
+    if under(specification, query, assumed.said).said != assumed.said:
+        raise InputError(f"what is assumed is written otherwise than it is read: {', '.join(assumed.said)}")
+    if assumed.axioms and not assumed.said:
+        raise InputError("facts about motion are used, but the claim does not say that it assumes motion")
+    if len(assumed.axioms) > MOST_AXIOMS:
+        raise InputError(f"{len(assumed.axioms)} facts about motion; at most {MOST_AXIOMS} are read")
+    limits = (motion.limit(x.formula) for x in _limits(specification, query, assumed.said))
+    axioms = (axiom_formula(specification, query, x) for x in assumed.axioms)
+    return f.conjunction(*limits, *axioms)
+
+
+def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> Formula:
+    """What an instance of a schema says. Raises ``InputError`` where it is none, and says why."""
+    if axiom.schema not in SCHEMAS:
+        raise InputError(unknown("schema of motion", axiom.schema[:40], SCHEMAS))
+    names = SCHEMAS[axiom.schema]
+    if len(names) != len(axiom.arguments):
+        raise InputError(f"schema {axiom.schema} takes {', '.join(names)}")
+    try:
+        return _made(specification, query, axiom)
+    except ValueError as error:
+        said = ", ".join(f"{name}={x[:60]}" for name, x in axiom.named().items())
+        raise InputError(f"schema {axiom.schema} does not take {said}: {error}") from None
+
+
+def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
+    if axiom.schema == "leaves":
+        return motion.leaves(_elaborated(specification, query, axiom.arguments[0]).formula)
+    left, right, *more = (_term(specification, query, x) for x in axiom.arguments)
+    _alike(left, right)
+    simple: dict[str, Callable[[Term, Term], Formula]] = {
+        "at-most": motion.at_most,
+        "below": motion.below,
+        "meets": motion.meets,
+    }
+    if axiom.schema in simple:
+        return simple[axiom.schema](left.term, right.term)
+    speed, time = more
+    bound = arithmetic.bound(time, specification.library.parameters, _START)
+    arithmetic.interval(bound, None, _START)
+    metres, seconds = left.dimension or right.dimension or (0, 0)
+    _alike(speed, Quantity(speed.term, (metres, seconds - 1)))
+    bounded = motion.within if axiom.schema == "within" else motion.after
+    return bounded(left.term, right.term, speed.term, bound)
+
+
+def _alike(one: Quantity, other: Quantity) -> None:
+    if None not in (one.dimension, other.dimension) and one.dimension != other.dimension:
+        raise ValueError("its units do not fit")
+
+
+def _elaborated(specification: Specification, query: Query, written: str) -> Query:
+    """A formula about what ``query`` speaks of. Raises ``InputError``."""
+    body = _parsed(written)
+    try:
+        made = elaborate(specification, syntax.Claim(query.claim.given, body))
+    except TextError as error:
+        raise error.locate(SOURCE, written) from None
+    strangers = {*vehicles_of(made.formula)} - {*query.vehicles} or {*made.lanes} - {*query.lanes}
+    _refuse(strangers, written)
+    return Query(syntax.Claim((), body), made.formula, made.vehicles, made.lanes)
+
+
+def _term(specification: Specification, query: Query, written: str) -> Quantity:
+    """A term about what ``query`` speaks of. Raises ``InputError``."""
+    walk = Elaborator(specification)
+    try:
+        made = walk.term(_parsed(written), walk.given(query.claim))
+    except TextError as error:
+        raise error.locate(SOURCE, written) from None
+    moving = {x.vehicle for x in t.leaves(made.term) if isinstance(x, t.Signal | t.Size)}
+    _refuse(moving - {*query.vehicles}, written)
+    return made
+
+
+def _refuse(strangers: set[str], written: str) -> None:
+    if strangers:
+        raise InputError(f"'{written[:80]}' speaks of {min(strangers)}, but the claim does not")
+
+
+def _parsed(written: str) -> syntax.Expression:
+    claim = parse_claim(written, SOURCE)
+    if claim.given:
+        raise InputError(f"'{written[:80]}' may declare nothing: it is read with the names of the claim")
+    return claim.body

@@ -1,0 +1,376 @@
+"""Claims about motions: proved from facts that are made anew, refuted by drives, and in doubt otherwise."""
+
+import json
+import shutil
+from collections.abc import Callable
+from copy import deepcopy
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import roadproof as rp
+from evidence.folders import answer, check, read, write
+from roadproof.effort import Effort
+from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
+from roadproof.evidence.finding import Acceptance
+from roadproof.logic import motion
+from roadproof.logic import terms as t
+from roadproof.proving.motion import prove_of_motions, stages
+from roadproof.proving.properties import name_of_claim
+from roadproof.proving.prover import prove
+from roadproof.searching import settle as settling
+from roadproof.searching.settle import settle
+from roadproof.solve.smt import ask
+from roadproof.spec import motion as spec_motion
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import bundled_library
+from roadproof.spec.motion import Assumed, Axiom
+from roadproof.verdict import Verdict
+
+specification = bundled_library().select("base")
+BEHIND = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) <= s(POV)"
+LIMITED = "v_lon(SV) <= 20 m/s -> G[0, 2 s] v_lon(SV) <= 24 m/s"
+LEAVES = "atLane(SV,L) and F not atLane(SV,L) -> atLane(SV,L) U not atLane(SV,L)"
+LIMIT = "a_lon(SV) <= 2 m/s^2"
+# Proved with facts of every schema.
+MOVING = [
+    (BEHIND, ("motion",)),
+    (LIMITED, ("motion", LIMIT)),
+    (LEAVES, ("motion",)),
+    ("s(SV) < s(POV) and F s(SV) > s(POV) -> F s(SV) = s(POV)", ("motion",)),
+    ("s(SV) <= s(POV) and F s(SV) > s(POV) -> F v_lon(SV) > v_lon(POV)", ("motion",)),
+    ("v_lon(SV) <= 9 m/s and G[0, 3 s] a_lon(SV) <= -3 m/s^2 -> F[0, 3 s] v_lon(SV) <= 0 m/s", ("motion",)),
+]
+
+
+@cache
+def proof(claim: str, said: tuple[str, ...] = ("motion",)) -> Any:
+    """The certificate of a claim about motions, as data."""
+    result = prove_of_motions(specification, read_claim(specification, claim), said, Effort(20))
+    assert result.verdict is Verdict.PROVED, result.reason
+    assert result.certificate is not None
+    return certificate_data(result.certificate)
+
+
+def refused(data: Any) -> str | None:
+    return refusal(read_certificate_data(data, "it"), specification.library, answer)
+
+
+@pytest.mark.parametrize(("claim", "said"), MOVING)
+def test_a_proof_of_motions_is_accepted_by_two_solvers(claim, said):
+    certificate = read_certificate_data(json.loads(json.dumps(proof(claim, said))), "it")
+    assert certificate.claim == claim
+    assert certificate.assumed.said == said
+    assert certificate.assumed.axioms
+    for solver in ("z3", "cvc5"):
+        asked = [ask(query, solver, Effort(20).meter()) for _, query in certificate.queries]
+        assert {*asked} == {"unsat"}
+    assert refused(proof(claim, said)) is None
+
+
+def test_all_schemas_are_used():
+    used = {x["schema"] for claim, said in MOVING for x in proof(claim, said)["axioms"]}
+    assert used == {*spec_motion.SCHEMAS}
+
+
+@pytest.mark.parametrize(("claim", "said"), [x for x in MOVING if x[0] != LEAVES])
+def test_the_same_is_refuted_by_a_trace_where_nothing_is_assumed(claim, said):
+    found = settle(specification, read_claim(specification, claim), Effort(5), seek_drive=False)
+    assert (found.verdict, found.refuted_by) == (Verdict.REFUTED, "trace")
+
+
+def test_what_needs_no_motion_is_proved_without():
+    claim = "danger(SV,POV) -> danger(POV,SV)"
+    data = proof(claim)
+    assert (data["assuming"], data["axioms"]) == (["motion"], [])
+    assert refused(data) is None
+
+
+def test_a_premise_that_no_motion_has_makes_a_claim_vacuous():
+    claim = "(G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) and F s(SV) > s(POV)) -> danger(SV,POV)"
+    found = settle(specification, read_claim(specification, claim), Effort(5), said=("motion",))
+    assert found.verdict is Verdict.VACUOUS
+    assert refused(certificate_data(found.result.certificate)) is None
+
+
+# --- refutations ---------------------------------------------------------------------------------
+
+FALSE = "v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) <= s(POV)"
+
+
+def test_only_a_drive_refutes_a_claim_about_motions():
+    query = read_claim(specification, FALSE)
+    with_drive = settle(specification, query, Effort(10), said=("motion",))
+    assert (with_drive.verdict, with_drive.refuted_by) == (Verdict.REFUTED, "drive")
+    assert with_drive.result.countermodel is None
+    without = settle(specification, query, Effort(2), seek_drive=False, said=("motion",))
+    assert without.verdict is Verdict.UNKNOWN
+    assert without.refuted_by is None
+    assert "no drive that refutes it was looked for" in without.result.reason
+
+
+def test_a_drive_refutes_within_the_limits_that_are_said():
+    query = read_claim(specification, "v_lon(SV) <= 20 m/s -> G[0, 2 s] v_lon(SV) <= 23 m/s")
+    found = settle(specification, query, Effort(10), said=("motion", LIMIT))
+    assert found.refuted_by == "drive"
+    assert found.drive.file.formula.startswith(f"not (G {LIMIT} -> ")
+    assert all(piece.a_lon <= 2 for piece in found.drive.file.drive.vehicles["SV"].pieces)
+
+
+def test_a_trace_with_all_facts_at_its_instants_refutes_nothing():
+    query = read_claim(specification, FALSE)
+    for axioms in stages(specification, query):
+        result = prove(specification, query, Effort(0.5), assumed=Assumed(("motion",), axioms))
+        assert (result.verdict, result.countermodel) == (Verdict.UNKNOWN, None)
+
+
+def test_without_a_proof_and_without_a_drive_it_is_in_doubt(monkeypatch):
+    monkeypatch.setattr(settling, "_drive_against", lambda *x: None)
+    found = settle(specification, read_claim(specification, FALSE), Effort(2), said=("motion",))
+    assert found.verdict is Verdict.UNKNOWN
+
+
+# --- planted faults: certificates ----------------------------------------------------------------
+
+
+def without_what_is_assumed(data):
+    del data["assuming"], data["axioms"]
+
+
+def without_axioms(data):
+    data["axioms"] = []
+
+
+def without_saying_so(data):
+    del data["assuming"]
+
+
+def nothing_said(data):
+    data["assuming"] = []
+
+
+def something_else_said(data):
+    data["assuming"] = ["rest"]
+
+
+def a_limit_more(data):
+    data["assuming"].append("v_lon(SV) <= 0 m/s")
+
+
+def a_false_limit(data):
+    data["assuming"].append("false")
+
+
+def another_schema(data):
+    data["axioms"][0]["schema"] = "at-most"
+
+
+def unknown_schema(data):
+    data["axioms"][0]["schema"] = "anything"
+
+
+def the_other_way_round(data):
+    arguments = data["axioms"][0]["arguments"]
+    arguments["left"], arguments["right"] = arguments["right"], arguments["left"]
+
+
+def no_affine_combination(data):
+    data["axioms"][0]["arguments"]["left"] = "s(SV)*s(SV)/(1 m)"
+
+
+def of_accelerations(data):
+    data["axioms"][0]["arguments"] = {"left": "a_lon(SV)", "right": "a_lon(POV)"}
+
+
+def of_a_stranger(data):
+    data["axioms"][0]["arguments"]["left"] = "s(POV9)"
+
+
+def a_formula_for_a_term(data):
+    data["axioms"][0]["arguments"]["left"] = "0 m <= 1 m and s(SV)"
+
+
+def an_argument_more(data):
+    data["axioms"][0]["arguments"]["speed"] = "1 m/s"
+
+
+def arguments_out_of_order(data):
+    data["axioms"][0]["arguments"] = dict(reversed(data["axioms"][0]["arguments"].items()))
+
+
+def a_formula_of_its_own(data):
+    data["axioms"][0]["formula"] = "false"
+
+
+def closed_for_open(data):
+    data["axioms"][0] = {"schema": "leaves", "arguments": {"inside": "s(SV) <= s(POV)"}}
+
+
+def a_negative_time(data):
+    arguments = {"left": "s(SV)", "right": "s(POV)", "speed": "1 m/s", "time": "-1 s"}
+    data["axioms"][0] = {"schema": "after", "arguments": arguments}
+
+
+def too_many(data):
+    data["axioms"] *= 501
+
+
+SPOILERS: list[Callable[[Any], None]] = [
+    without_what_is_assumed,
+    without_axioms,
+    without_saying_so,
+    nothing_said,
+    something_else_said,
+    a_limit_more,
+    a_false_limit,
+    another_schema,
+    unknown_schema,
+    the_other_way_round,
+    no_affine_combination,
+    of_accelerations,
+    of_a_stranger,
+    a_formula_for_a_term,
+    an_argument_more,
+    arguments_out_of_order,
+    a_formula_of_its_own,
+    closed_for_open,
+    a_negative_time,
+    too_many,
+]
+
+
+@pytest.mark.parametrize("planted", SPOILERS)
+def test_a_planted_fault_in_what_is_assumed_is_noticed(planted, tmp_path):
+    data = deepcopy(proof(BEHIND))
+    planted(data)
+    write(tmp_path / "it.json", data)
+    [finding] = check(tmp_path)
+    assert finding.outcome in (Acceptance.REJECTED, Acceptance.UNREADABLE)
+
+
+def test_a_hand_edited_axiom_in_the_queries_is_noticed(tmp_path):
+    """The facts are made of schema and arguments again: other formulas and queries do not fit them."""
+    told = json.dumps(proof(BEHIND))
+    edited = told.replace("v_lon(SV) <= v_lon(POV)| (not", "true| (not")
+    assert edited != told
+    write(tmp_path / "it.json", json.loads(edited))
+    [finding] = check(tmp_path)
+    assert finding.outcome is Acceptance.REJECTED
+
+
+@pytest.mark.parametrize("name", ["at_most", "below", "meets", "leaves", "within", "after"])
+def test_a_mutant_of_a_schema_is_noticed_by_who_has_the_right_one(name, monkeypatch):
+    """A prover whose schema says too much makes certificates that nobody else accepts."""
+    claims = [(c, said) for c, said in MOVING if name.replace("_", "-") in schemas_of(c, said)]
+    claim, said = claims[0]
+    right = getattr(motion, name)
+
+    def wrong(*arguments: Any) -> Any:
+        made = right(*arguments)
+        return type(made)(made.interval, made.body.parts[1])
+
+    with monkeypatch.context() as patch:
+        patch.setattr(motion, name, wrong)
+        query = read_claim(specification, claim)
+        result = prove(specification, query, Effort(5), assumed=Assumed(said, axioms_of(claim, said)))
+        assert result.verdict in (Verdict.PROVED, Verdict.VACUOUS)
+    assert refused(certificate_data(result.certificate)) is not None
+
+
+def schemas_of(claim: str, said: tuple[str, ...]) -> set[str]:
+    return {x["schema"] for x in proof(claim, said)["axioms"]}
+
+
+def axioms_of(claim: str, said: tuple[str, ...]) -> tuple[Axiom, ...]:
+    return read_certificate_data(proof(claim, said), "it").assumed.axioms
+
+
+def test_a_rate_that_is_none_proves_nothing_to_others(monkeypatch):
+    """Planted: the rate of s is taken to be v_lat."""
+    claim = "G v_lat(SV) <= v_lat(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
+    query = read_claim(specification, claim)
+    with monkeypatch.context() as patch:
+        patch.setattr(motion, "RATES", {**motion.RATES, "s": "v_lat"})
+        result = prove_of_motions(specification, query, ("motion",), Effort(5))
+        assert result.verdict is Verdict.PROVED
+    assert refused(certificate_data(result.certificate)) is not None
+    assert prove_of_motions(specification, query, ("motion",), Effort(2)).verdict is Verdict.UNKNOWN
+
+
+def test_rates_are_of_the_list_of_signals():
+    assert motion.RATES == {"s": "v_lon", "d": "v_lat", "v_lon": "a_lon", "v_lat": "a_lat"}
+    assert motion.rate(t.Signal("s", "SV")) == t.Signal("v_lon", "SV")
+
+
+# --- planted faults: folders ---------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A claim about motions, proved, and one that is refuted, each with its file in an index."""
+    out = tmp_path_factory.mktemp("made") / "out"
+    rp.prove(BEHIND, FALSE, assume="motion", jobs=1, out=out)
+    return out
+
+
+@pytest.fixture
+def folder(made: Path, tmp_path: Path) -> Path:
+    """The same, to be spoiled."""
+    shutil.copytree(made, tmp_path / "out")
+    return tmp_path / "out"
+
+
+def findings(folder: Path) -> list[Acceptance]:
+    return [x.outcome for x in check(folder)]
+
+
+def test_what_is_assumed_is_a_part_of_the_answer(folder):
+    told = [str(x) for x in check(folder)]
+    assert all("assuming motion: " in x for x in told)
+    assert {x["assuming"][0] for x in read(folder / "index.json")["claims"]} == {"motion"}
+    again = rp.prove(BEHIND, drive=False, jobs=1, out=folder)
+    assert (again.verdict, again.answers[0].settled.refuted_by) == (Verdict.REFUTED, "trace")
+    kept = rp.prove(BEHIND, assume="motion", jobs=1, out=folder)
+    assert kept.verdict is Verdict.PROVED
+    assert len(read(folder / "index.json")["claims"]) == 3
+    assert findings(folder) == [Acceptance.ACCEPTED] * 3
+    assert name_of_claim(BEHIND, "base") != name_of_claim(BEHIND, "base", ("motion",))
+    assert name_of_claim(BEHIND, "base", ("motion",)) != name_of_claim(BEHIND, "base", ("motion", LIMIT))
+
+
+def spoil(folder: Path, change: Callable[[dict[str, Any]], None], number: int) -> None:
+    index = read(folder / "index.json")
+    change(index["claims"][number])
+    write(folder / "index.json", index)
+
+
+def test_an_index_that_does_not_say_what_is_assumed_is_noticed_as_a_planted_fault(folder):
+    spoil(folder, lambda entry: entry.pop("assuming"), 0)
+    assert Acceptance.REJECTED in findings(folder)
+
+
+def test_an_index_that_says_a_limit_more_is_noticed_as_a_planted_fault(folder):
+    for number in (0, 1):
+        spoil(folder, lambda entry: entry["assuming"].append(LIMIT), number)
+    assert findings(folder).count(Acceptance.REJECTED) >= 2
+
+
+def test_a_trace_for_a_drive_is_noticed_as_a_planted_fault(folder):
+    free = rp.prove(BEHIND, drive=False, jobs=1).as_data()["verdicts"][0]
+
+    def jump(entry: dict[str, Any]) -> None:
+        entry |= {"verdict": "REFUTED", "evidence": None, "counterexample": free["counterexample"]}
+
+    spoil(folder, jump, 0)
+    told = [x for x in check(folder) if x.outcome is Acceptance.REJECTED]
+    assert any("only a drive refutes it" in x.reason for x in told)
+
+
+def test_a_certificate_without_what_it_assumes_is_noticed_as_a_planted_fault_of_its_folder(folder):
+    path = folder / read(folder / "index.json")["claims"][0]["evidence"]
+    data = read(path)
+    without_what_is_assumed(data)
+    write(path, data)
+    assert Acceptance.REJECTED in findings(folder)

@@ -1,0 +1,204 @@
+"""Facts about motion are true on every drive; faults planted in them are not; nothing else can be assumed."""
+
+import pytest
+
+from roadproof.errors import InputError
+from roadproof.logic import formula as f
+from roadproof.logic import motion
+from roadproof.logic import terms as t
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.motion import SCHEMAS, Assumed, Axiom, assumption, axiom_formula, split, statement, under
+from spec.motions import ABOUT, AXIOMS, holds, random_drive, specification
+
+DRIVES = [random_drive(seed) for seed in range(300)]
+
+
+def formula(axiom: Axiom) -> f.Formula:
+    return axiom_formula(specification, ABOUT, axiom)
+
+
+@pytest.mark.parametrize("axiom", AXIOMS, ids=str)
+def test_is_true_on_every_drive(axiom):
+    assert all(holds(formula(axiom), drive) for drive in DRIVES)
+
+
+@pytest.mark.parametrize("axiom", [x for x in AXIOMS if x.schema != "leaves"], ids=str)
+def test_what_it_speaks_of_happens(axiom):
+    """A fact that says nothing would be true, too: its premise holds, and does not hold for ever."""
+    premise = formula(axiom).body.parts[0].body
+    happens = f.Eventually(f.FOREVER, f.conjunction(premise, f.Eventually(f.FOREVER, f.negation(premise))))
+    assert any(holds(happens, drive) for drive in DRIVES)
+
+
+def test_every_schema_is_tried():
+    assert {x.schema for x in AXIOMS} == {*SCHEMAS}
+
+
+# --- planted faults ------------------------------------------------------------------------------
+
+ME, YOU = (t.Signal("s", vehicle) for vehicle in ("SV", "POV"))
+MY_SPEED, YOUR_SPEED = (t.Signal("v_lon", vehicle) for vehicle in ("SV", "POV"))
+BEHIND, FAR_BEHIND = f.Compare(ME, "<=", YOU), f.Compare(ME, "<", YOU)
+NOT_FASTER = f.Compare(MY_SPEED, "<=", YOUR_SPEED)
+
+
+def always(premise, left, right, interval=f.FOREVER):
+    """G (premise -> not (left U right))"""
+    return f.Always(f.FOREVER, f.implication(premise, f.negation(f.Until(left, interval, right))))
+
+
+def first(inside, outside):
+    """G (inside -> G inside or inside U outside)"""
+    kept = f.Always(f.FOREVER, inside)
+    either = f.disjunction(kept, f.Until(inside, f.FOREVER, outside))
+    return f.Always(f.FOREVER, f.implication(inside, either))
+
+
+TWO, FIVE = (t.number(seconds, (0, 1)) for seconds in (2, 5))
+
+
+def grown(metres, time=TWO):
+    """SV gains at most 1 m/s on POV for 2 s, and is then at most so many metres ahead of where it was."""
+    slow = f.Compare(MY_SPEED, "<=", t.Sum((YOUR_SPEED, t.number(1, (1, -1)))))
+    more = f.Compare(ME, "<=", t.Sum((YOU, t.number(metres, (1, 0)))))
+    return always(BEHIND, slow, f.negation(more), f.Interval(f.ZERO, time))
+
+
+FAULTS = {
+    "at-most, wrong sign": always(
+        BEHIND, f.disjunction(BEHIND, f.Compare(YOUR_SPEED, "<=", MY_SPEED)), f.negation(BEHIND)
+    ),
+    "at-most, whatever the rate": always(BEHIND, f.TRUE, f.negation(BEHIND)),
+    "at-most, rate of another": always(
+        BEHIND,
+        f.disjunction(BEHIND, f.Compare(t.Signal("v_lat", "SV"), "<=", t.Signal("v_lat", "POV"))),
+        f.negation(BEHIND),
+    ),
+    "at-most, without its premise": always(f.TRUE, f.disjunction(BEHIND, NOT_FASTER), f.negation(BEHIND)),
+    "at-most, strict in the end": always(BEHIND, f.disjunction(BEHIND, NOT_FASTER), f.negation(FAR_BEHIND)),
+    "below, closed": always(BEHIND, NOT_FASTER, f.negation(FAR_BEHIND)),
+    "below, where it is not reached": always(
+        FAR_BEHIND, f.disjunction(FAR_BEHIND, NOT_FASTER), f.negation(FAR_BEHIND)
+    ),
+    "below, not slower": always(FAR_BEHIND, f.Compare(MY_SPEED, ">=", YOUR_SPEED), f.negation(FAR_BEHIND)),
+    "meets, beyond": first(FAR_BEHIND, f.negation(BEHIND)),
+    "meets, closed": first(BEHIND, f.negation(BEHIND)),
+    "meets, of accelerations": first(
+        f.Compare(t.Signal("a_lon", "SV"), "<", f.ZERO),
+        f.conjunction(
+            f.Compare(t.Signal("a_lon", "SV"), "<=", f.ZERO), f.Compare(t.Signal("a_lon", "SV"), ">=", f.ZERO)
+        ),
+    ),
+    "leaves, closed": first(
+        f.negation(read_claim(specification, "atLane(SV,L)").formula),
+        read_claim(specification, "atLane(SV,L)").formula,
+    ),
+    "leaves, never": f.Always(
+        f.FOREVER,
+        f.implication(
+            read_claim(specification, "atLane(SV,L)").formula,
+            f.Always(f.FOREVER, read_claim(specification, "atLane(SV,L)").formula),
+        ),
+    ),
+    "within, half": grown(1),
+    "within, longer": grown(2, FIVE),
+    "within, a rate below zero for all of the time": always(
+        BEHIND,
+        f.Compare(MY_SPEED, "<=", t.Sum((YOUR_SPEED, t.number(-1, (1, -1))))),
+        f.negation(f.Compare(ME, "<=", t.Sum((YOU, t.number(-2, (1, 0)))))),
+        f.Interval(f.ZERO, TWO),
+    ),
+    "after, at once": f.Always(
+        f.FOREVER,
+        f.implication(
+            f.conjunction(BEHIND, f.Compare(MY_SPEED, "<=", t.Sum((YOUR_SPEED, t.number(-1, (1, -1)))))),
+            f.Always(
+                f.Interval(TWO, TWO),
+                f.Compare(ME, "<=", t.Sum((YOU, t.number(-2, (1, 0))))),
+            ),
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_in_a_schema_is_noticed(fault):
+    assert not all(holds(FAULTS[fault], drive) for drive in DRIVES)
+
+
+def test_the_faults_are_written_like_the_schemas():
+    kept = f.disjunction(BEHIND, NOT_FASTER)
+    assert always(BEHIND, kept, f.negation(BEHIND)) == motion.at_most(ME, YOU)
+    assert always(FAR_BEHIND, NOT_FASTER, f.negation(FAR_BEHIND)) == motion.below(ME, YOU)
+    assert grown(2) == motion.within(ME, YOU, t.number(1, (1, -1)), TWO)
+
+
+# --- what cannot be assumed ----------------------------------------------------------------------
+
+REFUSED = [
+    ("no-such-schema", ("s(SV)", "s(POV)"), "no schema of motion"),
+    ("below", ("s(SV)",), "takes left, right"),
+    ("below", ("s(SV)*s(POV)", "0 m*1 m"), "no affine combination"),
+    ("below", ("max(s(SV), s(POV))", "0 m"), "no affine combination"),
+    ("at-most", ("a_lon(SV)", "0 m/s^2"), "no affine combination"),
+    ("at-most", ("rho", "minSafe"), "neither side ever changes"),
+    ("below", ("s(SV)", "s(POV9)"), "speaks of POV9, but the claim does not"),
+    ("below", ("s(SV)", "3 m/s"), "units do not fit"),
+    ("below", ("s(SV) < 3 m", "s(POV)"), "a number is expected here"),
+    ("below", ("given A: vehicle: s(A)", "s(SV)"), "may declare nothing"),
+    ("meets", ("a_lon(SV)", "0 m/s^2"), "may jump"),
+    ("leaves", ("s(SV) <= s(POV)",), "not open"),
+    ("leaves", ("not atLane(SV,L)",), "not open"),
+    ("leaves", ("a_lon(SV) < 0 m/s^2",), "not open"),
+    ("leaves", ("inverse(s(SV) - s(POV)) > 0",), "not open"),
+    ("leaves", ("F s(SV) < s(POV)",), "not open"),
+    ("leaves", ("atLane(SV,L3)",), "speaks of L3, but the claim does not"),
+    ("leaves", ("s(SV)",), "is a number"),
+    ("within", ("s(SV)", "0 m", "v_lon(POV)", "1 s"), "may not change"),
+    ("within", ("s(SV)", "0 m", "3 m", "1 s"), "units do not fit"),
+    ("after", ("s(SV)", "0 m", "3 m/s", "1 s - rho"), "may never be negative"),
+    ("after", ("s(SV)", "0 m", "3 m/s", "-1 s"), "may not start in the past"),
+    ("after", ("s(SV)", "0 m", "3 m/s", "v_lon(SV)*1 s^2/(1 m)"), ""),
+]
+
+
+@pytest.mark.parametrize(("schema", "arguments", "why"), REFUSED)
+def test_refuses_what_is_no_fact_about_motion(schema, arguments, why):
+    with pytest.raises(InputError) as refused:
+        formula(Axiom(schema, arguments))
+    assert why in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        ("rest",),
+        ("motion", "s(SV) < s(POV)"),
+        ("motion", "false"),
+        ("motion", "v_lon(SV) <= 3 m/s and v_lon(POV) <= 3 m/s"),
+        ("motion", "v_lon(POV9) <= 3 m/s"),
+        ("motion", "v_lon(SV) <= rho*1 m/s^2"),
+        ("motion", "v_lon(SV)<=3 m/s"),
+        ("motion", "v_lon(SV) <= 3 m/s # as far as anybody knows"),
+        ("motion", "v_lon(SV) <= 3 m/s", "v_lon(SV) <= 3 m/s"),
+    ],
+)
+def test_refuses_what_is_no_limit_in_evidence(said):
+    with pytest.raises(InputError):
+        assumption(specification, ABOUT, Assumed(said))
+
+
+def test_facts_about_motion_are_used_only_where_the_claim_says_so():
+    with pytest.raises(InputError, match="does not say that it assumes motion"):
+        assumption(specification, ABOUT, Assumed((), (AXIOMS[0],)))
+    assert assumption(specification, ABOUT, Assumed()) == f.TRUE
+
+
+def test_what_is_assumed_is_read_as_it_is_written():
+    said, claim = split("assuming motion,\n a_lon(SV) <= 3.0 m/s^2: given v: m/s: v_lon(SV) <= v")
+    assert claim.strip() == "given v: m/s: v_lon(SV) <= v"
+    assert claim.splitlines()[1].index("given") == len(" a_lon(SV) <= 3.0 m/s^2: ")
+    found = under(specification, read_claim(specification, claim), said)
+    assert found.said == ("motion", "a_lon(SV) <= 3 m/s^2")
+    assert split(statement(found.said, claim.strip()))[0] == found.said
+    assert split("danger(SV,POV)") == ((), "danger(SV,POV)")
