@@ -17,7 +17,7 @@ from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.meaning import Fact
 from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.analysis.catalogue.showing import DANGER, GAP, Freedom, show
+from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import Division, divide
@@ -69,14 +69,14 @@ def queries(asked: Asked) -> dict[str, Query]:
     assert asked.classes is not None
     found = {name_of(n): applied(HOME.alone, Scenario(n, "base")) for n in NUMBERS}
     found |= {x.name: asked.class_query(x.name) for x in asked.classes.all()}
-    return found | {DANGER: HOME.read("initSafe(SV,POV) and F danger(SV,POV)")}
+    return found | {ENDANGERED: HOME.read("initSafe(SV,POV) and F danger(SV,POV)")}
 
 
 def one_by_one(queries: Mapping[str, Query], path: Path) -> set[str]:
     file = load_drive(path)
     drive = file.drive
     if "POV2" in drive.vehicles:
-        queries = {**queries, DANGER: HOME.read("initSafe(SV,POV2) and F danger(SV,POV2)")}
+        queries = {**queries, ENDANGERED: HOME.read("initSafe(SV,POV2) and F danger(SV,POV2)")}
     found = set()
     for name, query in queries.items():
         if set(query.vehicles) <= set(drive.vehicles):
@@ -110,7 +110,7 @@ def exchanged(file: DriveFile) -> DriveFile:
 def test_roles_are_fixed_or_any(asked: Asked, tmp_path: Path) -> None:
     path = EXAMPLE / "drives" / "braking.json"
     turned = written(tmp_path / "turned.json", exchanged(load_drive(path)))
-    assert names(asked, path) == {"scenario_4", "class_4", DANGER}
+    assert names(asked, path) == {"scenario_4", "class_4", ENDANGERED}
     assert "scenario_4" not in names(asked, turned)
     assert "scenario_4" in names(asked, turned, Freedom(roles=True))
 
@@ -157,11 +157,11 @@ def test_danger_that_no_scenario_covers_is_a_gap(asked: Asked, tmp_path: Path) -
     """A leader that brakes, among scenarios that know of cut-ins only."""
     braking = load_drive(EXAMPLE / "drives" / "braking.json")
     turned = show(Concrete("x", str(written(tmp_path / "a.json", exchanged(braking)))), asked, FIXED)
-    assert DANGER in turned.names
+    assert ENDANGERED in turned.names
     assert GAP not in turned.names  # it is a scenario in other roles
     few = Asked(HOME.alone, (1, 2), None, asked.values)
     gap = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), few, FIXED)
-    assert gap.names == {DANGER, GAP}
+    assert gap.names == {ENDANGERED, GAP}
     (fault,) = tested.tested(few, [replace(gap, claims=())], [], [], tested.targets_of(few), 0.5).faults
     assert "a gap, which no scenario covers" in fault.told
 

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from asking import prove, search_for
+from report.edges import cut_off
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.deciding import (
     Decided,
@@ -22,11 +23,12 @@ from roadproof.analysis.order.relation import reachable, transitive_reduction
 from roadproof.analysis.order.study import Order
 from roadproof.cli.main import main
 from roadproof.effort import Effort
-from roadproof.report.order import as_dot
+from roadproof.report.order import as_dot, as_text, compose_order
 from roadproof.searching.ask import ask
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.spec.scenarios import Scenario
+from roadproof.spec.words import called
 
 BASE = bundled_library().select("base")
 
@@ -56,7 +58,15 @@ def test_implications_are_chains_of_edges() -> None:
     assert certificate is not None
     edge = Edge(one, other, read_claim(BASE, "true"), certificate)
     order = Order((Kind((one,), 0), Kind((other,), 0)), (edge,), (edge,), (), (), ())
-    assert as_dot(order).count("->") == 1
+    words = called(BASE, (1,))
+    graph = as_dot(order, words)
+    assert graph.count("->") == 1
+    assert graph.count('label="1@') == graph.count("cut-in, lane keep, main road") == 2
+    figure = compose_order(order, "implications in base and ext; an arrow leads to what is implied", words)
+    assert cut_off(figure) == []
+    assert "cut-in, lane keep\nmain road" in [x.get_text() for x in figure.axes[0].texts]
+    told = as_text(order, 1.0, words).splitlines()
+    assert told[:3] == ["1@base -> 1@ext", "  1: cut-in, lane keep", "  1: main road"]
 
 
 @given(st.sets(st.tuples(st.sampled_from("abcde"), st.sampled_from("abcde"))))

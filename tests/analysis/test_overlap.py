@@ -1,12 +1,14 @@
 """Overlap: verdicts against the known list, and the evidence behind each checked apart."""
 
 import json
+from itertools import combinations
 from pathlib import Path
 
 import pytest
 
 from asking import prove
 from planting import plant
+from report.edges import cut_off
 from roadproof.analysis import overlap
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.meeting import Meeting, conjunctions
@@ -17,17 +19,26 @@ from roadproof.effort import Effort
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
-from roadproof.report.overlap import as_csv, as_matrix, draw_overlap
+from roadproof.report.overlap import (
+    as_csv,
+    as_matrix,
+    as_text,
+    compose_overlap,
+    draw_overlap,
+    sectors_among,
+)
 from roadproof.solve.smt import ask
 from roadproof.spec.compose import negation, of_parts
 from roadproof.spec.elaborate import apply_definition, read_claim
 from roadproof.spec.library import bundled_library
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, read_numbers, without_sectors
+from roadproof.spec.words import Words, called
 from roadproof.study.frame import conduct
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")
+WORDS = called(BASE)
 BASIS = Basis(BASE)
 
 
@@ -244,8 +255,9 @@ def test_the_matrix_is_symmetric_within_a_set_only() -> None:
     rows = as_matrix(answers, across=False).splitlines()
     assert rows[:4] == ["      1  4  5", "   1     .  #", "   4  .     ?", "   5  #  ?   "]
     assert as_matrix(answers, across=True).splitlines()[:3] == ["      4  5", "   1  .  #", "   4     ?"]
-    assert as_csv(answers).splitlines()[1] == (
-        '1,4,base,base,IMPOSSIBLE,"aheadOf(SV,POV) and true","aheadOf(SV, POV); not aheadOf(SV, POV)",,'
+    assert as_csv(answers, WORDS).splitlines()[1] == (
+        '1,4,base,base,IMPOSSIBLE,"aheadOf(SV,POV) and true","aheadOf(SV, POV); not aheadOf(SV, POV)",,,'
+        '"cut-in, lane keep, main road","deceleration ahead, lane keep, main road"'
     )
 
 
@@ -257,9 +269,36 @@ def test_the_heat_map_shows_every_core_once() -> None:
         verdict(1, 4, "IMPOSSIBLE", *core),
         verdict(3, 4, "WITNESSED"),
     ]
-    drawn = draw_overlap(answers, "title", across=False)
+    drawn = draw_overlap(answers, "title", False, WORDS)
     assert drawn["png"].startswith(b"\x89PNG")
     assert drawn["svg"].count(b"not sameLane") == 1
+
+
+def test_the_heat_map_is_one_triangle_with_names_in_groups() -> None:
+    answers = [verdict(a, b, "WITNESSED") for a, b in combinations((1, 4, 9, 12), 2)]
+    figure = compose_overlap(answers, "title", False, WORDS)
+    assert cut_off(figure) == []
+    axes, _ = figure.axes
+    assert [x.get_text() for x in axes.get_yticklabels()] == [
+        "4  deceleration ahead, lane keep",
+        "9  cut-in, lane keep",
+        "12  deceleration ahead, lane keep",
+    ]
+    assert [x.get_text() for x in axes.get_xticklabels()] == ["1", "4", "9"]
+    assert len(axes.patches) == 6 + 1  # the cells, and what the colour means
+    groups = ["main road", "merge zone"]
+    assert [x.get_text() for x in axes.texts] == [*groups, *groups]
+    across, _ = compose_overlap(answers, "title", True, WORDS).axes
+    assert (across.get_ylabel(), across.get_xlabel()) == ("set base", "set base")
+    assert sectors_among((1, 4, 9, 99), {**WORDS, 99: Words(99)}) == [
+        (0, 2, "main road"),
+        (2, 3, "merge zone"),
+    ]
+
+
+def test_the_text_says_what_numbers_mean() -> None:
+    told = as_text([verdict(1, 4, "WITNESSED")], False, called(BASE, (1, 4))).splitlines()
+    assert told[-3:] == ["  1: cut-in, lane keep", "  4: deceleration ahead, lane keep", "  1, 4: main road"]
 
 
 def test_evidence_lies_beside_a_json_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,7 +22,7 @@ BOTH: dict[str, tuple[Callable[[], object], list[str], type[rp.RoadproofError]]]
     "scenario": (lambda: rp.prove(99), ["prove", "99"], rp.InputError),
     "set": (lambda: rp.witness(4, using=rp.load("bse")), ["witness", "4", "--set", "bse"], rp.InputError),
     "road": (lambda: rp.witness(4, road="moon"), ["witness", "4", "--road", "moon"], rp.InputError),
-    "vehicle": (lambda: rp.witness(4, vehicles="bus"), ["witness", "4", "--vehicle", "bus"], rp.InputError),
+    "vehicle": (lambda: rp.witness(4, vehicles="tram"), ["witness", "4", "--vehicle", "tram"], rp.InputError),
     "lane": (lambda: rp.witness(4, lanes={"L": "x"}), ["witness", "4", "--lane", "x"], rp.UsageError),
     "solver": (lambda: rp.witness(4, solver="x"), ["witness", "4", "--solver", "x"], rp.UsageError),
     "dt": (

@@ -71,7 +71,8 @@ def test_evidence_in_files_and_going_on(
     out = tmp_path / "out"
     assert run(out, "--road", "main-2") == ExitCode.UNEXPECTED
     printed = capsys.readouterr().out
-    assert "scenario 4, behaviourPOV_4: POV ahead is slower" in printed
+    assert "scenario 4: deceleration ahead, lane keep, main road\n" in printed
+    assert "\nbehaviourPOV_4: POV ahead is slower\n" in printed
     assert "complete: cutIn" in printed
     data = json.loads((out / "index.json").read_text())
     assert (data["schema"], data["verdict"], data["wider"]) == ("roadproof/coverage/1", "GAPS", ["complete"])

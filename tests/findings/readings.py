@@ -128,7 +128,7 @@ def accepted(outcome: Outcome) -> str:
 
 def boundaries(outcome: Outcome) -> dict[int, str]:
     """By scenario the greatest value with a drive."""
-    found = re.findall(r"^scenario (\d+), .*?greatest \S+ with a drive: (\S+) ", outcome.printed, re.M | re.S)
+    found = re.findall(r"^scenario (\d+)\b.*?greatest \S+ with a drive: (\S+) ", outcome.printed, re.M | re.S)
     return {int(number): value for number, value in found}
 
 
@@ -136,7 +136,7 @@ def measures(outcome: Outcome) -> dict[tuple[int, str], str]:
     """By scenario and sense (least, greatest) the extreme that was found."""
     result: dict[tuple[int, str], str] = {}
     for part in re.split(r"^scenario ", outcome.printed, flags=re.M)[1:]:
-        number = int(part.partition(",")[0])
+        number = int(part.partition(":")[0])
         for sense, value in re.findall(r"^  (least|greatest) .*?: (\S+) \S+ on a judged drive", part, re.M):
             result[number, sense] = value
     return result
@@ -275,8 +275,8 @@ def gaps_of_no_condition(outcome: Outcome) -> int:
 
 def beside_the_lane_in_traffic(outcome: Outcome) -> int:
     """Disturbances that scenario 1 misses because SV and POV are in no lane together."""
-    part = outcome.printed.partition("scenario 1, behaviourPOV_1")[2].partition("\nscenario ")[0]
-    found = re.search(r"danger\(SV, POV\) in cutIn .*?(\d+) in traffic", part)
+    part = outcome.printed.partition("\nbehaviourPOV_1: ")[2]
+    found = re.search(r"^  danger\(SV, POV\) in cutIn .*?(\d+) in traffic", part, re.M)
     return int(found[1]) if found else 0
 
 

@@ -31,18 +31,18 @@ class_2      1 of 1      1 100.0 %  SV keeps its lane
 """
 
 EXPLORED = """\
-scenario 1, set base
+scenario 1: cut-in, lane keep, main road, set base
   # WITNESSED: a drive, judged at this value, at 11 of 11 values
   greatest minSafe with a drive: 5.3 s; at 5.4 s UNKNOWN [2]
   11 values, 2 searches, 1 drive in 2.3 s
-scenario 4, set base
+scenario 4: deceleration ahead, lane keep, main road, set base
   # WITNESSED: a drive, judged at this value, at 11 of 11 values
   greatest minSafe with a drive: 4.6 s; at 5.4 s UNKNOWN [2]
   11 values, 12 searches, 2 drives in 2.3 s
 """
 
 MEASURED = """\
-scenario 1, set base
+scenario 1: cut-in, lane keep, main road, set base
   least v_lon(SV) - v_lon(POV) at the start: -25 m/s on a judged drive; at -25.1 m/s NONE-WITHIN [1]
   greatest v_lon(SV) - v_lon(POV) at the start: 25 m/s on a judged drive; at 25.1 m/s NONE-WITHIN [1]
 """

@@ -37,7 +37,7 @@ def exploration(**changed: Any) -> Explored:
 
 def test_a_strip_and_both_sides_of_its_boundary() -> None:
     assert as_text(ASKED, exploration()).splitlines() == [
-        "scenario 4, set base",
+        "scenario 4: deceleration ahead, lane keep, main road, set base",
         "  minSafe  0 ##?- 3 s",
         "  # WITNESSED: a drive, judged at this value, at 2 of 4 values",
         "  - NONE-WITHIN: none within the limits that are printed, at 1 of 4 values [1]",

@@ -1,5 +1,6 @@
 """Tables, text and figures of an evaluation: the numbers are those of the totals, the paper's are marked."""
 
+import re
 from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from report.edges import cut_off
 from roadproof.errors import InputError
 from roadproof.evaluation.questions import Settings, default_settings
 from roadproof.evaluation.results import Totals, begin_totals
@@ -14,7 +16,7 @@ from roadproof.report.answers import answer_questions
 from roadproof.report.paper import MARK
 from roadproof.report.tables import Table
 from roadproof.report.traffic import comparison_table, decimal, percent, results_tables
-from roadproof.report.traffic_figures import draw_figures
+from roadproof.report.traffic_figures import compose_figures, draw_figures
 from roadproof.report.write_traffic import write_report
 from roadproof.spec.scenarios import COMPARISON
 
@@ -93,7 +95,10 @@ def test_answers_come_from_the_numbers(totals: Totals) -> None:
     assert "4 of 14 matching traces match several scenarios; 3-4 6, 1-3 1." in text
     assert "minDanger 0, base: 12.5% [24.1%; around 25%] of 80 violating pairs." in text
     assert "base: 0: 25.0%, 0.6: 32.5%; 7.5 points between them." in text
-    assert "cut-in: TTC 11 [144], THW 22 [7219], none 33 [1017]; scenario 1 of ext 7 [9364]." in text
+    assert (
+        "cut-in: TTC 11 [144], THW 22 [7219], none 33 [1017]; scenario 1 of ext (cut-in, lane keep) 7" in text
+    )
+    assert "Scenarios: 1 cut-in, lane keep; 2 cut-out, lane keep; 3 " in text
     assert "no violation" in text
 
 
@@ -122,6 +127,29 @@ def test_figures(totals: Totals) -> None:
         assert b"<svg" in formats["svg"]
     again = dict(draw_figures(totals))
     assert again == made
+
+
+def test_figures_name_scenarios_and_count_in_whole_numbers(totals: Totals) -> None:
+    for row in totals.rows:
+        row.scenarios = Counter({1: 1, 4: 2})
+    figures = dict(compose_figures(totals))
+    [bars] = figures["scenarios"].axes
+    assert bars.get_xticklabels()[3].get_text() == "s4\ndeceleration\nahead, lane\nkeep"
+    assert all(tick == int(tick) for tick in bars.get_yticks())
+    assert len(bars.get_legend().get_texts()) == len(totals.rows)
+    [recall] = figures["recall"].axes
+    assert recall.get_legend().get_texts()[0].get_text() == "these recordings"
+    assert [cut_off(figure) for figure in figures.values()] == [[], [], []]
+    matrices = figures["overlaps"].axes
+    assert [x.get_text() for x in matrices[0].get_yticklabels()][3] == "s4  deceleration ahead, lane keep"
+    assert len(matrices[0].texts) == 8 * 9 / 2
+    assert matrices[0].get_legend().get_texts()[-1].get_text() == "100 % of the rarer one"
+
+
+def test_columns_of_the_results_table_are_named(totals: Totals) -> None:
+    notes = the_table(totals).notes
+    assert notes[0] == "s1 cut-in, lane keep; s2 cut-out, lane keep; s3 acceleration behind, lane keep"
+    assert sum(note.count("; s") + 1 for note in notes if re.match(r"s\d", note)) == 8
 
 
 def test_report_files(totals: Totals, tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ from roadproof.report import classify as report
 from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
 from roadproof.spec.scenarios import numbers_of
+from roadproof.spec.words import Called, called
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
@@ -89,13 +90,19 @@ class Classifications(Studied[Classification, Example | Decision]):
             for x in self.classified.examples
         ]
 
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        return called(self.study.basis.specification)
+
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
         return {**self.study.as_data(self.classified, records), "seconds": round(self.seconds, 1)}
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Which scenarios make up which class, and how often it occurs."""
         title = f"Classes of scenarios of set {self.study.classes.plan.set_name}"
-        yield "classes", picture(report.draw_classes(self.classified.examples, self.shares, title))
+        drawn = report.draw_classes(self.classified.examples, self.shares, title, self.words)
+        yield "classes", picture(drawn)
 
     def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
         write_whole(folder / CLAIMS_FILE, self.files(False)[CLAIMS_FILE])
@@ -108,7 +115,7 @@ class Classifications(Studied[Classification, Example | Decision]):
 
     def __str__(self) -> str:
         found = self.classified
-        table = [report.as_table(found.examples, self.shares), ""] if found.examples else []
+        table = [report.as_table(found.examples, self.shares, self.words), ""] if found.examples else []
         return "\n".join([*table, *report.summary(found)])
 
 

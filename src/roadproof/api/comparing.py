@@ -20,7 +20,7 @@ from roadproof.searching.compare import Comparison
 from roadproof.searching.compare import compare as compare_queries
 from roadproof.searching.question import Engine, SearchOptions
 from roadproof.spec.compose import taken_from
-from roadproof.spec.library import Library
+from roadproof.spec.library import Library, Specification
 from roadproof.spec.values import Number
 from roadproof.study.shelf import keep_specifications, specification_names
 from roadproof.verdict import ExitCode, Verdict
@@ -32,8 +32,12 @@ SCHEMA = "roadproof/compare/2"
 class Compared(Answer):
     """Two formulas side by side; ``relation``: equivalent, stronger, weaker, incomparable or unknown."""
 
-    library: Library
+    specification: Specification
     comparison: Comparison
+
+    @property
+    def library(self) -> Library:
+        return self.specification.library
 
     @property
     def relation(self) -> str:
@@ -81,7 +85,7 @@ class Compared(Answer):
         return ((n, picture(draw_drive(x.file, library))) for n, x in drives.items() if x is not None)
 
     def __str__(self) -> str:
-        return compare_text(self.comparison)
+        return compare_text(self.comparison, self.specification)
 
 
 def compare(
@@ -118,6 +122,5 @@ def compare(
         place,
         SearchOptions(engine=engine, solver=solver, effort=work_of(effort, timeout)),
     )
-    return Compared(
-        home.library, compare_queries(search, taken_from(home.specification, query, other), other)
-    )
+    found = compare_queries(search, taken_from(home.specification, query, other), other)
+    return Compared(home.specification, found)

@@ -23,6 +23,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_if_any
 from roadproof.report import coverage as report
+from roadproof.spec.words import Called, called
 from roadproof.study import pool
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict
@@ -48,6 +49,11 @@ class Coverages(Studied[Coverage, Any]):
     def surveyed(self) -> Surveyed:
         """Claims that there is no gap, the classes of gaps, and the definitions that are needed."""
         return self.study.together(self.found.answers, self.traffic)
+
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        return called(self.study.survey.basis.specification)
 
     @property
     def verdict(self) -> Verdict:
@@ -78,6 +84,7 @@ class Coverages(Studied[Coverage, Any]):
         rows: list[Row] = [
             {
                 "scenario": None if x.part is None else x.part.scenario,
+                "name": "" if x.part is None else self.words[x.part.scenario].name,
                 "component": "" if x.part is None else x.part.component,
                 "condition": "" if x.part is None else x.part.condition,
                 "verdict": str(x.verdict),
@@ -115,7 +122,7 @@ class Coverages(Studied[Coverage, Any]):
 
     def __str__(self) -> str:
         name = self.study.survey.basis.specification.set_name
-        return report.as_text(self.surveyed, name, round(self.seconds, 1))
+        return report.as_text(self.surveyed, name, round(self.seconds, 1), self.words)
 
 
 def _name(answer: ClassAnswer) -> str:

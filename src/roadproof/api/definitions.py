@@ -14,6 +14,7 @@ from roadproof.spec.library import Library, Source, Specification, load_library,
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import read_numbers, read_query
 from roadproof.spec.values import Number, exact
+from roadproof.spec.words import Words, words_of
 
 # A scenario by number, a formula as text or built with operators, or one that was read before.
 What: TypeAlias = int | str | Phrase | Query
@@ -65,6 +66,11 @@ class Definitions:
         if len(self.sets) > 1:
             raise UsageError(f"{', '.join(self.sets)}: this is asked of one spec set; name one")
         return self.specification
+
+    def words(self, number: int) -> Words:
+        """A scenario in words. Raises ``InputError`` where there is none of that number."""
+        [known] = read_numbers(self.specification, str(number))
+        return words_of(self.specification, known)
 
     def all_values(self) -> dict[str, Fraction]:
         """The value of every parameter, in SI units."""

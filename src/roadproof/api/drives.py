@@ -25,6 +25,7 @@ from roadproof.searching.ask import Outcome, Search
 from roadproof.searching.question import Engine, Objective, SearchOptions
 from roadproof.spec.library import Library
 from roadproof.spec.values import Number
+from roadproof.spec.words import words_of
 from roadproof.study import pool
 from roadproof.study.frame import put_away
 from roadproof.study.pool import Progress, Say
@@ -87,9 +88,11 @@ class Witnesses(Studied[Witnessing, Outcome]):
         return exit_code((x.verdict, Verdict.WITNESSED) for x in self.outcomes)
 
     def rows(self) -> list[Row]:
+        homes = (search.specification for search in self.study.named.values())
         return [
             {
                 "scenario": x.scenario,
+                "name": "" if x.scenario is None else words_of(home, x.scenario).name,
                 "set": x.set_name,
                 "formula": x.query.text,
                 "verdict": str(x.verdict),
@@ -98,7 +101,7 @@ class Witnesses(Studied[Witnessing, Outcome]):
                 "reason": x.reason or _core_of(x),
                 "seconds": x.seconds["all"],
             }
-            for x in self.outcomes
+            for x, home in zip(self.outcomes, homes, strict=True)
         ]
 
     def as_data(self) -> dict[str, Any]:
@@ -124,7 +127,8 @@ class Witnesses(Studied[Witnessing, Outcome]):
         return ((f"drive-{k}", picture(x)) for k, x in enumerate(drawn, 1))
 
     def __str__(self) -> str:
-        lines = [as_line(x) for x in self.outcomes]
+        answers, searches = self.found.answers, self.study.named
+        lines = [as_line(answers[name], search.specification) for name, search in searches.items()]
         return "\n".join([*lines, *([self.summary] if len(lines) > 1 else [])])
 
     @property

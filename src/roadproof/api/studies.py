@@ -22,6 +22,7 @@ from roadproof.report import overlap as overlap_report
 from roadproof.report import redundancy as redundancy_report
 from roadproof.spec.scenarios import numbers_of
 from roadproof.spec.values import Number
+from roadproof.spec.words import Called, called, called_in
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
@@ -45,6 +46,12 @@ class Overlaps(Studied[Overlap, PairVerdict]):
     @property
     def evidence(self) -> tuple[Evidence, ...]:
         return tuple(y for x in self.pairs if (y := x.certificate or x.drive) is not None)
+
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        basis, numbers = self.study.basis, {y.number for x in self.pairs for y in (x.a, x.b)}
+        return called_in(basis.specification, basis.set_names, numbers)
 
     @property
     def across(self) -> bool:
@@ -73,16 +80,17 @@ class Overlaps(Studied[Overlap, PairVerdict]):
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The heat map."""
         said = self.study.question.said
-        title = f"set {said['set']}: lanes {said['lanes']}, roles {said['roles']}, start {said['start']}"
-        yield "overlap", picture(overlap_report.draw_overlap(self.pairs, title, self.across))
+        how = f"lanes {said['lanes']}, roles {said['roles']}, start {said['start']}"
+        title = f"Which scenarios hold together: set {said['set']}; {how}"
+        yield "overlap", picture(overlap_report.draw_overlap(self.pairs, title, self.across, self.words))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        table = {"overlap.csv": overlap_report.as_csv(self.pairs).encode()}
+        table = {"overlap.csv": overlap_report.as_csv(self.pairs, self.words).encode()}
         return table | drawn(self.pictures() if pictures else {})
 
     def __str__(self) -> str:
         count = f"{len(self.pairs)} pair{'s' if len(self.pairs) > 1 else ''} in {self.seconds:.1f} s"
-        return f"{overlap_report.as_text(self.pairs, self.across)}\n{count}"
+        return f"{overlap_report.as_text(self.pairs, self.across, self.words)}\n{count}"
 
 
 def overlap(
@@ -146,20 +154,26 @@ class Orders(Studied[Ordering, Any]):
     def rows(self) -> list[Row]:
         return [{"implication": name, "verdict": str(x)} for name, x in self.verdicts.items()]
 
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        numbers = {node.number for kind in self.order.kinds for node in kind.nodes}
+        return called_in(self.study.basis.specification, self.study.basis.set_names, numbers)
+
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
         return self.study.index(self.order, records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The Hasse diagram."""
         title = f"implications in {', '.join(self.study.basis.set_names)}; an arrow leads to what is implied"
-        yield "order", picture(order_report.draw_order(self.order, title))
+        yield "order", picture(order_report.draw_order(self.order, title, self.words))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        graph = {"order.dot": order_report.as_dot(self.order).encode()}
+        graph = {"order.dot": order_report.as_dot(self.order, self.words).encode()}
         return graph | drawn(self.pictures() if pictures else {})
 
     def __str__(self) -> str:
-        return order_report.as_text(self.order, round(self.seconds, 1))
+        return order_report.as_text(self.order, round(self.seconds, 1), self.words)
 
 
 def order(
@@ -189,6 +203,11 @@ class Redundancies(Studied[Redundancy, ChangeFindings]):
         """The findings on every change, by the number of the scenario."""
         return {number: self.found.answers[name_of(number)] for number in self.study.numbers}
 
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        return called(self.study.basis.specification, self.study.numbers)
+
     @property
     def verdicts(self) -> dict[str, Verdict]:
         every = ((number, k, x) for number, each in self.findings.items() for k, x in enumerate(each, 1))
@@ -203,6 +222,7 @@ class Redundancies(Studied[Redundancy, ChangeFindings]):
         return [
             {
                 "scenario": number,
+                "name": self.words[number].name,
                 "part": x.change.part,
                 "where": " > ".join(x.change.where),
                 "as": x.change.value,
@@ -218,7 +238,7 @@ class Redundancies(Studied[Redundancy, ChangeFindings]):
         return self.study.index(records, self.seconds)
 
     def __str__(self) -> str:
-        return redundancy_report.as_text(self.findings, self.seconds)
+        return redundancy_report.as_text(self.findings, self.seconds, self.words)
 
 
 def redundancy(

@@ -19,7 +19,8 @@ examples:
   roadproof coverage --set ext --on recordings        and how often each class occurs in traffic
 
 A gap: initSafe at the start, danger later, and no two-vehicle scenario for any lane and either role. Its
-classes say why: scenario 4 would hold but for its component behaviourPOV_4, or for one condition of it.
+classes say why: scenario 4, deceleration ahead, would hold but for its component
+behaviourPOV_4, or for one condition of it.
 Of each class: a judged drive, or a proof that it is empty, or how far it was looked. Behind a drive's
 number: the first wider set that catches it, and the smallest choice of its definitions that does.
 Evidence goes to DIR, `roadproof check DIR` checks it; a run that was broken off goes on where it was.

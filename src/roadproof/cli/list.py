@@ -1,7 +1,7 @@
 """``roadproof list``: what the library holds."""
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import Any
 
@@ -16,6 +16,7 @@ from roadproof.logic.syntax import Definition, ParameterDeclaration, SetBlock
 from roadproof.spec.elaborate import signatures
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import number_in
+from roadproof.spec.words import words_of
 from roadproof.verdict import ExitCode
 
 SUMMARY = "list scenarios, definitions, spec sets, options and parameters"
@@ -59,6 +60,7 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
                 "name": name,
                 "arguments": list(roles),
                 "doc": specification.describe(specification.definitions[name]),
+                "words": words_of(specification, number_in(name) or 0).as_data(),
             }
             for name, roles in signatures(specification, scenarios).items()
         ],
@@ -83,23 +85,31 @@ def take_inventory(specification: Specification) -> dict[str, Any]:
 
 
 def _as_text(specification: Specification) -> str:
-    library, described = specification.library, specification.describe
-    names = [name for name in specification.definitions if number_in(name) is not None]
-    scenarios = [
-        (f"{name}({', '.join(roles)})", described(specification.definitions[name]))
-        for name, roles in signatures(specification, names).items()
-    ]
-    others = [d for name, d in specification.definitions.items() if name not in names]
+    library = specification.library
+    others = [d for name, d in specification.definitions.items() if number_in(name) is None]
     options = [(f"{o.name} = {' | '.join(o.values)}", o.doc) for o in library.options.values()]
     return "\n\n".join(
         [
-            _block(f"Scenarios (set {specification.set_name})", scenarios),
+            _block(f"Scenarios (set {specification.set_name})", _scenarios(specification)),
             _block("Definitions", _definitions(others, specification)),
             _block("Spec sets", [(_extends(s), s.doc) for s in library.sets.values()]),
             _block("Options (the first value is the default)", options),
             _block("Parameters", [(_value(p), p.doc) for p in library.parameters.values()]),
         ]
     )
+
+
+def _scenarios(specification: Specification) -> Iterator[tuple[str, str]]:
+    """One row a scenario, below the road sector where it happens."""
+    numbers = ((name, number_in(name)) for name in specification.definitions)
+    words = {name: words_of(specification, number) for name, number in numbers if number is not None}
+    roles = signatures(specification, words)
+    for where, group in groupby(words.items(), key=lambda item: item[1].sector):
+        yield from [(where, "")] if where else []
+        for name, one in group:
+            does = ", ".join(filter(None, (one.sv, one.pov)))
+            told = dict.fromkeys(filter(None, (one.title, does)))
+            yield f"{'  ' if where else ''}{name}({', '.join(roles[name])})", ": ".join(told)
 
 
 def _definitions(definitions: Iterable[Definition], specification: Specification) -> list[tuple[str, str]]:

@@ -54,7 +54,7 @@ TRACEBACK = "ROADPROOF_TRACEBACK"
 _EXAMPLES = """\
 examples:
   roadproof list                          what there is: scenarios, spec sets, options, parameters
-  roadproof show 4                        scenario 4 and the definitions it uses
+  roadproof show 4                        scenario 4, deceleration ahead, and the definitions it uses
   roadproof show 4 --set ext --expand     the same as one formula
   roadproof show 'F danger(SV,POV)' --format latex
 

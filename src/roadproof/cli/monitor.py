@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help="the lane that L stands for: its name, or a vehicle, whose lane at the start it is "
-        "(default: SV's, POV's for scenario 7; a drive file names its own)",
+        "(default: SV's, POV's for scenario 7, acceleration behind; a drive file names its own)",
     )
     parser.add_argument(
         "--road", metavar="R", help="road of samples (default: NAME_road.toml beside the file, or main-2)"

@@ -23,7 +23,7 @@ _EXAMPLES = """\
 examples:
   roadproof prove                                     all template properties and negative controls
   roadproof prove P1 P4 --set base                    some of them
-  roadproof prove 4                                   what the list says of scenario 4; also 1-3 or scenario_4
+  roadproof prove 4                                   scenario 4, deceleration ahead; also 1-3 or scenario_4
   roadproof prove 'scenario_8(SV,POV,L) -> F danger(SV,POV)' --set ext
   roadproof prove 'scenario_4(SV,POV,L) -> scenario_4@ext(SV,POV,L)'
   roadproof prove 'given A, B: vehicle: danger(A,B) -> danger(B,A)' --out proofs

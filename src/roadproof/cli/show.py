@@ -2,7 +2,7 @@
 
 import argparse
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -16,12 +16,13 @@ from roadproof.logic.latex import align, latex
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.show import decimal, text
-from roadproof.logic.syntax import Binding, Claim, Definition, ParameterDeclaration
+from roadproof.logic.syntax import Binding, Claim, Definition, ParameterDeclaration, SetBlock
 from roadproof.logic.tree import tree
 from roadproof.spec.elaborate import read_claim, signature
 from roadproof.spec.library import Specification, unknown
-from roadproof.spec.scenarios import name_of
+from roadproof.spec.scenarios import name_of, number_in
 from roadproof.spec.uses import definitions_used, parameters_used
+from roadproof.spec.words import Words, words_of
 from roadproof.verdict import ExitCode
 
 SUMMARY = "show a scenario, a definition or a formula"
@@ -31,7 +32,7 @@ _WIDTH = 100
 _NAME = re.compile(r"([A-Za-z_]\w*)(?:@([A-Za-z_]\w*))?")
 _EXAMPLES = """\
 examples:
-  roadproof show 4                                scenario_4 and every definition it uses, once each
+  roadproof show 4                                scenario 4, deceleration ahead, and its definitions
   roadproof show cutIn --set ext                  a definition as spec set ext has it
   roadproof show 4 --expand                       scenario_4 as one formula without definitions
   roadproof show 'scenario_8(SV,POV,L) -> F danger(SV,POV)' --format latex
@@ -39,12 +40,24 @@ examples:
 
 
 @dataclass(frozen=True)
+class About:
+    """A scenario in words, and the set that it is of where that changes another."""
+
+    words: Words
+    other: SetBlock | None
+
+
+@dataclass(frozen=True)
 class Exhibit:
-    """What is on show: a claim, or definitions with the parameters that they speak of, or all three."""
+    """What is on show: a claim, or definitions with the parameters that they speak of, or all three.
+
+    ``about``: the scenario that it is, in words.
+    """
 
     claim: Claim | None
     definitions: tuple[Definition, ...] = ()
     parameters: tuple[ParameterDeclaration, ...] = ()
+    about: About | None = None
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -72,7 +85,14 @@ def _find(specification: Specification, what: str, expand: bool) -> Exhibit:
         return _find_claim(specification, what, expand)
     if named[2] is not None:
         specification = specification.in_set(named[2])
-    return _find_definition(specification, named[1], expand)
+    exhibit = _find_definition(specification, named[1], expand)
+    number = number_in(named[1])
+    return exhibit if number is None else replace(exhibit, about=_about(specification, number))
+
+
+def _about(specification: Specification, number: int) -> About:
+    block = specification.library.sets[specification.set_name]
+    return About(words_of(specification, number), block if block.parent else None)
 
 
 def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibit:
@@ -132,11 +152,23 @@ def _is_number(specification: Specification, claim: Claim) -> bool:
 
 def _as_text(exhibit: Exhibit) -> str:
     blocks = [
+        "\n".join(f"# {line}" for line in _said(exhibit.about)),
         "" if exhibit.claim is None else text(exhibit.claim, _WIDTH),
         "\n".join(text(definition, _WIDTH) for definition in exhibit.definitions),
         "\n".join(_declaration(parameter) for parameter in exhibit.parameters),
     ]
     return "\n\n".join(block for block in blocks if block)
+
+
+def _said(about: About | None) -> Iterator[str]:
+    """The sentence first; what a set changes is said last."""
+    if about is None:
+        return
+    if about.words.sentence:
+        yield about.words.sentence
+        yield str(about.words)
+    if about.other is not None and about.other.doc:
+        yield f"set {about.other.name}: {about.other.doc}"
 
 
 def _declaration(parameter: ParameterDeclaration) -> str:
@@ -160,6 +192,7 @@ def _as_json(exhibit: Exhibit, specification: Specification) -> dict[str, Any]:
         **heading(SCHEMA, specification.library),
         "set": specification.set_name,
         "options": dict(specification.options),
+        "scenario": None if exhibit.about is None else exhibit.about.words.as_data(),
         "formula": None if claim is None else {"text": text(claim), "tree": tree(claim)},
         "definitions": [
             {"name": definition.name, "text": text(definition), "tree": tree(definition)}

@@ -19,7 +19,7 @@ SUMMARY = "find a drive on which a scenario or a formula holds, and judge it exa
 
 _EXAMPLES = """\
 examples:
-  roadproof witness 4                                 a drive for scenario 4 on its reference road
+  roadproof witness 4                                 scenario 4, deceleration ahead, on its reference road
   roadproof witness 12 --set ext --out drives         drive file, CSV and picture
   roadproof witness --all --set base --set extA --set ext --out drives
   roadproof witness 'scenario_8(SV,POV,L) and not scenario_6(SV,POV,L)' --lane L=main-2 --road main-3
@@ -59,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     what, home = some_or_all(args), read_definitions(args, chosen_sets(args))
     means = SearchOptions(args.objective, args.engine, args.solver, read_effort(args))
     searches = list(searches_of(home, what, setting(home, **where_asked(args)), means, args.count))
-    names = Witnessing(tuple(searches)).names
+    named = Witnessing(tuple(searches)).named
     pictures, plain = not args.no_pictures, args.json != "-"
     written: list[str] = []
 
@@ -68,9 +68,10 @@ def run(args: argparse.Namespace) -> int:
         written.extend(files)
         clear()
         told = f"\n  written to {args.out}: {', '.join(files)}" if files else ""
-        print_at_once(as_line(outcome, args.verbose) + told, args.out is not None)
+        line = as_line(outcome, named[name].specification, args.verbose)
+        print_at_once(line + told, args.out is not None)
 
-    each = in_order(names, show) if plain else None
+    each = in_order(tuple(named), show) if plain else None
     found = witness_all(searches, args.out, pictures, args.jobs, Counter(), warn, each)
     if args.out is not None and not written and plain:
         print(f"nothing is written to {args.out}, as there is no drive")

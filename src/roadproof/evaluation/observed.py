@@ -1,7 +1,7 @@
 """What a formula is on one trace: verdict, margin, and when each named part of it is true."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Literal, TypeAlias
 
@@ -11,7 +11,7 @@ from roadproof.judge.algebraic import approximate
 from roadproof.judge.exact import judge
 from roadproof.judge.robust import robustness
 from roadproof.judge.truth import TruthSet
-from roadproof.logic.formula import Formula, Named
+from roadproof.logic.formula import Formula, Named, nesting
 from roadproof.monitoring.answers import Convention, TruthArrays
 from roadproof.monitoring.batch import Batch
 from roadproof.monitoring.compiled import compile
@@ -25,13 +25,15 @@ Spans: TypeAlias = tuple[tuple[float, float], ...]
 class Strip:
     """When a part is true, and when that depends on what comes after the trace; seconds, ends included.
 
-    ``exact`` tells the same with open and closed ends where the view is dense.
+    ``exact`` tells the same with open and closed ends where the view is dense; ``depth``: in how many others
+    the part is.
     """
 
     name: str
     true: Spans
     undecided: Spans = ()
     exact: str = ""
+    depth: int = 0
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,9 @@ def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, 
     judgement = judge(formula, drive)
     margin = robustness(formula, drive, dt, int(horizon / dt) * dt).value
     strips = [_exact_strip(text, judgement.truth(formula))]
-    strips += [_exact_strip(name_of(part), truth) for part, truth in judgement.named() if part != formula]
+    depths = _depths(formula)
+    named = [(part, truth) for part, truth in judgement.named() if part != formula]
+    strips += [replace(_exact_strip(name_of(part), truth), depth=depths[part]) for part, truth in named]
     verdict: Said = "true" if judgement.holds else "false"
     return Observed(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
 
@@ -113,9 +117,16 @@ def name_of(part: Named) -> str:
 
 
 def _strips(formula: Formula, named: Mapping[Named, TruthArrays], dt: float) -> Iterator[Strip]:
+    depths = _depths(formula)
     for part, answer in named.items():
         if part != formula:
-            yield Strip(name_of(part), *_spans(answer, dt))
+            yield Strip(name_of(part), *_spans(answer, dt), depth=depths[part])
+
+
+def _depths(formula: Formula) -> dict[Named, int]:
+    """In how many others each part is, below the formula as a whole."""
+    below = 0 if isinstance(formula, Named) else 1
+    return {part: depth + below for part, depth in nesting(formula).items()}
 
 
 def _spans(answer: TruthArrays, dt: float) -> tuple[Spans, Spans]:

@@ -27,6 +27,7 @@ from roadproof.evidence.heading import heading
 from roadproof.files import make_folder, whole_file
 from roadproof.formats.repeats import Seen
 from roadproof.spec.scenarios import MIN_DANGER
+from roadproof.spec.words import Called, called_in
 
 RECORDING_SCHEMA = "roadproof/recording-findings/3"
 RESULTS_SCHEMA = "roadproof/traffic-results/3"
@@ -313,6 +314,7 @@ def as_json(totals: Totals, failed: Mapping[str, str]) -> dict[str, Any]:
             for rows in totals.shown.values()
             for row in rows
         ],
+        "words": [x.as_data() for x in words_in(totals.settings).values()],
         "detectors": {name: totals.detected[name] for name in totals.settings.detectors},
         "checks": {
             "broken": totals.broken,
@@ -322,6 +324,12 @@ def as_json(totals: Totals, failed: Mapping[str, str]) -> dict[str, Any]:
         "notes": {name: list(notes) for name, notes in totals.notes.items()},
         "failed": dict(failed),
     }
+
+
+def words_in(settings: Settings) -> Called:
+    """What the scenarios of an evaluation are called."""
+    home = settings.library.select(settings.sets[0], settings.options)
+    return called_in(home, settings.sets, settings.scenarios)
 
 
 def _repeat_as_json(totals: Totals, repeat: Repeat) -> dict[str, Any]:

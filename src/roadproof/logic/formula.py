@@ -259,6 +259,23 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
         waiting.extend(reversed(children(current)))
 
 
+def nesting(formula: Formula) -> dict[Named, int]:
+    """Every application of a definition, as ``subformulas`` orders them, and in how many others it is."""
+    found: dict[Named, int] = {}
+    seen: set[Formula] = set()
+    waiting = [(formula, 0)]
+    while waiting:
+        current, depth = waiting.pop()
+        if current in seen:
+            continue
+        seen.add(current)
+        if isinstance(current, Named):
+            found[current] = depth
+            depth += 1
+        waiting.extend((child, depth) for child in reversed(children(current)))
+    return found
+
+
 def is_state(formula: Formula) -> bool:
     """Whether ``formula`` speaks about one instant only: no temporal operator inside."""
     return not any(isinstance(f, Temporal) for f in subformulas(formula))

@@ -374,6 +374,11 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         numbers = tuple(number for r in ranges for number in r)
         return syntax.LaneDeclaration(str(vehicle), numbers, _doc(doc), _at(meta))
 
+    def title(self, meta: Meta, items: list[Any]) -> Statement:
+        *ranges, title, sentence = items
+        numbers = tuple(number for r in ranges for number in r)
+        return syntax.TitleDeclaration(numbers, _doc(title), _doc(sentence), _at(meta))
+
     def library(self, _: Meta, items: list[Any]) -> tuple[Statement, ...]:
         return tuple(items)
 

@@ -201,8 +201,25 @@ class LaneDeclaration:
     at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
+@dataclass(frozen=True)
+class TitleDeclaration:
+    """``title of 4, 12, 20 "few words" "a sentence"``: what these scenarios are called."""
+
+    scenarios: tuple[int, ...]
+    title: str
+    sentence: str
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
+
+
 Statement: TypeAlias = (
-    ParameterDeclaration | OptionDeclaration | Definition | EachBlock | SetBlock | WhenBlock | LaneDeclaration
+    ParameterDeclaration
+    | OptionDeclaration
+    | Definition
+    | EachBlock
+    | SetBlock
+    | WhenBlock
+    | LaneDeclaration
+    | TitleDeclaration
 )
 
 

@@ -6,7 +6,7 @@ Every sentence is made from counts of this run; where the data cannot answer, th
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from roadproof.evaluation.results import Row, Totals
+from roadproof.evaluation.results import Row, Totals, words_in
 from roadproof.report.paper import COMPARISON, MARK, RECALL_WITHOUT_FILTER, VIOLATING_PAIRS
 from roadproof.report.traffic import (
     KINDS,
@@ -77,7 +77,10 @@ def _classifying(totals: Totals) -> str:
             several = ", ".join(f"{i}-{j} {n}" for (i, j), n in row.together.most_common(5))
             said = f"{row.several} of {row.matching_with_three} matching traces match several scenarios"
             lines.append(f"minDanger {value}, {row.set_name}: {said}" + (f"; {several}." if several else "."))
-    return _listed(lines) or "No trace matches, so these recordings cannot tell."
+    if not lines:
+        return "No trace matches, so these recordings cannot tell."
+    named = (f"{number} {x.title}" for number, x in words_in(totals.settings).items() if x.title)
+    return _listed(lines) + f"\n\nScenarios: {'; '.join(named)}."
 
 
 def _precision(totals: Totals) -> str:
@@ -123,7 +126,8 @@ def _earlier(totals: Totals) -> str:
             for metric in METRICS
         )
         ours = f"{row.scenarios[number]} [{COMPARISON[kind]['RSS']}]"
-        lines.append(f"{kind}: {found}; scenario {number} of ext {ours}.")
+        title = words_in(totals.settings)[number].title
+        lines.append(f"{kind}: {found}; scenario {number} of ext{title and f' ({title})'} {ours}.")
     return _listed(lines)
 
 

@@ -113,7 +113,7 @@ def _suite(suites: xml.Element, name: str, cases: dict[str, str]) -> None:
 def draw_matrix(tests: Sequence[str], found: Tested) -> dict[str, bytes]:
     """Tests over scenarios, and how many tests each class has: ``{"png": …, "svg": …}``."""
     scenarios, classes = kinds(found).values()
-    heights = [0.16 * len(tests) + 1.0] + ([2.2] if classes else [])
+    heights = [0.16 * len(tests) + 3.4] + ([2.2] if classes else [])
     width = max(7.0, 1.5 + 0.26 * len(scenarios), 1.0 + 0.15 * len(classes))
     figure, axes = make_figure(heights, width=width)
     above = axes[0]
@@ -122,8 +122,8 @@ def draw_matrix(tests: Sequence[str], found: Tested) -> dict[str, bytes]:
             mark = _mark(test, target)
             if mark:
                 above.scatter(x, y, s=26, marker="s", color=_SURE if mark == "x" else _POSSIBLE)
-    names = [str(number_in(x.name)) for x in scenarios]
-    above.set_xticks(range(len(scenarios)), names, fontsize=7)
+    names = [f"{number_in(x.name)} {x.words}" for x in scenarios]
+    above.set_xticks(range(len(scenarios)), names, fontsize=7, rotation=90)
     for label, target in zip(above.get_xticklabels(), scenarios, strict=True):
         label.set_color("black" if target.tested else _NONE)
     above.set_yticks(range(len(tests)), tests, fontsize=6)

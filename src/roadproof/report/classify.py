@@ -9,7 +9,8 @@ from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import Classified
 from roadproof.analysis.classify.text import HEADINGS
-from roadproof.report.figures import as_bytes, make_figure
+from roadproof.report.figures import as_bytes, count_axis, legend_beside, make_figure
+from roadproof.spec.words import Called
 from roadproof.verdict import Verdict
 
 _DOT, _NO_DOT, _BAR, _DOUBT = "#1f5fbf", "#dddddd", "#3f7d4e", "#b5473c"
@@ -29,27 +30,44 @@ class _Row:
     sizes: set[int] = field(default_factory=set)
 
     @property
+    def is_shown(self) -> bool:
+        """Whether there is a drive in each place."""
+        return self.witnessed == self.count
+
+    @property
     def drives(self) -> str:
         return f"{self.witnessed} of {self.count}"
 
-    @property
-    def told(self) -> str:
+    def told(self, words: Called) -> str:
+        """What happens: of one scenario its title, if it has any, before its description."""
         *most, last = map(str, self.happens)
-        return f"{', '.join(most)} and {last} together" if most else self.description
+        if most:
+            return f"{', '.join(most)} and {last} together"
+        title = words[self.happens[0]].title
+        return ": ".join(dict.fromkeys(filter(None, (title, self.description))))
 
 
-def as_table(examples: Sequence[Example], shares: Shares | None) -> str:
+def as_table(examples: Sequence[Example], shares: Shares | None, words: Called) -> str:
     """A line for each thing that happens, its places added up; below it a line for each place."""
     heading = ["situations"] if shares else []
     rows = [["class", "drives", *heading, "what happens"]]
-    rows += [[x.name, x.drives, *_share(x, shares), x.told] for x in _happenings(examples, shares)]
+    rows += [[x.name, x.drives, *_share(x, shares), x.told(words)] for x in _happenings(examples, shares)]
     lines = _aligned(rows)
+    lines += [f"  {line}" for line in _not_alone(examples, words)]
     places = _merged(examples, shares, lambda x: (str(x.one.place), ()))
     if len(places) > 1:
         rows = [["where", "drives", *heading]]
         rows += [[x.name, x.drives, *_share(x, shares)] for x in places]
         lines += ["", *_aligned(rows)]
     return "\n".join(lines)
+
+
+def _not_alone(examples: Sequence[Example], words: Called) -> Iterator[str]:
+    """What those scenarios are called that have no row of their own, since they hold with others only."""
+    happens = [x.one.what.holds for x in examples]
+    alone = {numbers[0] for numbers in happens if len(numbers) == 1}
+    others = sorted({number for numbers in happens for number in numbers} - alone)
+    yield from (f"{number}: {words[number].title}" for number in others if words[number].title)
 
 
 def _happenings(examples: Sequence[Example], shares: Shares | None) -> list[_Row]:
@@ -123,34 +141,47 @@ def _of_shares(shares: Shares) -> Iterator[str]:
         yield f"{number} situations with a scenario, each in exactly one class, which names its scenarios"
 
 
-def draw_classes(examples: Sequence[Example], shares: Shares | None, title: str) -> dict[str, bytes]:
-    """Bars of how often each class occurs, over dots for the scenarios in it: ``{"png": …, "svg": …}``.
+def draw_classes(
+    examples: Sequence[Example], shares: Shares | None, title: str, words: Called
+) -> dict[str, bytes]:
+    """The picture as ``{"png": …, "svg": …}``."""
+    return as_bytes(compose_classes(examples, shares, title, words))
+
+
+def compose_classes(examples: Sequence[Example], shares: Shares | None, title: str, words: Called) -> Any:
+    """Bars of how often each class occurs, over dots for the scenarios in it.
 
     Places are added up: a column is something that happens, a row a scenario but for its road sector.
     """
     columns = _happenings(examples, shares)
     numbers = sorted({number for one in columns for number in one.happens})
     heights = [2.2, 0.24 * len(numbers) + 0.6] if shares else [0.24 * len(numbers) + 0.6]
-    figure, axes = make_figure(heights, width=max(5.0, 1.6 + 0.42 * len(columns)))
+    figure, axes = make_figure(heights, width=max(6.5, 4.4 + 0.42 * len(columns)))
     if shares:
         _bars(axes[0], columns, shares)
     below = axes[-1]
     for x, one in enumerate(columns):
         rows = [numbers.index(number) for number in one.happens]
-        colour = _DOT if one.witnessed == one.count else _DOUBT
+        colour = _DOT if one.is_shown else _DOUBT
         below.scatter([x] * len(numbers), range(len(numbers)), s=28, color=_NO_DOT, zorder=1)
         below.plot([x, x], [min(rows), max(rows)], color=colour, lw=1.6, zorder=2)
         below.scatter([x] * len(rows), rows, s=34, color=colour, zorder=3)
     names = [one.name.removeprefix("class_").replace("_", "+") for one in columns]
     below.set_xticks(range(len(columns)), names, fontsize=7, rotation=45)
-    below.set_yticks(range(len(numbers)), [f"scenario {number}" for number in numbers], fontsize=7)
+    names = [f"{number} {words[number].title}".strip() for number in numbers]
+    below.set_yticks(range(len(numbers)), names, fontsize=7)
+    for colour, label in ((_DOT, "holds in the class"), (_DOUBT, "the same, no drive found")):
+        if colour == _DOT or not all(one.is_shown for one in columns):
+            below.scatter([], [], s=34, color=colour, label=label)
+    below.scatter([], [], s=28, color=_NO_DOT, label="does not hold")
+    legend_beside(below)
     below.set_ylim(len(numbers) - 0.4, -0.6)
     below.set_xlim(-0.6, len(columns) - 0.4)
     below.tick_params(length=0)
     for side in ("top", "right", "bottom", "left"):
         below.spines[side].set_visible(False)
     figure.suptitle(title, fontsize=9)
-    return as_bytes(figure)
+    return figure
 
 
 def _bars(axes: Any, columns: Sequence[_Row], shares: Shares) -> None:
@@ -162,6 +193,7 @@ def _bars(axes: Any, columns: Sequence[_Row], shares: Shares) -> None:
     axes.set_ylim(0, 1.12 * max([1, *counts]))
     axes.set_xticks([])
     axes.set_ylabel("situations", fontsize=7)
+    count_axis(axes.yaxis)
     axes.tick_params(labelsize=7)
     axes.set_title(f"on {shares.source}", fontsize=8)
     for side in ("top", "right"):

@@ -1,6 +1,12 @@
 """Two formulas side by side, in words."""
 
+from collections.abc import Iterator
+
 from roadproof.searching.compare import Comparison
+from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import scenario_number
+from roadproof.spec.words import words_of
 
 _SENTENCES = {
     "equivalent": "the two are equivalent",
@@ -11,12 +17,14 @@ _SENTENCES = {
 }
 
 
-def as_text(comparison: Comparison) -> str:
+def as_text(comparison: Comparison, specification: Specification) -> str:
     """The two formulas, how they relate, and what shows that."""
     sets = comparison.sets
     lines = [
         f"first   {comparison.first.text}  (set {sets[0]})",
+        *_called(comparison.first, specification.in_set(sets[0])),
         f"second  {comparison.second.text}  (set {sets[1]})",
+        *_called(comparison.second, specification.in_set(sets[1])),
         _SENTENCES[comparison.relation],
     ]
     for name, direction in comparison.directions.items():
@@ -26,3 +34,10 @@ def as_text(comparison: Comparison) -> str:
         shown += f"; {direction.reason}" if direction.reason else ""
         lines.append(shown)
     return "\n".join(lines)
+
+
+def _called(query: Query, specification: Specification) -> Iterator[str]:
+    """What a side is called that is one scenario."""
+    number = scenario_number(query)
+    if number is not None and (name := words_of(specification, number).name):
+        yield f"        {name}"

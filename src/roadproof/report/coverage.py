@@ -12,15 +12,16 @@ from roadproof.files import write_whole
 from roadproof.report.drive import draw_drive
 from roadproof.spec.library import Library
 from roadproof.spec.scenarios import PAIR, Scenario, applied, danger_comes
+from roadproof.spec.words import Called, words_of
 from roadproof.verdict import Verdict
 
 
-def as_text(surveyed: Surveyed, name: str, seconds: float) -> str:
+def as_text(surveyed: Surveyed, name: str, seconds: float, words: Called) -> str:
     """All that is known of the set ``name``, after so many seconds."""
     lines: list[str] = []
     if surveyed.classes:
         gaps = sum(len(x.gaps) for x in surveyed.classes)
-        lines += [as_table(surveyed.classes), f"set {name}: " + "\n".join(summary(surveyed.classes))]
+        lines += [as_table(surveyed.classes, words), f"set {name}: " + "\n".join(summary(surveyed.classes))]
         lines += [f"{gaps} gaps in {seconds:.1f} s"]
     else:
         lines += [f"proved: {x.claim.text}" for x in surveyed.claims]
@@ -46,17 +47,19 @@ def _in_traffic(traffic: GapTraffic) -> list[str]:
     return lines
 
 
-def as_table(classes: Sequence[ClassAnswer]) -> str:
-    """One line a class, below the component that it belongs to; gaps by numbers from 1 on."""
+def as_table(classes: Sequence[ClassAnswer], words: Called) -> str:
+    """One line a class, below its component and scenario; gaps by numbers from 1 on."""
     lines: list[str] = []
-    number = 1
+    number, last = 1, 0
     for answer in classes:
         part = answer.part
         what = "" if part is None else part.condition or "the component"
         if part is None:
             lines.append("no single condition is to blame: in every scenario two or more are false")
         elif not part.condition:
-            lines.append(f"scenario {part.scenario}, {part.component}: {part.description}")
+            lines += [str(words[part.scenario])] * (part.scenario != last)
+            lines.append(f"{part.component}: {part.description}")
+            last = part.scenario
         lines.append(f"  {what:<70} {answer.verdict:<10} {_evidence(answer, number)}".rstrip())
         number += len(answer.gaps)
     return "\n".join(lines)
@@ -94,11 +97,12 @@ def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> dict[str, bytes
     file, part = gap.drive.file, answer.part
     specification = library.select(file.set_name, file.options)
     if part is None:
-        missed, what = danger_comes(specification, *PAIR), "no single condition"
+        missed, title = danger_comes(specification, *PAIR), "no single condition is to blame"
     else:
-        missed, what = applied(specification, Scenario(part.scenario, file.set_name)), part.component
-    title = f"missed by {file.set_name}: {what}"
-    title += f", {part.condition}" if part is not None and part.condition else ""
+        missed = applied(specification, Scenario(part.scenario, file.set_name))
+        title = f"{words_of(specification, part.scenario)}\nbut for {part.component} ({part.description})"
+        title += f": {part.condition}" if part.condition else ""
+    title = f"Danger that {file.set_name} misses; {title}"
     return draw_drive(replace(file, formula=missed.text), library, title)
 
 

@@ -1,27 +1,42 @@
 """A picture of a drive: the road from above, speeds, gaps against RSS distances, and what is true when."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from math import nan
+from textwrap import wrap
 from typing import Any
 
-from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.algebraic import approximate
-from roadproof.judge.robust import robustness
-from roadproof.judge.truth import TruthSet
-from roadproof.logic.formula import Compare, Formula, subformulas
-from roadproof.report.figures import as_bytes, draw_box, make_figure
-from roadproof.spec.bind import bind, default_values
+from roadproof.report.drive_data import (
+    ZONES,
+    Box,
+    Danger,
+    Direction,
+    ShownRoad,
+    Span,
+    Strip,
+    dangers_of,
+    distances_of,
+    place_names,
+    road_in,
+    strips_of,
+    times_of,
+    vehicles_of,
+    window_of,
+)
+from roadproof.report.figures import as_bytes, draw_box, legend_beside, make_figure, name_rows
 from roadproof.spec.library import Library
-from roadproof.spec.scenarios import SUBJECT, too_near_ahead
+from roadproof.spec.words import words_of
 from roadproof.world.motion import State, state_at
+from roadproof.world.road import Zone
 
 COLOURS = ("#1f5fbf", "#c8641e", "#4b8b3b", "#8a4fa3")
+TRUE, DANGER = "#4b8b3b", "#b5202a"
+SHADES: Mapping[Zone, str] = {"main": "#ececec", "merge": "#d6e4f2", "depart": "#f4e4cc"}
 SNAPSHOTS = 5
-MOST_STRIPS = 24
-GRAIN = Fraction(1, 10)
+WIDTH, STRIP = 10.0, 0.15
+ROAD_INCHES = 6.0  # about what is left of WIDTH between names and legends
+LETTER = (0.058, 0.13)  # of a vehicle's name, in inches
 
 
 def draw_drive(file: DriveFile, library: Library, title: str = "") -> dict[str, bytes]:
@@ -29,134 +44,172 @@ def draw_drive(file: DriveFile, library: Library, title: str = "") -> dict[str, 
 
     Raises ``InputError`` without matplotlib.
     """
-    strips = list(_strips(file, library))[:MOST_STRIPS]
-    heights = [0.75] * SNAPSHOTS + [1.5, 1.7, 0.2 + 0.16 * len(strips)]
-    figure, axes = make_figure(heights)
-    order = sorted(file.drive.vehicles, key=lambda name: (name != SUBJECT, name))
-    colours = dict(zip(order, COLOURS * len(order), strict=False))
-    for k in range(SNAPSHOTS):
-        _snapshot(axes[k], file, colours, file.horizon * k / (SNAPSHOTS - 1))
-    axes[SNAPSHOTS - 1].set_xlabel("m along the road, from the first vehicle shown", fontsize=7)
-    _speeds(axes[SNAPSHOTS], file, colours)
-    _gaps(axes[SNAPSHOTS + 1], file, colours, library)
-    _draw_strips(axes[SNAPSHOTS + 2], strips, float(file.horizon))
+    return as_bytes(compose_drive(file, library, title))
+
+
+def compose_drive(file: DriveFile, library: Library, title: str = "") -> Any:
+    """The figure: the road at some instants, then speeds, gaps and strips over one axis of time."""
+    judgement = judge_file(file, library).judgement
+    strips = () if judgement is None else strips_of(judgement, file.horizon)
+    dangers = dangers_of(file, library)
+    lanes = len(file.road.lanes)
+    heights = [0.2 + 0.26 * lanes] * SNAPSHOTS + [1.4, 1.4, 1.2, 0.2 + STRIP * len(strips)]
+    figure, axes = make_figure(heights, WIDTH)
+    colours = dict(zip(vehicles_of(file), COLOURS * len(file.drive.vehicles), strict=False))
+    _draw_roads(axes[:SNAPSHOTS], file, colours, heights[0])
+    speeds, along, across, below = axes[SNAPSHOTS:]
+    _speeds(speeds, file, colours)
+    _gaps(along, file, colours, library, "along")
+    _gaps(across, file, colours, library, "across")
+    _draw_strips(below, strips)
+    _share_time((speeds, along, across, below), float(file.horizon), dangers)
     for one in axes:
-        one.tick_params(labelsize=7)
-    title = title or f"{file.formula}, set {file.set_name}"
-    figure.suptitle(f"{title}, road {file.road.name}", fontsize=9)
-    return as_bytes(figure)
+        one.tick_params(axis="x", labelsize=7)
+    figure.align_ylabels(axes[SNAPSHOTS:-1])
+    figure.suptitle(_title(file, library, title, dangers), fontsize=9)
+    return figure
 
 
-def _times(file: DriveFile) -> list[Fraction]:
-    return [k * GRAIN for k in range(int(file.horizon / GRAIN) + 1)]
+def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[Danger]) -> str:
+    """What is shown in words, on which road, and when danger begins."""
+    lines = title.splitlines()
+    if not title and file.scenario is not None:
+        words = words_of(library.select(file.set_name, file.options), file.scenario)
+        lines = [f"S{str(words)[1:]}", words.sentence]
+    lines = lines or [file.formula]
+    lanes = "".join(f", {name} = {lane}" for name, lane in file.lanes.items())
+    lines.append(f"set {file.set_name}, road {file.road.name}{lanes}")
+    lines[-1] += "".join(f"; {x}" for x in dangers)
+    return "\n".join(piece for line in lines if line for piece in wrap(line, 120))
 
 
-def _snapshot(axes: Any, file: DriveFile, colours: Mapping[str, str], time: Fraction) -> None:
-    """The road around the vehicles at one instant, driving direction to the right."""
-    states = {name: state_at(file.drive.vehicles[name], time) for name in colours}
-    origin = states[next(iter(colours))].s
-    shown = [float(x.s - origin) for x in states.values()]
-    low, high = min(-30.0, min(shown) - 15.0), max(30.0, max(shown) + 15.0)
-    for lanelet in file.road.lanelets:
-        ends = (
-            low if lanelet.s[0] is None else max(low, float(lanelet.s[0] - origin)),
-            high if lanelet.s[1] is None else min(high, float(lanelet.s[1] - origin)),
-        )
-        if ends[0] < ends[1]:
-            right, left = (float(x) for x in lanelet.d)
-            shade = {"main": "#ececec", "merge": "#e4ecf4", "depart": "#f4ece0"}[lanelet.zone]
-            axes.fill_between(ends, right, left, color=shade, zorder=1, linewidth=0)
-            axes.plot(ends, (right, right), color="#888888", lw=0.6, zorder=2)
-            axes.plot(ends, (left, left), color="#888888", lw=0.6, zorder=2)
-    for name, colour in colours.items():
-        motion, state = file.drive.vehicles[name], states[name]
-        s = (float(state.s - motion.length - origin), float(state.s - origin))
-        draw_box(axes, s, (float(state.d - motion.width), float(state.d)), colour, name)
-    axes.set_xlim(low, high)
-    axes.set_yticks([])
-    axes.set_ylabel(f"{float(time):.1f} s", rotation=0, fontsize=7, ha="right", va="center")
+# --- the road from above ------------------------------------------------------------------------
+
+
+def _draw_roads(axes: Sequence[Any], file: DriveFile, colours: Mapping[str, str], height: float) -> None:
+    """The road around the vehicles at some instants, all to one scale, driving direction to the right."""
+    times = [file.horizon * k / (SNAPSHOTS - 1) for k in range(SNAPSHOTS)]
+    window = window_of(file, times)
+    zones: dict[Zone, None] = {}
+    for one, time in zip(axes, times, strict=True):
+        origin = state_at(file.drive.vehicles[next(iter(colours))], time).s
+        road = road_in(file.road, origin, window)
+        zones |= dict.fromkeys(road.zones)
+        _snapshot(one, road, window, f"{float(time):.1f} s")
+        _vehicles(one, file, colours, time, (window[1] - window[0], height))
+    for zone in zones:
+        axes[0].fill([], [], color=SHADES[zone], ec="#888888", lw=0.6, label=ZONES[zone])
+    legend_beside(axes[0])
+    arrow = {"arrowstyle": "->", "lw": 0.9, "color": "#444444"}
+    axes[1].annotate("", (1.12, 0.5), (1.01, 0.5), "axes fraction", arrowprops=arrow, annotation_clip=False)
+    axes[1].text(1.01, 0.56, "driving direction", fontsize=6, va="bottom", transform=axes[1].transAxes)
+    for one in axes[:-1]:
+        one.tick_params(axis="x", labelbottom=False)
+    axes[-1].set_xlabel(f"m along the road from the front of {next(iter(colours))}", fontsize=7)
+
+
+def _snapshot(axes: Any, road: ShownRoad, window: Span, when: str) -> None:
+    for zone, along, (right, left) in road.pieces:
+        axes.fill_between(along, right, left, color=SHADES[zone], zorder=1, linewidth=0)
+        axes.plot(along, (right, right), color="#888888", lw=0.6, zorder=2)
+        axes.plot(along, (left, left), color="#888888", lw=0.6, zorder=2)
+    axes.set_xlim(*window)
+    axes.set_ylim(road.across[0] - 0.2, road.across[1] + 0.2)
+    axes.set_yticks([middle for _, middle in road.lanes], [name for name, _ in road.lanes], fontsize=6)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylabel(when, rotation=0, fontsize=8, ha="right", va="center")
     for side in ("top", "right", "left"):
         axes.spines[side].set_visible(False)
 
 
+def _vehicles(
+    axes: Any, file: DriveFile, colours: Mapping[str, str], time: Fraction, size: tuple[float, float]
+) -> None:
+    """The boxes of all vehicles and their names; ``size``: metres shown along, inches across."""
+    origin = state_at(file.drive.vehicles[next(iter(colours))], time).s
+    boxes: dict[str, Box] = {}
+    for name in colours:
+        motion, state = file.drive.vehicles[name], state_at(file.drive.vehicles[name], time)
+        s, d = float(state.s - origin), float(state.d)
+        boxes[name] = (s - float(motion.length), s, d - float(motion.width), d)
+    low, high = axes.get_ylim()
+    letter = (LETTER[0] * size[0] / ROAD_INCHES, LETTER[1] * (high - low) / size[1])
+    names = place_names(boxes, {name: (len(name) * letter[0], letter[1]) for name in boxes})
+    for name, colour in colours.items():
+        draw_box(axes, boxes[name], colour)
+        left, _, bottom, top = names[name]
+        behind = {"fc": "white", "ec": "none", "alpha": 0.7, "pad": 0.4}
+        axes.text(
+            left, (bottom + top) / 2, name, fontsize=7, va="center", color=colour, zorder=4, bbox=behind
+        )
+
+
+# --- over time ----------------------------------------------------------------------------------
+
+
+def _share_time(axes: Sequence[Any], horizon: float, dangers: Sequence[Danger]) -> None:
+    """One axis of time for all, labelled below the last, and a line through all where danger begins."""
+    for one in axes:
+        one.set_xlim(0, horizon)
+        for danger in dangers:
+            one.axvline(danger.begins, color=DANGER, lw=1, ls=(0, (4, 2)), zorder=5)
+    for one in axes[:-1]:
+        one.sharex(axes[-1])
+        one.tick_params(axis="x", labelbottom=False)
+    for danger in dangers:
+        told = f"danger with {danger.other} begins" if len(dangers) > 1 else "danger begins"
+        axes[0].text(
+            *(danger.begins, 1.02, f" {told} "),
+            fontsize=7,
+            color=DANGER,
+            ha="left" if danger.begins < 0.8 * horizon else "right",
+            transform=axes[0].get_xaxis_transform(),
+        )
+    axes[-1].set_xlabel("s", fontsize=8)
+
+
 def _speeds(axes: Any, file: DriveFile, colours: Mapping[str, str]) -> None:
-    times = _times(file)
+    times = times_of(file)
+    seconds = [float(time) for time in times]
     for name, colour in colours.items():
         states: list[State] = [state_at(file.drive.vehicles[name], time) for time in times]
-        seconds = [float(time) for time in times]
         axes.plot(seconds, [float(x.v_lon) for x in states], color=colour, label=f"{name} along")
         lateral = [float(x.v_lat) for x in states]
         if any(lateral):
-            label = f"{name} across, times 10"
+            label = f"{name} across (to the left), × 10"
             axes.plot(seconds, [10 * v for v in lateral], color=colour, ls=":", lw=1, label=label)
     axes.set_ylabel("speed, m/s", fontsize=7)
-    axes.legend(fontsize=6, loc="upper right", ncols=2, framealpha=0.6)
-    axes.set_xlim(0, float(file.horizon))
+    axes.tick_params(axis="y", labelsize=7)
+    legend_beside(axes)
 
 
-def _gaps(axes: Any, file: DriveFile, colours: Mapping[str, str], library: Library) -> None:
-    """Distance from front to rear where one vehicle is ahead, and the RSS distance that it needs."""
-    seconds = [float(time) for time in _times(file)]
-    names = list(colours)
-    for behind in names:
-        for ahead in names:
-            margins = _rss_margin(file, library, behind, ahead) if behind != ahead else None
-            if margins is None:
-                continue
-            length = file.drive.vehicles[ahead].length
-            gaps = [
-                float(
-                    state_at(file.drive.vehicles[ahead], t).s
-                    - length
-                    - state_at(file.drive.vehicles[behind], t).s
-                )
-                for t in _times(file)
-            ]
-            if max(gaps) < 0:
-                continue
-            shown = [gap if gap >= 0 else nan for gap in gaps]  # nan leaves the line open
-            needed = [gap + margin for gap, margin in zip(shown, margins, strict=True)]
-            colour = colours[ahead]
-            axes.plot(seconds, shown, color=colour, label=f"{behind} to {ahead}")
-            label = f"RSS distance {behind} to {ahead}"
-            axes.plot(seconds, needed, color=colour, ls="--", lw=1, label=label)
-    axes.set_ylabel("gap along, m", fontsize=7)
-    axes.set_xlim(0, float(file.horizon))
-    if axes.get_lines():
-        axes.legend(fontsize=6, loc="upper right", framealpha=0.6)
+def _gaps(
+    axes: Any, file: DriveFile, colours: Mapping[str, str], library: Library, direction: Direction
+) -> None:
+    """Distances between boxes, and the RSS distances that they need; shaded where they are below."""
+    seconds = [float(time) for time in times_of(file)]
+    for x in distances_of(file, library, direction):
+        colour = colours[x.other]
+        axes.plot(seconds, x.gap, color=colour, label=f"{x.one} to {x.other}")
+        for k, run in enumerate(x.runs):
+            label = "" if k else "RSS distance"
+            axes.plot(seconds[run], x.needed[run], color=colour, ls="--", lw=1, label=label)
+        near = [gap <= needed for gap, needed in zip(x.gap, x.needed, strict=True)]
+        if any(near):
+            axes.fill_between(
+                seconds, x.gap, x.needed, near, color=colour, alpha=0.15, lw=0, label="nearer than that"
+            )
+    axes.axhline(0, color="#999999", lw=0.5, zorder=0)
+    axes.set_ylabel(f"gap {direction}, m", fontsize=7)
+    axes.tick_params(axis="y", labelsize=7)
+    legend_beside(axes)
 
 
-def _rss_margin(file: DriveFile, library: Library, behind: str, ahead: str) -> list[float] | None:
-    """RSS distance less gap at each time, from the library's own definition; None where it has none."""
-    try:
-        query = too_near_ahead(library.select(file.set_name, file.options), behind, ahead)
-        formula = bind(query.formula, file.road, {}, {**default_values(library), **file.values})
-    except RoadproofError:
-        return None
-    comparisons = [x for x in subformulas(formula) if isinstance(x, Compare)]
-    if len(comparisons) != 2:
-        return None
-    nearer: Formula = comparisons[1]
-    return list(robustness(nearer, file.drive, GRAIN, _times(file)[-1]).margins[nearer])
-
-
-def _strips(file: DriveFile, library: Library) -> Iterator[tuple[str, TruthSet]]:
-    """When each named part of the formula is true, in the order of the template."""
-    judgement = judge_file(file, library).judgement
-    if judgement is not None:
-        for part, truth in judgement.named():
-            yield f"{part.name}({', '.join(part.arguments)})", truth
-
-
-def _draw_strips(axes: Any, strips: list[tuple[str, TruthSet]], horizon: float) -> None:
-    for row, (_, truth) in enumerate(strips):
-        for span in truth.spans():
-            begin = approximate(span.begin.point)
-            end = horizon if span.end is None else min(horizon, approximate(span.end.point))
-            if begin <= horizon:
-                width = max(end - begin, horizon / 300)
-                axes.barh(row, width, left=begin, height=0.7, color="#4b8b3b")
-    axes.set_yticks(range(len(strips)), [name for name, _ in strips], fontsize=6)
-    axes.set_ylim(len(strips) - 0.4, -0.6)
-    axes.set_xlim(0, horizon)
-    axes.set_xlabel("s; green where true", fontsize=7)
+def _draw_strips(axes: Any, strips: Sequence[Strip]) -> None:
+    """A row for each part, its name moved in below what it is part of."""
+    for row, strip in enumerate(strips):
+        for begin, end in strip.spans:
+            axes.barh(row, end - begin, left=begin, height=0.7, color=TRUE, ec=TRUE, lw=0.6)
+    name_rows(axes, ["  " * x.depth + x.name for x in strips])
+    axes.fill([], [], color=TRUE, label="true")
+    legend_beside(axes)

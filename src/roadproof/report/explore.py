@@ -11,8 +11,9 @@ from roadproof.analysis.explore.knobs import Knob
 from roadproof.analysis.explore.parts import unit_text
 from roadproof.analysis.explore.record import ends_of
 from roadproof.report.drive import draw_drive
-from roadproof.report.figures import as_bytes, make_figure
+from roadproof.report.figures import as_bytes, legend_beside, make_figure
 from roadproof.report.overlap import COLOURS, SIGNS
+from roadproof.spec.words import words_of
 from roadproof.verdict import Verdict
 
 MOST_NOTES = 2  # for one verdict on a map or strip; JSON has them all
@@ -45,10 +46,12 @@ def as_text(asked: Explorable, explored: Explored) -> str:
     return "\n".join([*lines, f"  {', '.join(counts)} in {round(explored.seconds, 1)} s"])
 
 
-def _title(asked: Explorable, most: int | None = None) -> str:
+def _title(asked: Explorable) -> str:
     search = asked.search
-    name = search.query.text if search.scenario is None else f"scenario {search.scenario}"
-    return f"{name[:most]}, set {search.specification.set_name}"
+    name = search.query.text
+    if search.scenario is not None:
+        name = str(words_of(search.specification, search.scenario))
+    return f"{name}, set {search.specification.set_name}"
 
 
 def _note(finding: PointFinding, notes: Notes) -> str:
@@ -214,7 +217,7 @@ def _draw_measures(axes: Any, measured: Sequence[Extreme]) -> None:
         axes.plot(*zip(*beyond, strict=True), color=colour, marker="x", ms=4, lw=0, label="not found")
     measure = measured[0].measure
     axes.set_ylabel(f"{measure.text}, {unit_text(measure.dimension)}", fontsize=7)
-    axes.legend(fontsize=6, framealpha=0.6)
+    legend_beside(axes)
 
 
 def _draw_map(asked: Explorable, explored: Explored) -> dict[str, bytes]:
@@ -229,7 +232,8 @@ def _draw_map(asked: Explorable, explored: Explored) -> dict[str, bytes]:
             colour = COLOURS[cell.verdict]
             axes.fill((x, x + 1, x + 1, x), (y, y, y + 1, y + 1), color=colour, ec="white", lw=0.8)
             if cell.number is not None:
-                axes.text(x + 0.5, y + 0.5, str(cell.number), fontsize=6, ha="center", va="center")
+                place = (x + 0.5, y + 0.5, str(cell.number))
+                axes.text(*place, fontsize=8, color="white", ha="center", va="center")
             if x and cell.found != found[columns[x - 1], row].found:
                 axes.plot((x, x), (y, y + 1), color="#222222", lw=1.6)
             if y and cell.found != found[column, rows[y - 1]].found:
@@ -249,9 +253,11 @@ def _finish(figure: Any, below: Any, asked: Explorable, explored: Explored) -> N
     present = {x.verdict for x in explored.findings}
     for verdict in (v for v in SIGNS if v in present):
         below.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
-    below.legend(fontsize=6, loc="upper left", frameon=False)
+    if len({x.found for x in explored.findings}) > 1:
+        below.plot([], [], color="#222222", lw=1.6, label="between values with and without a drive")
+    below.legend(fontsize=7, loc="upper left", frameon=False)
     below.axis("off")
-    figure.suptitle(_title(asked, 100), fontsize=9)
+    figure.suptitle("\n".join(wrap(_title(asked), 80)), fontsize=9)
 
 
 def _value(value: Fraction, unit: str) -> str:

@@ -6,6 +6,8 @@ from typing import Any
 
 from roadproof.errors import MissingSolverError
 
+_DPI = 110
+
 
 def make_figure(heights: Sequence[float], width: float = 9.0) -> tuple[Any, list[Any]]:
     """A figure of ``width`` inches with one axes a row of the given heights (inches).
@@ -25,22 +27,52 @@ def make_figure(heights: Sequence[float], width: float = 9.0) -> tuple[Any, list
     return figure, [axes for (axes,) in rows]
 
 
-def draw_box(axes: Any, s: tuple[float, float], d: tuple[float, float], colour: str, label: str) -> None:
-    """A vehicle's box [s] × [d], its name inside."""
+def draw_box(axes: Any, box: tuple[float, float, float, float], colour: str) -> None:
+    """A vehicle's box: left, right, bottom, top."""
     from matplotlib.patches import Rectangle
 
-    axes.add_patch(Rectangle((s[0], d[0]), s[1] - s[0], d[1] - d[0], color=colour, zorder=3))
-    axes.text(s[1] + 0.8, (d[0] + d[1]) / 2, label, fontsize=7, va="center", color=colour, zorder=4)
+    left, right, bottom, top = box
+    axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, color=colour, zorder=3))
+
+
+def legend_beside(axes: Any) -> None:
+    """What the lines and colours of ``axes`` mean, to the right of them and off the curves."""
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(fontsize=6, loc="upper left", bbox_to_anchor=(1.005, 1), borderaxespad=0, frameon=False)
+
+
+def name_rows(axes: Any, names: Sequence[str]) -> None:
+    """A name beside each of the rows 0, 1, … of ``axes``, the first on top; names begin at one left edge."""
+    axes.set_yticks(range(len(names)), names, fontsize=6, family="monospace", ha="left")
+    axes.tick_params(axis="y", pad=3.62 * max(map(len, names), default=0) + 3, length=0)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+
+
+def count_axis(axis: Any) -> None:
+    """Ticks of an axis that counts: whole numbers only."""
+    from matplotlib.ticker import MaxNLocator
+
+    axis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
 
 
 def as_bytes(figure: Any) -> dict[str, bytes]:
     """The figure as PNG and SVG; the same figure gives the same SVG."""
     import matplotlib
 
+    settle(figure)
     made: dict[str, bytes] = {}
     with matplotlib.rc_context({"svg.hashsalt": "roadproof"}):
         for kind, metadata in (("png", {}), ("svg", {"Date": None})):
             out = io.BytesIO()
-            figure.savefig(out, format=kind, dpi=110, metadata=metadata)
+            figure.savefig(out, format=kind, dpi=_DPI, metadata=metadata)
             made[kind] = out.getvalue()
     return made
+
+
+def settle(figure: Any) -> None:
+    """Lay a figure out once and for all; the solver that does so differs in the last digits."""
+    figure.set_dpi(_DPI)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for axes in figure.axes:
+        axes.set_position([round(x, 4) for x in axes.get_position(original=True).bounds])

@@ -1,9 +1,13 @@
 """What a formula is on one trace: a few lines, and strips that show when each part of it is true."""
 
 from collections.abc import Mapping
+from textwrap import wrap
+from typing import Any
 
 from roadproof.evaluation.observed import Observed
-from roadproof.report.figures import as_bytes, make_figure
+from roadproof.report.figures import as_bytes, legend_beside, make_figure, name_rows
+
+_TRUE, _UNDECIDED, _WIDEST = "#4b8b3b", "#bbbbbb", 60
 
 
 def as_text(observed: Observed) -> str:
@@ -42,21 +46,34 @@ def _interval(span: tuple[float, float]) -> str:
     return f"{{{begin:g}}}" if begin == end else f"[{begin:g}, {end:g}]"
 
 
-def draw_strips(observed: Observed, most: int = 40) -> Mapping[str, bytes]:
+def draw_strips(observed: Observed) -> Mapping[str, bytes]:
     """A strip a part: green where it is true, grey where undecided. Raises ``InputError``."""
-    strips = observed.strips[:most]
+    return as_bytes(compose_strips(observed))
+
+
+def _short(name: str) -> str:
+    """A name that fits beside its strip; the whole formula stands above."""
+    return name if len(name) <= _WIDEST else name[: _WIDEST - 1] + "…"
+
+
+def compose_strips(observed: Observed) -> Any:
+    """The figure: all parts, each below what it is part of."""
+    strips = observed.strips
     figure, (axes,) = make_figure([0.6 + 0.2 * len(strips)])
     end = max(observed.seconds, float(observed.dt))
     sample = 0.0 if observed.view == "dense" else float(observed.dt)
     for row, strip in enumerate(strips):
-        for spans, colour in ((strip.true, "#4b8b3b"), (strip.undecided, "#bbbbbb")):
+        for spans, colour in ((strip.true, _TRUE), (strip.undecided, _UNDECIDED)):
             for begin, last in spans:
                 if begin <= end:
                     width = max(min(last, end) - begin + sample, end / 300)
                     axes.barh(row, width, left=begin, height=0.7, color=colour)
-    axes.set_yticks(range(len(strips)), [strip.name for strip in strips], fontsize=6)
-    axes.set_ylim(len(strips) - 0.4, -0.6)
+    name_rows(axes, ["  " * strip.depth + _short(strip.name) for strip in strips])
     axes.set_xlim(0, end + sample)
-    axes.set_xlabel("s; green where true, grey where it depends on what comes after", fontsize=7)
-    axes.set_title(f"{observed.formula}: {observed.verdict}", fontsize=8)
-    return as_bytes(figure)
+    axes.set_xlabel("s", fontsize=8)
+    axes.fill([], [], color=_TRUE, label="true")
+    if any(strip.undecided for strip in strips):
+        axes.fill([], [], color=_UNDECIDED, label="depends on what\ncomes after")
+    legend_beside(axes)
+    figure.suptitle("\n".join(wrap(f"{observed.formula}: {observed.verdict}", 120)), fontsize=9)
+    return figure

@@ -1,20 +1,23 @@
 """The order of scenarios under implication: in words, as DOT text, and as a Hasse diagram."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from roadproof.analysis.order.deciding import Edge
 from roadproof.analysis.order.kinds import Kind
 from roadproof.analysis.order.study import Order
 from roadproof.report.figures import as_bytes, make_figure
 from roadproof.spec.scenarios import Scenario
+from roadproof.spec.words import Called, Words, legend
 
 
-def as_text(order: Order, seconds: float) -> str:
-    """The edges, the scenarios with one formula, the doubts; the rest in numbers."""
+def as_text(order: Order, seconds: float, words: Called) -> str:
+    """The edges, the scenarios with one formula, the doubts; what they are called; the rest in numbers."""
     lines = [f"{edge.above} -> {edge.below}" for edge in order.edges]
     shared = [kind for kind in order.kinds if len(kind.nodes) > 1]
     lines += [f"one formula: {', '.join(map(str, kind.nodes))}" for kind in shared]
     lines += [f"in doubt: {x.above} -> {x.below}: {x.reason}" for x in order.doubts]
+    lines += [f"  {line}" for line in legend(words)] if lines else []
     count = sum(len(kind.nodes) for kind in order.kinds)
     lines.append(
         f"{count} scenarios, {len(order.kinds)} formulas: {len(order.edges)} edges proved, "
@@ -24,22 +27,30 @@ def as_text(order: Order, seconds: float) -> str:
     return "\n".join(lines)
 
 
-def as_dot(order: Order) -> str:
+def as_dot(order: Order, words: Called) -> str:
     """A graph in which an arrow leads from what implies to what is implied; one box a formula."""
     number = {kind.node: k for k, kind in enumerate(order.kinds)}
     lines = ["digraph order {", "  rankdir=BT;", "  node [shape=box, fontsize=10];"]
-    labels = ["\\n".join(map(str, kind.nodes)) for kind in order.kinds]
-    lines += [f'  k{k} [label="{label}"];' for k, label in enumerate(labels)]
+    for k, kind in enumerate(order.kinds):
+        names = dict.fromkeys(words[node.number].name.replace('"', "'") for node in kind.nodes)
+        label = "\\n".join(filter(None, (*map(str, kind.nodes), *names)))
+        lines.append(f'  k{k} [label="{label}"];')
     lines += [f"  k{number[edge.above]} -> k{number[edge.below]};" for edge in order.edges]
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def draw_order(order: Order, title: str) -> dict[str, bytes]:
-    """The diagram as ``{"png": …, "svg": …}``: a column for each scenario's number, weaker ones higher."""
+def draw_order(order: Order, title: str, words: Called) -> dict[str, bytes]:
+    """The diagram as ``{"png": …, "svg": …}``."""
+    return as_bytes(compose_order(order, title, words))
+
+
+def compose_order(order: Order, title: str, words: Called) -> Any:
+    """The figure: a column for each scenario's number, which is named below, weaker ones higher."""
     kinds, edges = order.kinds, order.edges
     height = _heights(kinds, edges)
     columns = sorted({kind.node.number for kind in kinds})
-    figure, (axes,) = make_figure([1.2 + 0.7 * (max(height.values()) + 1)], width=0.55 * len(columns) + 1)
+    width = max(6.0, 0.55 * len(columns) + 1)
+    figure, (axes,) = make_figure([2.8 + 0.7 * (max(height.values()) + 1)], width)
     place = _places(kinds, height, columns)
     for edge in edges:
         (x1, y1), (x2, y2) = place[edge.above], place[edge.below]
@@ -50,11 +61,18 @@ def draw_order(order: Order, title: str) -> dict[str, bytes]:
         box = {"boxstyle": "round,pad=0.2", "fc": "#eef2f5", "ec": "#667788", "lw": 0.6}
         names = "\n".join(map(str, kind.nodes))
         axes.text(x, y, names, fontsize=5, ha="center", va="center", bbox=box)
+    for x, number in enumerate(columns):
+        axes.text(x, -0.45, _column(words[number]), fontsize=6, rotation=90, ha="center", va="top")
     axes.set_xlim(-0.7, len(columns) - 0.3)
     axes.set_ylim(-0.5, max(y for _, y in place.values()) + 0.5)
     axes.axis("off")
     figure.suptitle(title, fontsize=8)
-    return as_bytes(figure)
+    return figure
+
+
+def _column(words: Words) -> str:
+    """What stands below a column of the diagram."""
+    return f"{words.title}\n{words.sector}".strip()
 
 
 def _heights(kinds: Sequence[Kind], edges: Sequence[Edge]) -> dict[Scenario, int]:

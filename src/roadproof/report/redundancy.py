@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 
 from roadproof.analysis.redundancy import ChangeFinding, ChangeFindings
+from roadproof.spec.words import Called, legend
 from roadproof.verdict import Verdict
 
 
-def as_text(findings: Mapping[int, ChangeFindings], seconds: float) -> str:
+def as_text(findings: Mapping[int, ChangeFindings], seconds: float, words: Called) -> str:
     """What is redundant and what is in doubt, by scenario; how the others were told apart, in numbers."""
     every = [(number, x) for number, each in findings.items() for x in each]
     lines = []
@@ -16,6 +17,7 @@ def as_text(findings: Mapping[int, ChangeFindings], seconds: float) -> str:
             lines.append(f"scenario {number}: redundant{where}: {_change(x)}")
     doubts = [(number, x) for number, x in every if x.verdict is Verdict.UNKNOWN]
     lines += [f"scenario {number}: in doubt: {_change(x)}: {x.reason}" for number, x in doubts]
+    lines += [f"  {line}" for line in legend(words)] if lines else []
     redundant = sum(x.redundant is True and x.assuming is None for _, x in every)
     moving = sum(x.redundant is True and x.assuming is not None for _, x in every)
     drives = sum(x.drive is not None for _, x in every)

@@ -5,14 +5,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
 
-from roadproof.evaluation.results import Row, Totals
+from roadproof.evaluation.results import Row, Totals, words_in
 from roadproof.report.paper import COMPARISON, MARK, RESULTS, PaperRow
 from roadproof.report.tables import Table
 from roadproof.spec.scenarios import DETECTORS, Metric
+from roadproof.spec.words import Called
 
 NONE_FAILED: Mapping[str, str] = MappingProxyType({})
 OURS = "here"
 PAPER = "paper*"
+NAMES = 3
+"""So many scenarios are named on a line."""
 METRICS: tuple[Metric, ...] = ("TTC", "THW", "none")
 """Danger metrics of earlier works."""
 KINDS = {"cut-in": 1, "deceleration": 4}
@@ -50,6 +53,7 @@ def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapp
         columns,
         tuple(_result_rows(rows)),
         (
+            *_names(scenarios, words_in(totals.settings)),
             f"{OURS}: {_data(totals)}",
             *_papers(rows),
             "A trace is an unordered pair of vehicles, matched when one of its two role assignments is; "
@@ -62,6 +66,12 @@ def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapp
             *_notes(totals),
         ),
     )
+
+
+def _names(scenarios: Sequence[int], words: Called) -> Iterator[str]:
+    """What the columns of a table are called, some to a line."""
+    named = [f"s{i} {words[i].title}" for i in scenarios if words[i].title]
+    yield from ("; ".join(named[k : k + NAMES]) for k in range(0, len(named), NAMES))
 
 
 def _papers(rows: Sequence[Row]) -> Iterator[str]:

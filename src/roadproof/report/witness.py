@@ -6,11 +6,12 @@ from roadproof.evidence.judged import Judged
 from roadproof.exporting.csv_table import csv_of
 from roadproof.report.drive import draw_drive
 from roadproof.searching.ask import Outcome
-from roadproof.spec.library import Library
+from roadproof.spec.library import Library, Specification
 from roadproof.spec.scenarios import LANE
+from roadproof.spec.words import Words, words_of
 
 
-def as_line(outcome: Outcome, verbose: bool = False) -> str:
+def as_line(outcome: Outcome, specification: Specification, verbose: bool = False) -> str:
     """What was found, and why not; with ``verbose`` also sizes and seconds by stage."""
     name = f"scenario {outcome.scenario}" if outcome.scenario is not None else outcome.query.text
     shown = f"{name:<12} {outcome.set_name:<5} {outcome.verdict:<11} road {outcome.road:<7}"
@@ -22,6 +23,8 @@ def as_line(outcome: Outcome, verbose: bool = False) -> str:
         shown += "" if outcome.natural else " (not natural: within the vehicles' limits only)"
         shown += f" {len(outcome.drives)} drives" if len(outcome.drives) > 1 else ""
     shown += f" {outcome.seconds['all']:.2f} s"
+    if outcome.scenario is not None:
+        shown += _called(words_of(specification, outcome.scenario))
     if outcome.reason:
         shown += f"\n  {outcome.reason}"
     if outcome.impossibility is not None:
@@ -32,6 +35,11 @@ def as_line(outcome: Outcome, verbose: bool = False) -> str:
         shown += f"\n  sizes {dict(outcome.sizes)}"
         shown += "\n  seconds " + ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
     return shown
+
+
+def _called(words: Words) -> str:
+    """What a scenario is called, on a line below its number."""
+    return f"\n  {words.name}" if words.name else ""
 
 
 def kinds(pictures: bool) -> tuple[str, ...]:

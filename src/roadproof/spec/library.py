@@ -7,7 +7,7 @@ definitions in force for a choice of set and options are a ``Specification``.
 import hashlib
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from difflib import get_close_matches
 from fractions import Fraction
 from functools import cache, cached_property
@@ -28,6 +28,7 @@ from roadproof.logic.syntax import (
     ParameterDeclaration,
     SetBlock,
     Statement,
+    TitleDeclaration,
     WhenBlock,
 )
 from roadproof.signals import SIGNALS, SIZES
@@ -50,8 +51,9 @@ class Source:
 class Library:
     """Everything that specification files declare; names are unique in each mapping.
 
-    ``lanes``: by scenario, whose lane L is where that is not SV's (semantics §5). ``files``: the users'
-    texts, in order.
+    ``lanes``: by scenario, whose lane L is where that is not SV's (semantics §5). ``titles``: by scenario,
+    what it is called, and where that is said; no reading depends on that. ``files``: the users' texts, in
+    order.
     """
 
     parameters: Mapping[str, ParameterDeclaration]
@@ -61,6 +63,7 @@ class Library:
     variants: Mapping[tuple[str, str], tuple[Definition, ...]]
     sources: Mapping[str, Source]
     lanes: Mapping[int, LaneDeclaration]
+    titles: Mapping[int, tuple[TitleDeclaration, Source]] = field(default_factory=dict)
     files: tuple[Source, ...] = ()
 
     @property
@@ -70,8 +73,8 @@ class Library:
 
     @cached_property
     def fingerprint(self) -> str:
-        """A short text that changes with all that is declared; with places and comments it does not."""
-        parts = [x.name for x in fields(self) if x.name not in ("sources", "files")]
+        """A short text that changes with all that is declared; with places and titles it does not."""
+        parts = [x.name for x in fields(self) if x.name not in ("sources", "titles", "files")]
         declared = [repr(sorted(getattr(self, part).items())) for part in parts]
         return hashlib.sha256("\0".join(declared).encode()).hexdigest()[:16]
 
@@ -187,6 +190,7 @@ class _Building:
         self.variants = dict(below.variants) if below else {}
         self.sources = dict(below.sources) if below else {}
         self.lanes = dict(below.lanes) if below else {}
+        self.titles = dict(below.titles) if below else {}
 
     def library(self) -> Library:
         return Library(
@@ -197,6 +201,7 @@ class _Building:
             self.variants,
             self.sources,
             self.lanes,
+            self.titles,
         )
 
     def add(self, statements: Iterable[Statement], source: Source) -> None:
@@ -229,6 +234,10 @@ class _Building:
                     for number in statement.scenarios:
                         _once(fresh, "lane of scenario", str(number), statement.at)
                         self.lanes[number] = statement
+                case TitleDeclaration():
+                    for number in statement.scenarios:
+                        _once(fresh, "title of scenario", str(number), statement.at)
+                        self.titles[number] = (statement, source)
                 case _:
                     assert_never(statement)
         for block in blocks:

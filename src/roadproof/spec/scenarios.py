@@ -16,9 +16,10 @@ from roadproof.errors import InputError, UsageError
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula, transform
+from roadproof.logic.syntax import Definition, TitleDeclaration
 from roadproof.spec.compose import both, either, eventually
 from roadproof.spec.elaborate import apply_definition, elaborate, read_claim, signature
-from roadproof.spec.library import Specification, unknown
+from roadproof.spec.library import Specification, source_of, unknown
 from roadproof.spec.query import Query
 from roadproof.world.road import Zone
 
@@ -30,7 +31,8 @@ _ZONES: dict[Zone, str] = {"main": "onMainRoad", "merge": "inMergeZone", "depart
 _SCENARIO = re.compile(r"scenario_(\d{1,6})")
 _NUMBERS = re.compile(r"(scenario_)?\d[\d,\s-]*")
 _RANGE = re.compile(r"\s*(\d{1,4})\s*(?:-\s*(\d{1,4})\s*)?")
-_COMPONENTS = ("behaviourSV", "behaviourPOV", "initialCondition")
+_BEHAVIOURS = ("behaviourSV", "behaviourPOV")
+_COMPONENTS = (*_BEHAVIOURS, "initialCondition")
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,12 @@ def read_query(specification: Specification, text: str, source: str = "claim") -
     if number is None:
         return None, read_claim(specification, text, source)
     return number, apply_definition(specification, name_of(number))
+
+
+def scenario_number(query: Query) -> int | None:
+    """The number of the scenario that a query is, as a whole; None where it is none."""
+    whole = query.formula
+    return number_in(whole.name.partition("@")[0]) if isinstance(whole, f.Named) else None
 
 
 def lane_owner(specification: Specification, scenario: Scenario) -> str:
@@ -228,6 +236,11 @@ def too_near_ahead(specification: Specification, behind: str, ahead: str) -> Que
     return apply_definition(specification, "dangerAhead", (behind, ahead))
 
 
+def too_near_left(specification: Specification, right: str, left: str) -> Query:
+    """One vehicle is left of the other, nearer than the lateral RSS distance (eq. lat_RSS)."""
+    return apply_definition(specification, "dangerLeft", (right, left))
+
+
 def in_lane(specification: Specification, vehicle: str, lane: str = LANE) -> Query:
     """A vehicle occupies a lanelet of a lane."""
     return apply_definition(specification, "atLane", (vehicle, lane))
@@ -279,11 +292,53 @@ def missing_part(specification: Specification, number: int) -> str:
     return next((name for name in names if name not in specification.definitions), "")
 
 
+def behaviour_words(specification: Specification, number: int) -> tuple[str, str]:
+    """What SV and what POVs do in a scenario, in words; empty where nothing is said of it."""
+    sv, pov = (_words(specification, f"{kind}_{number}") for kind in _BEHAVIOURS)
+    return sv, pov
+
+
 def happening_words(specification: Specification, number: int) -> str:
     """What happens in a scenario, in the words of its behaviours, else in its own."""
-    docs = [_words(specification, f"{kind}_{number}") for kind in ("behaviourSV", "behaviourPOV")]
+    docs = behaviour_words(specification, number)
     own = name_of(number)
     return ", ".join(filter(None, docs)) or _words(specification, own) or f"scenario {number}"
+
+
+def own_words(specification: Specification, number: int) -> str:
+    """The description of a scenario itself; empty where it only puts those of its parts together."""
+    definition = specification.definitions.get(name_of(number))
+    return "" if definition is None or "[" in definition.doc else definition.doc
+
+
+def declared_title(specification: Specification, number: int) -> TitleDeclaration | None:
+    """The title of a scenario; None where it has none, or where its behaviours are others by now.
+
+    A title is of the definitions in its own file: a set, an option or a later file that replaces one of them
+    makes another scenario of it, which the old words would only hide.
+    """
+    library = specification.library
+    if number not in library.titles:
+        return None
+    title, source = library.titles[number]
+    for definition in _happening(specification, number):
+        if definition is not library.definitions[definition.name] or source_of(library, definition) != source:
+            return None
+    return title
+
+
+def _happening(specification: Specification, number: int) -> tuple[Definition, ...]:
+    """The definitions of a scenario that say what happens, those of others that it takes over among them."""
+    kinds = ("disturb", *_BEHAVIOURS)
+    found: dict[str, Definition] = {}
+    waiting = [name_of(number), *(f"{kind}_{number}" for kind in kinds)]
+    while waiting:
+        definition = specification.definitions.get(waiting.pop())
+        if definition is not None and definition.name not in found:
+            found[definition.name] = definition
+            calls = (x.name for x in syntax.walk(definition.body) if isinstance(x, syntax.Call))
+            waiting += [name for name in calls if name.rpartition("_")[0] in kinds]
+    return tuple(found.values())
 
 
 def _words(specification: Specification, name: str) -> str:

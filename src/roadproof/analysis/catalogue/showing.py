@@ -26,7 +26,7 @@ from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, name_of
 MOST_VEHICLES = 8
 """In a scenario of CommonRoad of which no vehicles are named."""
 _STATE: tuple[SignalName, ...] = ("s", "d", "v_lon")
-DANGER = "danger"
+ENDANGERED = "endangered"
 """What a test shows in which vehicles are safe and come into danger, whatever scenario that is."""
 GAP = "gap"
 """Danger that no scenario says how, for any lane and in any roles."""
@@ -43,7 +43,7 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Shown:
-    """A scenario, a class or ``DANGER`` that holds from the instant ``at`` (s) on, first of all there.
+    """A scenario, a class or ``ENDANGERED`` that holds from the instant ``at`` (s) on, first of all there.
 
     ``vehicles`` are called what the test calls them, in the order of the scenario's roles.
     """
@@ -102,10 +102,10 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
 
 def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Shown]:
     """The danger of a drive, from its start on, where no scenario holds for any lane and in any roles."""
-    danger = next((x for x in shown if x.what == DANGER and x.at == 0), None)
-    if danger is not None and {x.what for x in shown} == {DANGER}:
+    danger = next((x for x in shown if x.what == ENDANGERED and x.at == 0), None)
+    if danger is not None and {x.what for x in shown} == {ENDANGERED}:
         wider = {x.what for x in shown_by(file, asked, Freedom(roles=True, lanes=True))}
-        if wider == {DANGER}:
+        if wider == {ENDANGERED}:
             yield replace(danger, what=GAP)
 
 
@@ -153,7 +153,7 @@ def _instants(
 def _what(asked: Asked, roles: tuple[str, ...], true: frozenset[Key]) -> Iterator[str]:
     yield from asked.shown(roles, true)
     if Endangered() in true:
-        yield DANGER
+        yield ENDANGERED
 
 
 # --- samples -------------------------------------------------------------------------------------

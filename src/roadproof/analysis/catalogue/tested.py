@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from roadproof.analysis.catalogue.asked import NOWHERE, Asked
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.meaning import Fact, Facts
-from roadproof.analysis.catalogue.showing import DANGER, GAP, ConcreteAnswer
+from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
 from roadproof.spec.scenarios import name_of
+from roadproof.spec.words import called
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,8 @@ def tested(
 
 def targets_of(asked: Asked) -> dict[str, str]:
     """Every scenario and every class by name, with what it is in words."""
-    targets = {name_of(number): f"scenario {number}" for number in asked.numbers}
+    words = called(asked.specification, asked.numbers)
+    targets = {name_of(number): x.name or f"scenario {number}" for number, x in words.items()}
     if asked.classes is not None:
         for one in asked.classes.all():
             place = "" if one.place is None else f", {one.place.replace('_', ' and ')}"
@@ -124,7 +126,7 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], words: Mapping[str, str]) -
     for x in concrete:
         if x.fault:
             continue
-        shown = sorted(x.names - {DANGER, GAP, NOWHERE})
+        shown = sorted(x.names - {ENDANGERED, GAP, NOWHERE})
         for claim in x.claims:
             if claim not in words:
                 yield Remark((x.entry.id,), f"claims {claim}, {_NO_TARGET}")
@@ -138,7 +140,7 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], words: Mapping[str, str]) -
 def _of_danger(answer: ConcreteAnswer) -> str:
     if GAP in answer.names:
         return ", though danger comes: a gap, which no scenario covers for any lane and in any roles"
-    return ", though danger comes" if DANGER in answer.names else ""
+    return ", though danger comes" if ENDANGERED in answer.names else ""
 
 
 def _with_other_values(answer: ConcreteAnswer) -> str:
