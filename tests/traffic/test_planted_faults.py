@@ -23,6 +23,7 @@ from roadproof.formats.recording import Recording
 from roadproof.report import classify
 from roadproof.spec.library import Source, build_library, bundled_library
 from roadproof.spec.scenarios import COMPARISON, PAIR, TRIPLE
+from roadproof.spec.words import Words
 from roadproof.verdict import Verdict
 from traffic.faults import faulty_library, plant_fault
 from traffic.make_recording import Track, cruise, make_recording
@@ -312,7 +313,8 @@ def test_shares_are_of_situations_with_as_many_vehicles(
     shares = Shares(["01"], 10, 9, situations, classified=Counter({2: 8, 3: 4}), source="here")
 
     def check() -> None:
-        rows = {line.split()[0]: line for line in classify.as_table(examples, shares).splitlines()[1:]}
+        words = {number: Words(number) for number in (1, 2, 4)}
+        rows = {line.split()[0]: line for line in classify.as_table(examples, shares, words).splitlines()[1:]}
         assert {name: row.split()[5] for name, row in rows.items()} == {
             "class_1": "75.0",
             "class_4": "25.0",

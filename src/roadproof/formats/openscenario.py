@@ -20,6 +20,7 @@ from roadproof.formats.source import Files, Format, with_suffix
 from roadproof.formats.straight import of_road
 from roadproof.formats.table import Table
 from roadproof.markup import Element, number_in, read_xml
+from roadproof.signals import RECORDED, SIZES
 from roadproof.world.models import load_road
 from roadproof.world.opendrive import origin_of
 from roadproof.world.road import Road
@@ -188,15 +189,14 @@ def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, Way]) -> Table:
         times = np.clip(np.arange(first, last + 1) / RATE, way.time[0], way.time[-1])
         s, v_lon, a_lon = _curve(way.time, way.s, times)
         d, v_lat, a_lat = _curve(way.time, way.d, times)
-        one = np.ones_like(times)
+        moving = (s + box.length / 2, d + box.width / 2, v_lon, v_lat, a_lon, a_lat)
         told = {
             "time": np.arange(first, last + 1) / RATE,
             "vehicle": np.full(len(times), name),
-            "s": s + box.length / 2,
-            "d": d + box.width / 2,
-            **{"v_lon": v_lon, "v_lat": v_lat, "a_lon": a_lon, "a_lat": a_lat},
-            **{"length": box.length * one, "width": box.width * one, "kind": np.full(len(times), box.kind)},
+            "kind": np.full(len(times), box.kind),
         }
+        told |= zip(map(str, RECORDED), moving, strict=True)
+        told |= {str(x): np.full(len(times), getattr(box, x)) for x in SIZES}
         for column, values in told.items():
             columns.setdefault(column, []).append(values)
     joined = {column: np.concatenate(values) for column, values in columns.items()}

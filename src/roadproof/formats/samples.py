@@ -52,11 +52,12 @@ def read_recording(path: Path) -> Recording:
 
     Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
+    columns = read_columns(path)
     road_file = path.with_name(f"{path.stem}{ROAD_ENDING}")
     if not road_file.is_file():
         raise InputError(f"{path}: {road_file.name} is missing beside it, which says where the lanes are")
     road = of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
-    return recording_of(read_columns(path), road, path.stem)
+    return recording_of(columns, road, path.stem)
 
 
 def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = ()) -> Recording:
