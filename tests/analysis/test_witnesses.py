@@ -121,15 +121,16 @@ def test_what_was_not_found_is_asked_again(tmp_path: Path, asked: Asked) -> None
         ["--count", "2"],
     ],
 )
-def test_another_search_for_the_same_scenario_is_asked(
+def test_another_search_for_the_same_formula_is_asked(
     more: list[str], tmp_path: Path, asked: Asked, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    witness(tmp_path, "4")
+    what, name = "atLane(SV,L) and F[0, 3/5] v_lon(SV) > 30 m/s", "formula-01-base"
+    witness(tmp_path, what)
     asked.since()
-    witness(tmp_path, "4", *more)
-    assert asked.since() == [A4]
-    assert f"the answer '{A4}' is that to another search" in capsys.readouterr().err
-    witness(tmp_path, "4", *more, "--effort", "70")
+    witness(tmp_path, what, *more)
+    assert asked.since() == [name]
+    assert f"the answer '{name}' is that to another search" in capsys.readouterr().err
+    witness(tmp_path, what, *more, "--effort", "70")
     assert asked.since() == []
     accepted(tmp_path)
 

