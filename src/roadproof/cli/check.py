@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.numbers import add_effort_options, add_working_options
-from roadproof.cli.options import add_json_option, write_json
+from roadproof.cli.options import add_json_option, add_spec_option, write_json
 from roadproof.cli.progress import Counter
 
 SUMMARY = "check certificates and drive files again, without the programs that made them"
@@ -33,15 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
     parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who is asked (default: z3)")
     add_effort_options(parser, each="a query")
-    parser.add_argument(
-        "--spec",
-        dest="specs",
-        metavar="FILE",
-        action="append",
-        type=Path,
-        default=[],
-        help="a specification file that the claims were made with; may be repeated",
-    )
+    add_spec_option(parser, "a specification file that the claims were made with")
     add_working_options(parser)
     add_json_option(parser)
 

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.numbers import whole
+from roadproof.cli.options import add_spec_option
 from roadproof.verdict import ExitCode
 
 SUMMARY = "write drives for other tools: OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV"
@@ -45,15 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=25,
         help="samples a second of commonroad, highd and csv (default: 25)",
     )
-    parser.add_argument(
-        "--spec",
-        dest="specs",
-        metavar="FILE",
-        action="append",
-        type=Path,
-        default=[],
-        help="a specification file that the drives were made with; may be repeated",
-    )
+    add_spec_option(parser, "a specification file that the drives were made with")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -43,6 +43,11 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="choose a reading, such as lateral_sign=literal; may be repeated",
     )
+    add_spec_option(parser, "a specification file of yours, on top of the library")
+
+
+def add_spec_option(parser: argparse.ArgumentParser, text: str) -> None:
+    """``--spec FILE``, which may be repeated; ``text`` says what the files are."""
     parser.add_argument(
         "--spec",
         dest="specs",
@@ -50,7 +55,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         action="append",
         type=Path,
         default=[],
-        help="a specification file of yours, on top of the library; may be repeated",
+        help=f"{text}; may be repeated",
     )
 
 
