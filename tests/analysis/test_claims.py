@@ -11,14 +11,14 @@ from typing import Any
 import pytest
 
 import roadproof as rp
+from analysis.heard import Asked
 from evidence.folders import check
-from roadproof.analysis.claims import Answered, Claims, name_of
+from roadproof.analysis.claims import Claims, name_of
 from roadproof.api.proofs import claims_of
 from roadproof.cli.main import main
 from roadproof.errors import UsageError
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
-from roadproof.proving.properties import Task
 from roadproof.verdict import Verdict
 
 SYMMETRIC = "danger(SV,POV) -> danger(POV,SV)"
@@ -29,32 +29,11 @@ FALSE = "fasterThan(SV,POV) -> danger(SV,POV)"
 CLAIMS = (SYMMETRIC, FALSE, ALWAYS)
 
 
-class Asked:
-    """The claims that are asked, in whatever process."""
-
-    def __init__(self, log: Path, patch: pytest.MonkeyPatch) -> None:
-        self.log = log
-        settle = Claims.settle
-
-        def hear(claims: Claims, piece: Task) -> dict[str, Answered]:
-            with log.open("a") as file:
-                file.write(f"{piece.claim}\n")
-            return settle(claims, piece)
-
-        patch.setattr(Claims, "settle", hear)
-
-    def __eq__(self, other: object) -> bool:
-        return (self.log.read_text().splitlines() if self.log.exists() else []) == other
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        return self.log.read_text() if self.log.exists() else "nothing"
-
-
 @pytest.fixture
 def asked(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Asked:
-    return Asked(tmp_path_factory.mktemp("log") / "asked", monkeypatch)
+    return Asked(
+        tmp_path_factory.mktemp("log") / "asked", monkeypatch, Claims, lambda piece: str(piece.claim)
+    )
 
 
 def prove(out: Path, *claims: str, more: Sequence[str] = ()) -> int:

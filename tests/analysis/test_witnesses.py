@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 
 import roadproof as rp
+from analysis.heard import Asked
 from evidence.folders import check
 from roadproof.analysis.witnesses import Witnessing
 from roadproof.cli.main import main
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
-from roadproof.searching.ask import Outcome
 
 IMPOSSIBLE = "given A, B: vehicle: s(A) > s(B) + 5 m and s(B) > s(A)"
 NONE = "v_lon(SV) > 500 km/h"
@@ -23,29 +23,9 @@ FAST = "F[0, 1] v_lon(SV) > 30 m/s"
 A3, A4 = "scenario-03-base", "scenario-04-base"
 
 
-class Asked:
-    """The names that are searched for, in whatever process."""
-
-    def __init__(self, log: Path, patch: pytest.MonkeyPatch) -> None:
-        self.log = log
-        settle = Witnessing.settle
-
-        def hear(study: Witnessing, piece: str) -> dict[str, Outcome]:
-            with log.open("a") as file:
-                file.write(f"{piece}\n")
-            return settle(study, piece)
-
-        patch.setattr(Witnessing, "settle", hear)
-
-    def since(self) -> list[str]:
-        found = self.log.read_text().splitlines() if self.log.exists() else []
-        self.log.write_text("")
-        return found
-
-
 @pytest.fixture
 def asked(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Asked:
-    return Asked(tmp_path_factory.mktemp("log") / "asked", monkeypatch)
+    return Asked(tmp_path_factory.mktemp("log") / "asked", monkeypatch, Witnessing)
 
 
 def witness(out: Path, *what: str) -> int:
