@@ -99,6 +99,10 @@ class Claims:
     def library(self) -> Library:
         return next(iter(self.specifications.values())).library
 
+    def specification_of(self, task: Task) -> Specification:
+        """The definitions that a claim is read with."""
+        return self.specifications[task.set_name]
+
     @cached_property
     def named(self) -> dict[str, Task]:
         """The tasks by the names under which answers are kept; what is asked twice is there once."""
@@ -116,7 +120,7 @@ class Claims:
 
     def settle(self, piece: Task) -> dict[str, Answered]:
         """One claim settled: in dense time, or within bounds."""
-        specification = self.specifications[piece.set_name]
+        specification = self.specification_of(piece)
         query = read_claim(specification, piece.claim)
         if self.within is not None:
             from roadproof.searching.ask import Search

@@ -19,6 +19,7 @@ from roadproof.proving.properties import find_label
 from roadproof.solve.smt import Satisfiability as SolverAnswer
 from roadproof.solve.smt import ask
 from roadproof.spec.library import Library, load_library
+from roadproof.spec.words import called_by, legend
 from roadproof.study import pool
 from roadproof.study.pool import Progress
 from roadproof.verdict import ExitCode
@@ -88,7 +89,10 @@ class Checked:
 
     def __str__(self) -> str:
         lines = [f"read with {path}" for path in self.specs]
-        return "\n".join([*lines, *map(str, self.findings), summary(self.findings, self.solver)])
+        lines += map(str, self.findings)
+        words = called_by(self.library.select(), (x.claim for x in self.findings))
+        lines += [f"  {line}" for line in legend(words)]
+        return "\n".join([*lines, summary(self.findings, self.solver)])
 
 
 def check(

@@ -99,7 +99,8 @@ def run(args: argparse.Namespace) -> int:
 
     def show(name: str, answer: "Answered") -> None:
         clear()
-        print_at_once(details(answer) if asked.are_own else line(answer), args.out is not None)
+        told = details(answer, asked.specification_of(answer.task)) if asked.are_own else line(answer)
+        print_at_once(told, args.out is not None)
 
     each = None
     if args.json != "-" and (asked.are_own or args.verbose):

@@ -32,7 +32,7 @@ from roadproof.spec.words import Called, called_in
 RECORDING_SCHEMA = "roadproof/recording-findings/3"
 RESULTS_SCHEMA = "roadproof/traffic-results/3"
 MATCH_COLUMNS = tuple(
-    "recording sv pov pov2 lane start_frame end_frame min_danger set scenario uncertain".split()  # noqa: SIM905
+    "recording sv pov pov2 lane start_frame end_frame min_danger set scenario title uncertain".split()  # noqa: SIM905
 )
 PAIR_COLUMNS = tuple(
     "recording first second min_danger start_frame end_frame first_lane second_lane sectors".split()  # noqa: SIM905
@@ -274,6 +274,7 @@ def write_results(
     """
     totals = begin_totals(settings)
     counted = Counted(repeats=totals.repeats)
+    words = words_in(settings)
     with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
         match_rows.writerow(MATCH_COLUMNS)
@@ -281,7 +282,7 @@ def write_results(
         for all_found in findings:
             found = without_repeats(all_found, counted)
             add_findings(totals, found)
-            match_rows.writerows(_match_rows(settings, found))
+            match_rows.writerows(_match_rows(settings, words, found))
             pair_rows.writerows(_pair_rows(settings, found))
             if found.notes:
                 totals.notes[found.recording] = found.notes
@@ -343,12 +344,13 @@ def _repeat_as_json(totals: Totals, repeat: Repeat) -> dict[str, Any]:
     }
 
 
-def _match_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
+def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[list[object]]:
     dangers = [_decimal(x) for x in settings.min_danger]
     for m in found.matches:
         pov2 = "" if m.pov2 is None else m.pov2
         frames = (m.start_frame, m.end_frame, dangers[m.min_danger])
-        yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, m.set_name, m.scenario, int(m.uncertain)]
+        happens = (m.set_name, m.scenario, words[m.scenario].title)
+        yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, *happens, int(m.uncertain)]
 
 
 def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:

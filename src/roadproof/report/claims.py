@@ -7,8 +7,10 @@ from itertools import groupby
 from roadproof.analysis.claims import Answered
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel
+from roadproof.spec.library import Specification
 from roadproof.spec.motion import Assumed, statement
 from roadproof.spec.scenarios import LANE
+from roadproof.spec.words import called_by, legend
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
 
@@ -28,8 +30,8 @@ def verdict(answered: Answered) -> str:
     return str(answered.verdict) if by is None else f"{answered.verdict} by a {by}"
 
 
-def table(answered: Sequence[Answered]) -> str:
-    """A line for each property and set; below it what was not as expected."""
+def table(answered: Sequence[Answered], specification: Specification) -> str:
+    """A line for each property and set; below it what was not as expected, and what scenarios are called."""
     rows: list[str] = []
     for (name, title, set_name), group in groupby(
         answered, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
@@ -44,11 +46,13 @@ def table(answered: Sequence[Answered]) -> str:
             f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
         )
         rows += [f"      {line(s)} {s.settled.result.reason}" for s in found if s.verdict is not s.expected]
+    words = called_by(specification, (s.task.claim for s in answered))
+    rows += [f"  {line}" for line in legend(words)]
     return "\n".join(rows)
 
 
-def details(answered: Answered) -> str:
-    """The verdict with its evidence: certificate in numbers, drive or trace."""
+def details(answered: Answered, specification: Specification) -> str:
+    """The verdict with its evidence: certificate in numbers, drive or trace; what scenarios are called."""
     task, settled = answered.task, answered.settled
     result = settled.result
     lines = [f"{verdict(answered)}  {statement(task.assuming, ' '.join(task.claim.split()))}"]
@@ -69,6 +73,7 @@ def details(answered: Answered) -> str:
         lines += _show_drive(settled.drive)
     elif result.countermodel is not None:
         lines += _show_countermodel(result.countermodel)
+    lines += [f"  {words}" for words in called_by(specification, [task.claim]).values() if words.name]
     return "\n".join(lines)
 
 

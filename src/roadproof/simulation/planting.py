@@ -25,6 +25,7 @@ from roadproof.spec.bind import bind, default_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
 from roadproof.spec.scenarios import LANE, MIN_DANGER, SUBJECT, Scenario, danger, endangered, lane_owner
+from roadproof.spec.words import words_of
 from roadproof.world.motion import state_at
 
 PLANTED_COLUMNS = (
@@ -38,6 +39,7 @@ PLANTED_COLUMNS = (
     "min_danger",
     "set",
     "scenario",
+    "title",
 )
 PAUSE = 50
 """Frames between two planted drives of one direction."""
@@ -57,6 +59,7 @@ class Truth:
     min_danger: Fraction
     set_name: str
     scenario: int
+    title: str
 
 
 def lane_width(files: Iterable[DriveFile]) -> float:
@@ -165,6 +168,7 @@ def _confirm(recording: Recording, planted: Planted, file: DriveFile, library: L
         values[MIN_DANGER],
         file.set_name,
         number,
+        words_of(spec, number).title,
     )
 
 
@@ -182,4 +186,4 @@ def rows_of(truths: Iterable[Truth]) -> Iterator[list[object]]:
         danger = f"{float(x.min_danger):g}"
         pov2 = "" if x.pov2 is None else x.pov2
         frames = (x.start_frame, x.end_frame, danger)
-        yield [x.recording, x.sv, x.pov, pov2, x.lane, *frames, x.set_name, x.scenario]
+        yield [x.recording, x.sv, x.pov, pov2, x.lane, *frames, x.set_name, x.scenario, x.title]

@@ -29,6 +29,7 @@ SUBJECT, LANE = "SV", "L"
 
 _ZONES: dict[Zone, str] = {"main": "onMainRoad", "merge": "inMergeZone", "depart": "inDepartZone"}
 _SCENARIO = re.compile(r"scenario_(\d{1,6})")
+_NAMED = re.compile(r"\bscenario_(\d{1,6})\b")
 _NUMBERS = re.compile(r"(scenario_)?\d[\d,\s-]*")
 _RANGE = re.compile(r"\s*(\d{1,4})\s*(?:-\s*(\d{1,4})\s*)?")
 _BEHAVIOURS = ("behaviourSV", "behaviourPOV")
@@ -59,6 +60,11 @@ def number_in(name: str) -> int | None:
     """The number of a scenario in the name of its definition; None for another name."""
     found = _SCENARIO.fullmatch(name)
     return None if found is None else int(found[1])
+
+
+def numbers_named(text: str) -> set[int]:
+    """The numbers of the scenarios whose definitions a text names, of any set."""
+    return {int(number) for number in _NAMED.findall(text)}
 
 
 def read_numbers(specification: Specification, text: str) -> tuple[int, ...]:

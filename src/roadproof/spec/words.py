@@ -10,7 +10,14 @@ from itertools import groupby
 from typing import Any
 
 from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import behaviour_words, declared_title, numbers_of, own_words, sector_words
+from roadproof.spec.scenarios import (
+    behaviour_words,
+    declared_title,
+    numbers_named,
+    numbers_of,
+    own_words,
+    sector_words,
+)
 
 
 @dataclass(frozen=True)
@@ -77,6 +84,11 @@ def called(specification: Specification, numbers: Iterable[int] | None = None) -
     return {number: words_of(specification, number) for number in sorted(chosen)}
 
 
+def called_by(specification: Specification, texts: Iterable[str]) -> Called:
+    """The scenarios that some texts name, in words."""
+    return called(specification, {number for text in texts for number in numbers_named(text)})
+
+
 def called_in(specification: Specification, sets: Iterable[str], numbers: Iterable[int]) -> Called:
     """Scenarios as all of some spec sets call them; one that they do not call alike has no words."""
     chosen = sorted(numbers)
@@ -86,7 +98,10 @@ def called_in(specification: Specification, sets: Iterable[str], numbers: Iterab
 
 
 def legend(words: Called) -> Iterator[str]:
-    """What the numbers in a table mean: a line for each title, and one that says where."""
+    """What numbers in a table mean: a line for each title and one for the roads; one line for one number."""
+    if len(words) == 1:
+        yield from (f"{number}: {x.name}" for number, x in words.items() if x.name)
+        return
     titles = _numbers_by((x.number, x.title) for x in words.values())
     width = max(map(len, titles.values()), default=0) + 1
     for title, numbers in titles.items():
