@@ -38,6 +38,12 @@ class LostError(RoadproofError):
     exit_code = 20
 
 
+class SharedError(RoadproofError):
+    """No error but word that this run has its share done, and that the whole is not there yet."""
+
+    exit_code = 0
+
+
 @dataclass(frozen=True)
 class Position:
     """A place in a text; line and column count from 1."""

@@ -81,11 +81,11 @@ LETTING_GO = 5.0
 
 
 @contextmanager
-def hold_folder(folder: Path) -> Iterator[None]:
+def hold_folder(folder: Path, shared: bool = False) -> Iterator[None]:
     """Keep other runs out of a folder, which is made where there is none; the system lets go of it with us.
 
-    Raises ``InputError`` where another process holds it. Nothing is kept out where the system or the disk
-    knows no such locks.
+    ``shared``: but not runs that share it with this one. Raises ``InputError`` where another process holds
+    it. Nothing is kept out where the system or the disk knows no such locks.
     """
     make_folder(folder)
     try:
@@ -99,7 +99,7 @@ def hold_folder(folder: Path) -> Iterator[None]:
     try:
         while True:
             try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
                 break
             except BlockingIOError:
                 if time.monotonic() > latest:
@@ -119,12 +119,12 @@ def hold_folder(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def hold_if_any(folder: Path | None) -> Iterator[None]:
+def hold_if_any(folder: Path | None, shared: bool = False) -> Iterator[None]:
     """As ``hold_folder``; nothing is held where there is no folder."""
     if folder is None:
         yield
     else:
-        with hold_folder(folder):
+        with hold_folder(folder, shared):
             yield
 
 

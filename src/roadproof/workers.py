@@ -13,6 +13,7 @@ from multiprocessing.connection import wait
 from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
+from roadproof.hands import Hands
 from roadproof.parent import die_with
 
 Job = TypeVar("Job")
@@ -29,7 +30,7 @@ class Lost:
 
 
 def answers_of(
-    function: Callable[[Job], Answer], jobs: Sequence[Job], processes: int, fresh: bool = False
+    function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Hands, fresh: bool = False
 ) -> Generator[tuple[int, Answer | Lost], None, None]:
     """``function`` of every job, each with its place in ``jobs``, in the order in which they are done.
 
@@ -37,6 +38,12 @@ def answers_of(
     nothing with this one, for libraries whose threads hold locks. The iterator is to be used up or closed.
     An error that a job raises is raised here, and ends the others.
     """
+    if hands.cluster is not None:
+        from roadproof import cluster
+
+        yield from cluster.answers_of(function, jobs, hands.cluster)
+        return
+    processes = min(hands.processes or os.cpu_count() or 1, len(jobs))
     died: dict[int, str] = {}
     yield from _try_once(function, jobs, range(len(jobs)), processes, fresh, died)
     for place in sorted(died):
@@ -178,6 +185,15 @@ def _serve(connection: Any, function: Callable[[Any], object], parent: int) -> N
             connection.send((False, RuntimeError(f"{type(error).__name__}: {error}; of {reply[1]!r:.200}")))
 
 
+_ends_here = False
+
+
+def end_here() -> None:
+    """This process works for another, whoever started it: what it is asked is not divided again."""
+    global _ends_here
+    _ends_here = True
+
+
 def is_worker() -> bool:
     """Whether this process is one of several that work for another."""
-    return multiprocessing.parent_process() is not None
+    return _ends_here or multiprocessing.parent_process() is not None

@@ -364,7 +364,7 @@ def test_lost_drives_and_proofs_are_doubts(monkeypatch: pytest.MonkeyPatch) -> N
     basis = Basis(BASE)
     study = classification_of(basis, divide(basis, plan_of(BASE, (4, 8)), 1))
     monkeypatch.setattr(settling, "find_examples", die)
-    found = study.classified(conduct(study, processes=2).answers)
+    found = study.classified(conduct(study, hands=2).answers)
     assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
     assert all("its process ended twice" in x.reason for x in found.examples)
     assert {x.verdict for x in found.decisions} == {Verdict.PROVED}

@@ -322,7 +322,7 @@ def test_a_search_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.setattr(study, "look", deadly)
     asked = replace(TWO[0], knobs=(Knob("minSafe", "s", F(1), F(6)),))
-    (found,) = conduct(Exploration((asked,), 2), processes=2).answers.values()
+    (found,) = conduct(Exploration((asked,), 2), hands=2).answers.values()
     assert (found.findings[1].verdict, found.late) == (Verdict.UNKNOWN, True)
     assert "its process ended twice" in found.findings[1].reason
     assert found.findings[0].verdict is not Verdict.WITNESSED
@@ -335,7 +335,7 @@ def test_an_extreme_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(study, "find_extreme", deadly)
     asked = replace(TWO[0], measures=(read_measure(BASE, "least", "v_lon(SV)"),))
-    (found,) = conduct(Exploration((asked,), 2), processes=2).answers.values()
+    (found,) = conduct(Exploration((asked,), 2), hands=2).answers.values()
     assert [x.verdict for x in found.findings] == [Verdict.WITNESSED] * 2
     assert [(x.best, x.late) for x in found.extremes] == [(None, True)] * 2
     for missed in (x.missed for x in found.extremes):
@@ -351,7 +351,7 @@ def test_a_formula_whose_process_dies_is_a_doubt_at_every_value(monkeypatch: pyt
         return explore(asked)
 
     monkeypatch.setattr(study, "explore", deadly)
-    lost, found = conduct(Exploration(TWO), processes=2).answers.values()
+    lost, found = conduct(Exploration(TWO), hands=2).answers.values()
     if not lost.late:
         lost, found = found, lost
     assert {x.verdict for x in lost.findings} == {Verdict.UNKNOWN}
@@ -366,7 +366,7 @@ def test_what_the_clock_cuts_off_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> 
     for module in (values, extreme):
         monkeypatch.setattr(module, "show_impossible", late)
     asked = replace(TWO[0], measures=(read_measure(BASE, "least", "v_lon(SV)"),))
-    (found,) = conduct(Exploration((asked,)), processes=1).answers.values()
+    (found,) = conduct(Exploration((asked,)), hands=1).answers.values()
     assert found.late
     assert {x.verdict for x in found.findings} == {Verdict.WITNESSED}
 

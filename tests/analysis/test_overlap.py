@@ -55,7 +55,7 @@ def entries() -> dict[tuple[int, int], PairVerdict]:
     """Pairs of every kind: exclusive, possible, and with one disturbance on two road sectors."""
     wanted = {(4, 5), (5, 12), (4, 8), (4, 16), (4, 24), (8, 12), (12, 24), (4, 12), (12, 20)}
     pairs = tuple(pair for pair in pairs_of(BASIS) if (pair[0].number, pair[1].number) in wanted)
-    found = conduct(Overlap(BASIS, pairs), processes=1).answers.values()
+    found = conduct(Overlap(BASIS, pairs), hands=1).answers.values()
     return {(entry.a.number, entry.b.number): entry for entry in found}
 
 

@@ -144,7 +144,7 @@ def test_answers_that_compare_with_other_sets_are_not_taken_over(tmp_path: Path)
 def test_what_is_kept_comes_back_as_it_was(few: list[str], tmp_path: Path) -> None:
     assert run(tmp_path, "--road", "main-2", "--no-pictures") == ExitCode.UNEXPECTED
     survey = replace(asked("ext", "complete").survey, elsewhere=())
-    found = conduct(Coverage(survey), tmp_path, processes=1).answers
+    found = conduct(Coverage(survey), tmp_path, hands=1).answers
     witnessed, empty = (found[name] for name in WANTED)
     assert isinstance(witnessed, tuple)
     assert isinstance(empty, tuple)
@@ -162,12 +162,12 @@ def test_claims_and_needs_are_kept_too(monkeypatch: pytest.MonkeyPatch, tmp_path
     """A run that was broken off before its index leaves nothing that ``check`` has to reject."""
     monkeypatch.setattr(study, "replaced_by", lambda _: ("cutIn",))
     coverage = replace(asked("complete"), needed=True)
-    told = conduct(coverage, tmp_path, processes=1)
+    told = conduct(coverage, tmp_path, hands=1)
     names = ["covered-1", "covered-2", "covered-3", "covered-4", "needed-cutIn"]
     assert sorted(path.stem for path in (tmp_path / "answers").iterdir()) == names
     assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
     monkeypatch.setattr(Coverage, "settle", lambda *_: pytest.fail("asked again"))
-    again = conduct(coverage, tmp_path, processes=1)
+    again = conduct(coverage, tmp_path, hands=1)
     assert again.records == told.records
     assert coverage.together(again.answers).verdict is Verdict.COVERED
     [need] = coverage.together(again.answers).needs

@@ -47,7 +47,9 @@ def test_what_is_written(undisturbed: dict[str, bytes]) -> None:
     others = {"matches.csv", "pairs.csv", "results.json", "answers.md"}
     assert set(undisturbed) == TABLES | recordings | others
     header = undisturbed["matches.csv"].decode().splitlines()[0]
-    assert header == "recording,sv,pov,pov2,lane,start_frame,end_frame,min_danger,set,scenario,uncertain"
+    assert (
+        header == "recording,sv,pov,pov2,lane,start_frame,end_frame,min_danger,set,scenario,title,uncertain"
+    )
     told = json.loads(undisturbed["results.json"])
     rows = list(csv.DictReader(undisturbed["results.csv"].decode().splitlines()))
     ours = [row for row in rows if row["data"] == "here"]
@@ -56,6 +58,19 @@ def test_what_is_written(undisturbed: dict[str, bytes]) -> None:
         assert (row["set"], int(row["traces"])) == (counted["set"], counted["traces"])
         assert {f"s{i}": str(n) for i, n in counted["scenarios"].items()}.items() <= row.items()
     assert sum(int(row["traces"]) for row in ours) > 0
+
+
+def test_runs_that_divide_the_recordings_end_with_the_same_bytes(
+    folder: Path, undisturbed: dict[str, bytes], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["evaluate", str(folder), "--out", str(tmp_path), "--jobs", "1", "--no-pictures"]
+    assert main([*command, "--shard", "1/2"]) == 0
+    assert {x.stem for x in tmp_path.glob("recordings/*")} == {"01", "03"}
+    assert "shard 1/2 is done: 2 of 2 recordings" in capsys.readouterr().err
+    assert main([*command, "--shard", "2/2"]) == 0
+    assert main(command) == 0
+    assert "3 of 3 recordings are already evaluated" in capsys.readouterr().err
+    assert contents(tmp_path) == undisturbed
 
 
 @pytest.mark.parametrize("moment", [0.9, 1.6, 2.4])

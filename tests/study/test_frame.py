@@ -67,7 +67,7 @@ class Sums:
 
 
 def sums(study: Sums, processes: int) -> dict[str, int | None]:
-    answers = conduct(study, processes=processes).answers
+    answers = conduct(study, hands=processes).answers
     return {name: value for name, value in answers.items() if name.startswith("sum")}
 
 
@@ -81,7 +81,7 @@ def test_a_doubt_is_asked_again_under_its_name() -> None:
 
 
 def test_a_piece_whose_process_dies_is_a_doubt_and_the_others_stand() -> None:
-    found = conduct(Sums((1, 2, 3), dying=2), processes=2)
+    found = conduct(Sums((1, 2, 3), dying=2), hands=2)
     assert found.answers["square-2"] is None
     assert found.answers["sum-1"] == 0
     assert found.answers["sum-2"] == 10
@@ -92,7 +92,7 @@ def test_progress_is_told() -> None:
     told: list[tuple[int, int, str]] = []
     conduct(
         Sums((1, 2)),
-        processes=2,
+        hands=2,
         progress=lambda *x: told.append(x),
         what="numbers",  # type: ignore[arg-type]
     )
@@ -101,7 +101,7 @@ def test_progress_is_told() -> None:
 
 def test_no_processes_are_too_few() -> None:
     with pytest.raises(UsageError, match="greater than 0"):
-        conduct(Sums((1, 2)), processes=0)
+        conduct(Sums((1, 2)), hands=0)
 
 
 def test_nothing_to_ask_is_nothing_found() -> None:

@@ -31,7 +31,7 @@ FIRST, SECOND = (name_of(*pair) for pair in PAIRS)
 
 @cache
 def answers() -> dict[str, PairVerdict]:
-    return dict(conduct(STUDY, processes=1).answers)
+    return dict(conduct(STUDY, hands=1).answers)
 
 
 @pytest.fixture
@@ -144,7 +144,7 @@ def test_an_answer_under_another_name_is_no_other_answer(folder: Path) -> None:
     """Each name is that of a pair, and a pair is asked by its name."""
     file_of(folder).rename(file_of(folder, "base-07-base-08"))
     other = Overlap(BASIS, ((Scenario(7, "base"), Scenario(8, "base")),))
-    found = conduct(other, folder, processes=1)
+    found = conduct(other, folder, hands=1)
     (verdict,) = other.verdicts(found.answers)
     assert (verdict.a.number, verdict.b.number) == (7, 8)
 

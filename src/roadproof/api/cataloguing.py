@@ -24,6 +24,7 @@ from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_folder, json_bytes, write_whole
+from roadproof.hands import Jobs
 from roadproof.report import catalogue as report
 from roadproof.spec.scenarios import numbers_of
 from roadproof.study import pool
@@ -157,9 +158,7 @@ class Catalogued(Studied[Meanings, Facts]):
     def __str__(self) -> str:
         return report.as_text(len(self.tests), self.tested, self.catalogue.notes)
 
-    def complete(
-        self, out: str | Path, jobs: int | None = None, progress: Progress | None = None
-    ) -> "Completed":
+    def complete(self, out: str | Path, jobs: Jobs = None, progress: Progress | None = None) -> "Completed":
         """Write a drive for all that no test shows into a folder, as tests with a ``catalogue.toml``.
 
         Raises ``InputError``.
@@ -212,7 +211,7 @@ def catalogue(
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Catalogued:
@@ -250,7 +249,7 @@ def catalogue(
 
 
 def _shown(
-    entries: Sequence[Concrete], asked: Asked, freedom: Freedom, jobs: int | None, progress: Progress | None
+    entries: Sequence[Concrete], asked: Asked, freedom: Freedom, jobs: Jobs, progress: Progress | None
 ) -> tuple[ConcreteAnswer, ...]:
     batches = [entries[k : k + BATCH] for k in range(0, len(entries), BATCH)]
     done = pool.work(partial(_batch, asked, freedom), batches, jobs, None, progress, "batches of tests")

@@ -22,6 +22,7 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.files import make_folder, write_whole
 from roadproof.formats.recording import Recording
 from roadproof.formats.sources import find_sources
+from roadproof.hands import Jobs
 from roadproof.report import classify as report
 from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
@@ -127,7 +128,7 @@ def classify(
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Classifications:

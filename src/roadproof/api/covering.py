@@ -22,6 +22,7 @@ from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_if_any
+from roadproof.hands import Jobs, hands_of
 from roadproof.report import coverage as report
 from roadproof.spec.words import Called, called
 from roadproof.study import pool
@@ -109,7 +110,7 @@ class Coverages(Studied[Coverage, Any]):
         gaps = ((x, gap) for x in self.surveyed.classes for gap in x.gaps)
         return ((f"gap-{k}", picture(report.draw_gap(*one, library))) for k, one in enumerate(gaps, 1))
 
-    def draw_beside(self, jobs: int | None = None, progress: Progress | None = None) -> None:
+    def draw_beside(self, jobs: Jobs = None, progress: Progress | None = None) -> None:
         """A picture of each gap beside its file, where answers were kept in a folder."""
         if self.folder is None:
             return
@@ -141,7 +142,7 @@ def coverage(
     effort: float = 10.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
     tell: Say | None = None,
@@ -172,5 +173,5 @@ def coverage(
         return {"traffic": count_in_traffic(basis, recordings, tell or (lambda line: None))}
 
     folder = None if out is None else Path(out)
-    with hold_if_any(folder):
+    with hold_if_any(folder, shared=hands_of(jobs).shard is not None):
         return Coverages.asked(study, folder, jobs, progress, say, more=count, begun=begun)

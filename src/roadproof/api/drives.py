@@ -19,6 +19,7 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import make_folder, write_whole
+from roadproof.hands import Jobs
 from roadproof.report.drive import draw_drive
 from roadproof.report.witness import as_line, files_of, kinds
 from roadproof.searching.ask import Outcome, Search
@@ -161,7 +162,7 @@ def witness(
     timeout: float | None = None,
     out: str | Path | None = None,
     pictures: bool = True,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Witnesses:
@@ -191,7 +192,7 @@ def witness_all(
     searches: Sequence[Search],
     out: str | Path | None = None,
     pictures: bool = True,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
     each: Callable[[str, Outcome], None] | None = None,
@@ -199,7 +200,7 @@ def witness_all(
     """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
     if not searches:
         raise UsageError("there is no scenario in the spec set: name formulas")
-    if pool.count_workers(searches, jobs) > 1:
+    if pool.are_forked(searches, jobs):
         from roadproof.solve.milp import prepare
 
         prepare()  # what every worker needs is imported once, before they are forked

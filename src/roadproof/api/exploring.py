@@ -16,6 +16,7 @@ from roadproof.api.settings import RoadLike, VehicleLike, searches_of, setting, 
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
+from roadproof.hands import Jobs
 from roadproof.report import explore as report
 from roadproof.searching.question import SearchOptions, Setting
 from roadproof.spec.scenarios import are_numbers
@@ -117,7 +118,7 @@ def explore(
     effort: float = 6.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Explorations:
@@ -163,14 +164,14 @@ def explorables(
 def explore_all(
     asked: Iterable[Explorable],
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
     tell: Say | None = None,
 ) -> Explorations:
     """As ``explore``, with what is asked as values; ``tell`` is told how far a formula is."""
     study = Exploration(tuple(asked), jobs, tell or say_nothing)
-    if pool.count_workers(range(1000), jobs) > 1:
+    if pool.are_forked(range(1000), jobs):
         from roadproof.solve.milp import prepare
 
         prepare()  # what every worker needs is imported once, before they are forked

@@ -16,6 +16,7 @@ from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_if_any
+from roadproof.hands import Jobs
 from roadproof.proving.properties import OWN, Task, choose, template_properties
 from roadproof.report import claims as claims_text
 from roadproof.spec.motion import MOTION, Under, limits_of, split, under
@@ -41,7 +42,7 @@ class Proofs(Studied[Claims, Answered]):
         cls,
         study: Claims,
         out: str | Path | None = None,
-        jobs: int | None = None,
+        jobs: Jobs = None,
         progress: Progress | None = None,
         say: Say | None = None,
         each: Callable[[str, Answered], None] | None = None,
@@ -138,7 +139,7 @@ def prove(
     timeout: float | None = None,
     drive: bool = True,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Proofs:

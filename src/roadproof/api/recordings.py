@@ -1,6 +1,5 @@
 """Recorded traffic, and the highD experiment on it."""
 
-import os
 import re
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -27,6 +26,7 @@ from roadproof.evaluation.results import Totals, as_json, question_mark
 from roadproof.files import hold_folder
 from roadproof.formats.sources import find_sources
 from roadproof.formats.table import Frame, frame_of
+from roadproof.hands import Jobs, hands_of
 from roadproof.monitoring.answers import Convention
 from roadproof.report.answers import answer_questions
 from roadproof.report.tables import as_text
@@ -189,7 +189,7 @@ def evaluate(
     check: bool = False,
     keep_going: bool = False,
     pictures: bool = True,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     tell: Say | None = None,
 ) -> Evaluated:
     """Find where danger arises in recordings, and match it with scenarios (paper, RQ1 to RQ5).
@@ -203,6 +203,8 @@ def evaluate(
     """
     settings = _settings_of(using or load("base", "extA", "ext"), among, min_danger, classes, end, detectors)
     if out is None:
+        if hands_of(jobs).shard is not None:
+            raise UsageError("a shard needs a folder in which the runs keep what they find: name out")
         with tempfile.TemporaryDirectory() as folder:
             found = _evaluate(Path(path), Path(folder), settings, check, keep_going, False, jobs, tell)
             return replace(found, folder=None, kept=found.findings)
@@ -241,17 +243,15 @@ def _evaluate(
     check: bool,
     keep_going: bool,
     pictures: bool,
-    jobs: int | None,
+    jobs: Jobs,
     tell: Say | None,
 ) -> Evaluated:
     """As ``evaluate``, with what is asked as a value, in a folder that no other run is writing into."""
-    processes = (os.cpu_count() or 1) if jobs is None else jobs
-    if processes < 1:
-        raise UsageError(f"--jobs {processes}: at least one process is needed")
-    experiment = Experiment(path, out, settings, processes, keep_going)
+    hands = hands_of(jobs)
+    experiment = Experiment(path, out, settings, hands, keep_going)
     say = tell or (lambda line: None)
     find_sources(path)
-    with hold_folder(out):
+    with hold_folder(out, shared=hands.shard is not None):
         remove_report(out)
         outcome = run_experiment(experiment, say)
         denied = tuple(_denied(experiment, outcome, say)) if check else ()

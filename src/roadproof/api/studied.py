@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from roadproof.api.answer import Answer, Picture
 from roadproof.files import write_whole
+from roadproof.hands import Jobs
 from roadproof.study.frame import Conducted, Study, conduct, put_away
 from roadproof.study.pool import Progress, Say
 from roadproof.study.shelf import write_index
@@ -33,7 +34,7 @@ class Studied(Answer, Generic[S, A]):
         cls,
         study: S,
         out: str | Path | None = None,
-        jobs: int | None = None,
+        jobs: Jobs = None,
         progress: Progress | None = None,
         say: Say | None = None,
         each: Callable[[str, A], None] | None = None,

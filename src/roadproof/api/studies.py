@@ -17,6 +17,7 @@ from roadproof.api.settings import basis_of, one_of, positive
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
+from roadproof.hands import Jobs
 from roadproof.report import order as order_report
 from roadproof.report import overlap as overlap_report
 from roadproof.report import redundancy as redundancy_report
@@ -103,7 +104,7 @@ def overlap(
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Overlaps:
@@ -182,7 +183,7 @@ def order(
     effort: float = 120.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Orders:
@@ -248,7 +249,7 @@ def redundancy(
     effort: float = 20.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Redundancies:

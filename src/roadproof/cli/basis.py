@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
+from roadproof.cli.numbers import read_hands
 from roadproof.cli.options import chosen_options, given_values, load_library_of, write_json
 from roadproof.cli.progress import Counter, warn
 from roadproof.errors import UsageError
@@ -13,6 +14,7 @@ from roadproof.errors import UsageError
 if TYPE_CHECKING:
     from roadproof.api.definitions import Definitions
     from roadproof.api.studied import Studied
+    from roadproof.hands import Hands
     from roadproof.study.pool import Progress, Say
 
 A = TypeVar("A")
@@ -23,7 +25,7 @@ class Asking(TypedDict):
 
     effort: float
     timeout: float | None
-    jobs: int | None
+    jobs: "Hands"
     out: Path | None
     progress: "Progress"
     say: "Say"
@@ -47,7 +49,7 @@ def asking(args: argparse.Namespace, folder: Path | None) -> Asking:
     return {
         "effort": args.effort,
         "timeout": args.timeout,
-        "jobs": args.jobs,
+        "jobs": read_hands(args),
         "out": folder,
         "progress": Counter(),
         "say": warn,

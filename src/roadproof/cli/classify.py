@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
-from roadproof.cli.numbers import add_effort_options, add_working_options
+from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
 from roadproof.errors import UsageError
 
@@ -35,6 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-shares", action="store_true", help="no recordings, so no shares")
     add_effort_options(parser, 60.0, "a drive or a proof")
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="write classes.spec, claims, evidence, picture"
     )

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.basis import asking, hand_over, read_definitions
-from roadproof.cli.numbers import add_effort_options, add_working_options
+from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
 from roadproof.cli.progress import Counter, tell
 
@@ -50,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--on", type=Path, metavar="DIR", help="count the classes in recordings, as roadproof simulate makes"
     )
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     add_json_option(parser)

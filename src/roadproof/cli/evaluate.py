@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.cli.basis import read_definitions
-from roadproof.cli.numbers import add_working_options
+from roadproof.cli.numbers import add_sharing_options, add_working_options, read_hands
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -71,6 +71,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_parameter_option(parser)
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument("--keep-going", action="store_true", help="leave out recordings that cannot be used")
     parser.add_argument("--check", action="store_true", help="ask the plain recursive evaluator again (slow)")
     parser.add_argument("--no-detectors", action="store_true", help="leave out those of earlier works")
@@ -103,7 +104,7 @@ def run(args: argparse.Namespace) -> int:
         check=args.check,
         keep_going=args.keep_going,
         pictures=not args.no_pictures,
-        jobs=args.jobs,
+        jobs=read_hands(args),
         tell=note,
     )
     if args.json:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.cli.basis import evidence_folder, hand_over, read_definitions
-from roadproof.cli.numbers import add_working_options, read_effort, whole
+from roadproof.cli.numbers import add_sharing_options, add_working_options, read_effort, read_hands, whole
 from roadproof.cli.options import add_json_option, chosen_sets
 from roadproof.cli.progress import Counter, tell, warn
 from roadproof.cli.search_options import add_search_options, where_asked
@@ -61,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_search_options(parser, 6.0)
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, JSON, pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     add_json_option(parser)
@@ -81,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
     measures: dict[Sense, str | None] = {"least": args.least or None, "greatest": args.greatest or None}
     asked = explorables(home, what, place, means, ranges, measures, args.when, args.steps, args.precision)
     folder = evidence_folder(args.out, args.json)
-    return hand_over(args, explore_all(asked, folder, args.jobs, Counter(), warn, tell))
+    return hand_over(args, explore_all(asked, folder, read_hands(args), Counter(), warn, tell))
 
 
 def _varied(text: str) -> tuple[str, str, str]:

@@ -10,6 +10,7 @@ from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
     from roadproof.effort import Effort
+    from roadproof.hands import Hands
 
 _DECIMAL = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?")
 _WHOLE = re.compile(r"[0-9]{1,12}")
@@ -50,6 +51,46 @@ def add_working_options(parser: argparse.ArgumentParser) -> None:
         "--jobs", type=whole("--jobs", 1), metavar="N", help="processes (default: one a core)"
     )
     add_quiet_option(parser)
+
+
+def add_sharing_options(parser: argparse.ArgumentParser) -> None:
+    """``--shard``, ``--cluster`` and who may speak to it, which ``read_hands`` understands."""
+    parser.add_argument(
+        "--shard",
+        metavar="K/N",
+        help="the K-th of N shares, of runs that share --out; when all are done, ask once more without",
+    )
+    parser.add_argument(
+        "--cluster",
+        metavar="SCHEDULER|local:N",
+        help="work on a cluster of dask, such as tcp://host:8786; or on one of N processes here",
+    )
+    for name, what in (("ca", "authority"), ("cert", "our certificate"), ("key", "its key")):
+        parser.add_argument(
+            f"--tls-{name}", metavar="FILE", help=f"{what}, for a cluster that is spoken to with TLS"
+        )
+
+
+def read_hands(args: argparse.Namespace) -> "Hands":
+    """Who does the work, by ``--jobs``, and where a command has them ``--shard`` and ``--cluster``.
+
+    Raises ``UsageError``.
+    """
+    from roadproof.cli.progress import note
+    from roadproof.hands import Cluster, Hands, Shard
+
+    said = vars(args)
+    files = {name: said.get(f"tls_{name}") for name in ("ca", "cert", "key")}
+    address, share = said.get("cluster"), said.get("shard")
+    named = [f"--tls-{name}" for name, file in files.items() if file is not None]
+    if named and address is None:
+        raise UsageError(f"{named[0]} is for a cluster: name its scheduler with --cluster")
+    if address is not None and args.jobs is not None:
+        raise UsageError("--jobs says how many processes work here: ask for it or for --cluster")
+    if share is not None and args.json is not None:
+        raise UsageError("--shard has no answer to the whole: leave --json to the run without it")
+    cluster = None if address is None else Cluster(address, files["ca"], files["cert"], files["key"], note)
+    return Hands(args.jobs, cluster, None if share is None else Shard.read(share))
 
 
 def decimal(option: str) -> Callable[[str], float]:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.basis import asking, hand_over, read_definitions
-from roadproof.cli.numbers import add_effort_options, add_working_options
+from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -32,6 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
     add_effort_options(parser, 120.0, "a drive")
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives, DOT and SVG")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
     add_json_option(parser)

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
-from roadproof.cli.numbers import add_effort_options, add_working_options
+from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--horizon", metavar="S", help="seconds of driving searched (default: 6; 9 with --start any)"
     )
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write evidence, CSV, JSON and heat map")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no heat map")
     add_json_option(parser)

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.basis import asking, hand_over, read_definitions
-from roadproof.cli.numbers import add_effort_options, add_working_options
+from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
 
 SUMMARY = "which parts of scenarios are redundant, by proof; drives that show the others needed"
@@ -31,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--whole", action="store_true", help="also the parts of simple predicates")
     add_effort_options(parser, 20.0, "a drive")
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and drives")
     add_json_option(parser)
 

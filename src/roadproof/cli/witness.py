@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.cli.basis import in_order, read_definitions
-from roadproof.cli.numbers import add_working_options, read_effort, whole
+from roadproof.cli.numbers import add_sharing_options, add_working_options, read_effort, read_hands, whole
 from roadproof.cli.options import add_json_option, chosen_sets, write_json
 from roadproof.cli.progress import Counter, clear, warn
 from roadproof.cli.search_options import add_search_options, where_asked
@@ -43,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--count", type=whole("--count", 1), default=1, metavar="K", help="K clearly different drives"
     )
     add_working_options(parser)
+    add_sharing_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drive files, CSV and pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     parser.add_argument("--verbose", action="store_true", help="print sizes and seconds by stage")
@@ -72,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
         print_at_once(line + told, args.out is not None)
 
     each = in_order(tuple(named), show) if plain else None
-    found = witness_all(searches, args.out, pictures, args.jobs, Counter(), warn, each)
+    found = witness_all(searches, args.out, pictures, read_hands(args), Counter(), warn, each)
     if args.out is not None and not written and plain:
         print(f"nothing is written to {args.out}, as there is no drive")
     if args.json:

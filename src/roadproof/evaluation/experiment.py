@@ -1,12 +1,13 @@
 """The highD experiment over many recordings: resumable, and in memory one recording a process."""
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, SharedError
 from roadproof.evaluation.evaluate import Findings, evaluate_recording
 from roadproof.evaluation.questions import Questions, Settings, ask
 from roadproof.evaluation.results import (
@@ -20,6 +21,7 @@ from roadproof.evaluation.results import (
 from roadproof.formats.recording import Recording
 from roadproof.formats.source import RecordingSource
 from roadproof.formats.sources import copies_among, find_sources
+from roadproof.hands import Hands
 from roadproof.workers import Lost, answers_of
 
 
@@ -30,7 +32,7 @@ class Experiment:
     recordings: Path
     out: Path
     settings: Settings
-    jobs: int = 1
+    hands: Hands = field(default_factory=lambda: Hands(1))
     keep_going: bool = False
 
 
@@ -53,11 +55,15 @@ def run_experiment(
     """Evaluate every recording that has no valid result yet, then write the results of all.
 
     ``tell`` gets a line for each recording that is done. Raises ``InputError`` for the first
-    recording that cannot be evaluated, unless ``keep_going``: then it is left out, and said so.
+    recording that cannot be evaluated, unless ``keep_going``: then it is left out, and said so. One of
+    several runs that divide the recordings raises ``SharedError`` when its share is done.
     """
     sources = find_sources(experiment.recordings)
+    shard = experiment.hands.shard
+    if shard is not None:
+        sources = tuple(shard.among(sources))
     question = question_mark(experiment.settings)
-    with ThreadPoolExecutor(experiment.jobs) as threads:
+    with ThreadPoolExecutor(experiment.hands.processes or os.cpu_count() or 1) as threads:
         found = threads.map(RecordingSource.digests, sources)
         digests = {source.name: each for source, each in zip(sources, found, strict=True)}
     marks = {name: fingerprint(question, each) for name, each in digests.items()}
@@ -80,6 +86,11 @@ def run_experiment(
         if error is not None:
             failed[source.name] = error
         tell(f"[{done}/{len(waiting)}] {source.name}" + (f": left out: {error}" if error else ""))
+    if shard is not None:
+        raise SharedError(
+            f"shard {shard} is done: {len(sources) - len(failed)} of {len(sources)} recordings evaluated. "
+            "When the other runs are done, ask once more without --shard for the whole"
+        )
     if len(failed) == len(sources):
         raise InputError(
             f"recordings={experiment.recordings}: none could be used; " + "; ".join(failed.values())
@@ -126,12 +137,13 @@ def _evaluate_all(
 ) -> Iterator[tuple[RecordingSource, str | Lost | None]]:
     """Evaluate and save each; the second part is why a recording could not be used."""
     jobs = [_Job(experiment.settings, question, experiment.out, s, marks[s.name]) for s in sources]
-    if experiment.jobs == 1 or len(sources) < 2:
+    hands = experiment.hands
+    if (hands.cluster is None and hands.processes == 1) or len(sources) < 2:
         for job in jobs:
             yield job.source, _evaluate(job)
         return
     # Threads of a library may hold locks while a process forks, so workers start afresh.
-    with closing(answers_of(_evaluate, jobs, min(experiment.jobs, len(sources)), fresh=True)) as answers:
+    with closing(answers_of(_evaluate, jobs, hands, fresh=True)) as answers:
         for place, error in answers:
             yield sources[place], error
 

@@ -9,7 +9,7 @@ and ``roadproof check`` checks that evidence again.
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -66,15 +66,16 @@ def seal_of(record: Mapping[str, Any], question: str, folder: Path) -> str:
     return digest.hexdigest()
 
 
-def read_kept(folder: Path) -> Journal | None:
+def read_kept(folder: Path, but: Container[str] = ()) -> Journal | None:
     """The answers that are kept in a folder, each with its seal checked; None where there are none.
 
-    Raises ``InputError``.
+    ``but``: names of answers that are passed over. Raises ``InputError``.
     """
     if not (folder / HEAD).exists():
         return read_journal(folder / NAME) if (folder / NAME).exists() else None
     head, fields = _head(read_json(folder / HEAD, LARGEST_INDEX), folder / HEAD, str(folder / HEAD))
-    paths = sorted(x for x in (folder / ANSWERS).glob("*.json") if not x.name.startswith("."))
+    found = (folder / ANSWERS).glob("*.json")
+    paths = sorted(x for x in found if not x.name.startswith(".") and x.stem not in but)
     read = [
         _line(path.stem, path, partial(read_json, path, LARGEST_INDEX), str(path), fields, head)
         for path in paths

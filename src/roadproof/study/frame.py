@@ -4,13 +4,14 @@ What is asked is a ``Study``; ``conduct`` asks it, in several processes, and wit
 a run that was broken off goes on where it was.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, SharedError, UsageError
+from roadproof.hands import Jobs, Shard, hands_of
 from roadproof.study import pool
 from roadproof.study.pool import Progress
 from roadproof.study.shelf import Question, Shelf
@@ -73,22 +74,60 @@ def put_away(study: Study[Piece, Answer], answers: Mapping[str, Answer], folder:
 def conduct(
     study: Study[Piece, Answer],
     folder: Path | None = None,
-    processes: int | None = None,
+    hands: Jobs = None,
     progress: Progress | None = None,
     what: str = "pieces",
     say: Callable[[str], None] | None = None,
     each: Callable[[str, Answer], None] | None = None,
 ) -> Conducted[Answer]:
-    """Ask all pieces that a folder does not have the answers of. ``processes`` None is one a core.
+    """Ask all pieces that a folder does not have the answers of; ``hands``: who does the work.
 
-    ``what`` is the word for many pieces, for ``progress``; ``say`` is told of kept answers that do not
-    count, ``each`` of every answer with its name: of kept ones first, then of others as they come. Raises
-    ``UsageError`` where the folder holds the answers to another question, and what ``study.settle`` raises.
+    Of several runs that divide the question each asks its share, and takes over what others have kept in the
+    same folder. ``what`` is the word for many pieces, for ``progress``; ``say`` is told of kept answers that
+    do not count, ``each`` of every answer with its name: of kept ones first, then of others as they come.
+    Raises ``UsageError`` where the folder holds the answers to another question, ``SharedError`` where the
+    rest is for other runs, and what ``study.settle`` raises.
     """
+    shard = hands_of(hands).shard
+    if shard is not None and folder is None:
+        raise UsageError(f"--shard {shard} needs a folder in which the runs keep their answers: name --out")
     shelf = Shelf(folder, study.question)
     records: dict[str, dict[str, Any]] = {}
     known: dict[str, Answer] = {}
-    for file, record in shelf.answers(say):
+
+    def add(name: str, record: dict[str, Any], answer: Answer) -> None:
+        records[name], known[name] = record, answer
+        if each is not None:
+            each(name, answer)
+
+    def take_over() -> bool:
+        """Whether the folder has answers that are new to us."""
+        before = len(known)
+        for name, record, answer in _kept(study, shelf, known, say):
+            add(name, record, answer)
+        return len(known) > before
+
+    take_over()
+    while pieces := study.pieces(known):
+        ours = [piece for piece in pieces if shard is None or shard.has(_name(study, piece))]
+        if not ours:
+            if take_over():
+                continue
+            unsure = sum(not study.is_sure(answer) for answer in known.values())
+            raise SharedError(_told(shard, len(known) - unsure, unsure, len(pieces), what))
+        with closing(pool.work(study.settle, ours, hands, study.doubt, progress, what)) as answered:
+            for _, answers in answered:
+                for name, answer in answers.items():
+                    made = study.record(name, answer, shelf)
+                    add(name, shelf.keep(name, made, study.is_sure(answer)), answer)
+    return Conducted(known, {name: shelf.with_paths(record) for name, record in records.items()})
+
+
+def _kept(
+    study: Study[Piece, Answer], shelf: Shelf, known: Container[str], say: Callable[[str], None] | None
+) -> Iterator[tuple[str, dict[str, Any], Answer]]:
+    """The kept answers that count and are not ``known``, each with its name and its record."""
+    for file, record in shelf.answers(say, known):
         try:
             name, answer = study.recall(record, shelf)
             if name != file:
@@ -97,16 +136,18 @@ def conduct(
             if say is not None:
                 say(f"asked again, since a kept answer does not count: {error}")
             continue
-        records[name], known[name] = dict(record), answer
-        if each is not None:
-            each(name, answer)
-    while pieces := study.pieces(known):
-        with closing(pool.work(study.settle, pieces, processes, study.doubt, progress, what)) as answered:
-            for _, answers in answered:
-                for name, answer in answers.items():
-                    made = study.record(name, answer, shelf)
-                    records[name] = shelf.keep(name, made, study.is_sure(answer))
-                    known[name] = answer
-                    if each is not None:
-                        each(name, answer)
-    return Conducted(known, {name: shelf.with_paths(record) for name, record in records.items()})
+        yield name, dict(record), answer
+
+
+def _name(study: Study[Piece, Answer], piece: Piece) -> str:
+    """What a piece is called: as the first of its answers."""
+    return min(study.doubt(piece, "it is not asked here"))
+
+
+def _told(shard: Shard | None, sure: int, unsure: int, left: int, what: str) -> str:
+    """How far a run that has its share done is."""
+    doubts = f", {unsure} in doubt, which are asked again" if unsure else ""
+    return (
+        f"shard {shard} is done: {sure} answers are kept{doubts}; {left} {what} are left to other runs. When "
+        "they are done, ask once more without --shard for the whole"
+    )

@@ -4,7 +4,8 @@ import os
 from collections.abc import Callable, Generator, Sequence
 from typing import TypeAlias, TypeVar
 
-from roadproof.errors import LostError, UsageError
+from roadproof.errors import LostError
+from roadproof.hands import Jobs, hands_of
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
@@ -18,7 +19,7 @@ Say: TypeAlias = Callable[[str], None]
 def work(
     function: Callable[[Job], Answer],
     jobs: Sequence[Job],
-    processes: int | None,
+    hands: Jobs,
     lost: Callable[[Job, str], Answer] | None = None,
     progress: Progress | None = None,
     what: str = "jobs",
@@ -27,12 +28,12 @@ def work(
 ) -> Generator[tuple[int, Answer], None, None]:
     """``function`` of every job with its place, in the order in which they are done.
 
-    ``processes`` None is one a core; ``known``: how many jobs more needed no work. ``lost`` makes the
+    ``hands``: who does them; ``known``: how many jobs more needed no work. ``lost`` makes the
     answer, a doubt, of a job whose process ended twice (see ``workers``) out of the reason; without it
     ``LostError`` is raised when all others are done. The iterator is to be used up or closed. An error
     in a job, or an interruption, ends the others.
     """
-    workers = count_workers(jobs, processes)
+    who = hands_of(hands)
     if len(jobs) > 1:
         from roadproof.workers import Lost, answers_of, is_worker
     if len(jobs) <= 1 or is_worker():
@@ -42,7 +43,7 @@ def work(
     reasons: list[str] = []
     told = progress or _nobody
     told(known, total, what)
-    found = answers_of(function, jobs, workers, fresh)
+    found = answers_of(function, jobs, who, fresh)
     try:
         for done, (place, answer) in enumerate(found, known + 1):
             told(done, total, what)
@@ -75,11 +76,10 @@ def in_order(answers: Generator[tuple[int, Answer], None, None]) -> Generator[An
         answers.close()
 
 
-def count_workers(jobs: Sequence[object], processes: int | None) -> int:
-    """How many processes the jobs are given. Raises ``UsageError`` where none would be left."""
-    if processes is not None and processes < 1:
-        raise UsageError(f"--jobs {processes} must be greater than 0")
-    return min(processes or os.cpu_count() or 1, len(jobs))
+def are_forked(jobs: Sequence[object], hands: Jobs) -> bool:
+    """Whether jobs are done in processes that are copies of this one. Raises ``UsageError``."""
+    who = hands_of(hands)
+    return who.cluster is None and min(who.processes or os.cpu_count() or 1, len(jobs)) > 1
 
 
 def _nobody(done: int, total: int, what: str) -> None:

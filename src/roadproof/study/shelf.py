@@ -7,7 +7,7 @@ again only where its seal holds and it says what its evidence says (``evidence.j
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -109,12 +109,17 @@ class Shelf:
 
     # --- answers -------------------------------------------------------------------------------
 
-    def answers(self, say: Callable[[str], None] | None = None) -> Iterator[tuple[str, Mapping[str, Any]]]:
-        """The answers that count, by name; of others ``say`` is told, and they are asked again."""
+    def answers(
+        self, say: Callable[[str], None] | None = None, known: Container[str] = ()
+    ) -> Iterator[tuple[str, Mapping[str, Any]]]:
+        """The answers that count, by name, but for those that are ``known``.
+
+        Of answers that do not count ``say`` is told, and they are asked again.
+        """
         if self.folder is None:
             return
         try:
-            kept = read_kept(self.folder)
+            kept = read_kept(self.folder, known)
         except InputError as error:
             raise UsageError(self._foreign(f"they are not of this version ({error})")) from None
         if kept is None or kept.head.content != self.head:

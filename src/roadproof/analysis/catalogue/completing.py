@@ -14,6 +14,7 @@ from roadproof.analysis.placing import judged_as
 from roadproof.effort import Late
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
+from roadproof.hands import Jobs
 from roadproof.searching.ask import answer
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import Scenario, applied, name_of, number_in
@@ -70,7 +71,7 @@ def complete(
     basis: Basis,
     asked: Asked,
     missing: Sequence[str],
-    processes: int | None = None,
+    hands: Jobs = None,
     progress: Progress | None = None,
 ) -> dict[str, Completion]:
     """By name, a drive for each class and each scenario among ``missing``.
@@ -80,14 +81,14 @@ def complete(
     found: dict[str, Completion] = {}
     jobs = _of_classes(asked, missing)
     working = _Completing(basis, replace(basis, specification=specification_of(asked), sets=()), asked)
-    with closing(pool.work(working.settled, jobs, processes, _lost, progress, "drives")) as done:
+    with closing(pool.work(working.settled, jobs, hands, _lost, progress, "drives")) as done:
         for _, made in done:
             found |= {x.target: x for x in made}
     shown = {
         shown.what for x in found.values() if x.drive for shown in shown_by(x.drive.file, asked, Freedom())
     }
     numbers = [n for name in missing if name not in shown and (n := number_in(name)) is not None]
-    with closing(pool.work(working.settled, numbers, processes, _lost, progress, "drives")) as done:
+    with closing(pool.work(working.settled, numbers, hands, _lost, progress, "drives")) as done:
         for _, made in done:
             found |= {x.target: x for x in made}
     return found

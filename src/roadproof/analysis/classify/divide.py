@@ -13,6 +13,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, refine, whole_cell
 from roadproof.analysis.classify.classes import Classes, Plan, what_axis, where_axis
 from roadproof.effort import Late
+from roadproof.hands import Jobs
 from roadproof.spec.query import Query
 from roadproof.study import pool
 from roadproof.study.pool import Progress
@@ -77,7 +78,7 @@ def in_full(job: Refining, reason: str) -> tuple[Cell, str]:
 def divide(
     basis: Basis,
     plan: Plan,
-    processes: int | None = None,
+    hands: Jobs = None,
     progress: Progress | None = None,
     in_few_words: bool = True,
 ) -> Division:
@@ -89,7 +90,7 @@ def divide(
     axes = [what_axis(plan, group, specification) for group in plan.groups]
     if plan.has_places:
         axes.append(where_axis(plan, specification))
-    outlined = pool.work(dividing.outlined, axes, processes, lambda axis, reason: reason)
+    outlined = pool.work(dividing.outlined, axes, hands, lambda axis, reason: reason)
     with closing(pool.in_order(outlined)) as made:
         found = list(made)
     outlines = [x for x in found if isinstance(x, Outline)]
@@ -104,7 +105,7 @@ def divide(
     ]
     if not in_few_words:
         return _division(plan, outlines, jobs, [in_full(job, "") for job in jobs])
-    refined = pool.work(dividing.refined, jobs, processes, in_full, progress, "cells")
+    refined = pool.work(dividing.refined, jobs, hands, in_full, progress, "cells")
     with closing(pool.in_order(refined)) as answers:
         cells = list(answers)
     return _division(plan, outlines, jobs, cells)

@@ -14,6 +14,7 @@ from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided
 from roadproof.analysis.explore.values import explore
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import road_data
+from roadproof.hands import Jobs
 from roadproof.study.pool import Say, in_order, work
 from roadproof.study.shelf import Question, Shelf, specification_names
 from roadproof.verdict import Verdict
@@ -25,12 +26,12 @@ SCHEMA = "roadproof/explore/1"
 class Exploration:
     """All that is ``asked``, as a ``study.frame.Study``: the same of one formula or of several.
 
-    ``processes`` (None: one a core) share the searches for one formula, where formulas do not already.
+    ``hands`` share the searches for one formula, where formulas do not already.
     ``say`` is told how far one is.
     """
 
     asked: tuple[Explorable, ...]
-    processes: int | None = None
+    hands: Jobs = None
     say: Say = say_nothing
 
     @cached_property
@@ -68,11 +69,11 @@ class Exploration:
         return {piece: explored}
 
     def _look_all(self, tasks: Sequence[SearchTask]) -> Iterable[Reply]:
-        return in_order(work(look, tasks, self.processes, undecided))
+        return in_order(work(look, tasks, self.hands, undecided))
 
     def _find_all(self, soughts: Sequence[Sought]) -> Iterable[Extreme]:
         find = partial(find_extreme, say=self.say)
-        return in_order(work(find, soughts, self.processes, unsought))
+        return in_order(work(find, soughts, self.hands, unsought))
 
     def doubt(self, piece: str, reason: str) -> dict[str, Explored]:
         asked = self.named[piece]
