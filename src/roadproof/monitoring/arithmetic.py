@@ -7,6 +7,7 @@ repeated product. Comparisons are strict or not exactly as written.
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, TypeAlias, assert_never
 
 import numpy as np
@@ -66,7 +67,8 @@ class Program:
     dead: tuple[tuple[int, ...], ...]
 
 
-def truth_program(comparisons: Sequence[Compare]) -> Program:
+@lru_cache(maxsize=64)
+def truth_program(comparisons: tuple[Compare, ...]) -> Program:
     """The truth (bool) of every comparison."""
     return _program(comparisons, lambda c: (COMPARISONS[c.op], False))
 
