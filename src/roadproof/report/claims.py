@@ -56,6 +56,7 @@ def details(answered: Answered, specification: Specification) -> str:
     task, settled = answered.task, answered.settled
     result = settled.result
     lines = [f"{verdict(answered)}  {statement(task.assuming, ' '.join(task.claim.split()))}"]
+    lines += [f"  {words}" for words in called_by(specification, [task.claim]).values() if words.name]
     within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
     lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
     if result.reason:
@@ -73,7 +74,6 @@ def details(answered: Answered, specification: Specification) -> str:
         lines += _show_drive(settled.drive)
     elif result.countermodel is not None:
         lines += _show_countermodel(result.countermodel)
-    lines += [f"  {words}" for words in called_by(specification, [task.claim]).values() if words.name]
     return "\n".join(lines)
 
 
