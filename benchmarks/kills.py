@@ -3,7 +3,7 @@
     python benchmarks/kills.py --kills 100 --seed 1
 
 For each way of working (a local pool, shards, a cluster of dask) and each question (`overlap`, `evaluate`)
-runs are started again and again into one folder; SIGKILL strikes a worker, or the whole run, after a random time.
+runs are started again and again into one folder; SIGKILL strikes a worker, or the whole run, after some time.
 At the end the question is asked once more, undisturbed. What it leaves must be the bytes that an undisturbed
 run into an empty folder leaves, but for the seconds that searches took. Exit code 1 where they differ.
 """
