@@ -55,8 +55,12 @@ if TYPE_CHECKING:
     from roadproof.errors import InputError as InputError
     from roadproof.errors import MissingSolverError as MissingSolverError
     from roadproof.errors import RoadproofError as RoadproofError
+    from roadproof.errors import SharedError as SharedError
     from roadproof.errors import TextError as TextError
     from roadproof.errors import UsageError as UsageError
+    from roadproof.hands import Cluster as Cluster
+    from roadproof.hands import Hands as Hands
+    from roadproof.hands import Shard as Shard
     from roadproof.verdict import Verdict as Verdict
 
     __version__: str
@@ -65,7 +69,7 @@ _PHRASES = (
     *("SV", "POV", "POV1", "POV2", "L", "F", "G", "U", "lanes", "lanelets", "zone", "adjacent_lanes"),
     *("some", "every", "vehicle", "lane", "parameter", "call"),
 )
-_ERRORS = ("RoadproofError", "InputError", "UsageError", "TextError", "MissingSolverError")
+_ERRORS = ("RoadproofError", "InputError", "UsageError", "TextError", "MissingSolverError", "SharedError")
 _HOMES = {
     "load": "api.definitions",
     "Definitions": "api.definitions",
@@ -90,6 +94,7 @@ _HOMES = {
     "Verdict": "verdict",
     **dict.fromkeys(_PHRASES, "api.phrases"),
     **dict.fromkeys(_ERRORS, "errors"),
+    **dict.fromkeys(("Hands", "Shard", "Cluster"), "hands"),
 }
 __all__ = [*_HOMES, "__version__"]
 

@@ -17,7 +17,6 @@ HEAVY = (
     "cvxpy",
     "numpy",
     "polars",
-    "numba",
     "matplotlib",
     "sympy",
     "lark",
