@@ -1,11 +1,15 @@
 """Text to syntax tree. User text reaches nothing but this grammar: no eval, no sympify."""
 
+import io
 import re
+import sys
 from fractions import Fraction
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from typing import Any, Literal, cast
 
+import lark
 from lark import Lark, Token, v_args
 from lark.exceptions import (
     UnexpectedCharacters,
@@ -17,6 +21,7 @@ from lark.exceptions import (
 from lark.tree import Meta
 from lark.visitors import Transformer_NonRecursive
 
+from roadproof.cache import remembered
 from roadproof.errors import Position, TextError
 from roadproof.logic import syntax
 from roadproof.logic.foreign import find_foreign
@@ -37,6 +42,12 @@ def parse_library(text: str, source: str) -> tuple[Statement, ...]:
     for definition in _definitions(statements):
         _check_depth(definition.body, definition.at, source, text)
     return statements
+
+
+def parse_bundled(text: str, source: str) -> tuple[Statement, ...]:
+    """As ``parse_library``, for text that is parsed in every run: its tree is remembered from run to run."""
+    made_of = "\0".join((source, text, _version())).encode()
+    return remembered("tree", made_of, lambda: parse_library(text, source))
 
 
 def parse_claim(text: str, source: str = "claim") -> syntax.Claim:
@@ -93,17 +104,34 @@ def _check_depth(body: Expression, at: Position, source: str, text: str) -> None
 
 
 @cache
-def _parser() -> Lark:
+def _grammar() -> str:
     grammar = resources.files("roadproof.logic").joinpath("grammar.lark").read_text("utf-8")
     longest_first = sorted(UNITS, key=len, reverse=True)
-    grammar = grammar.replace("%UNITS%", "|".join(re.escape(x).replace("/", r"\/") for x in longest_first))
-    return Lark(
-        grammar,
-        start=["library", "claim"],
-        parser="lalr",
-        propagate_positions=True,
-        maybe_placeholders=True,
-    )
+    return grammar.replace("%UNITS%", "|".join(re.escape(x).replace("/", r"\/") for x in longest_first))
+
+
+@cache
+def _version() -> str:
+    """All that trees depend on besides the text: grammar, the source of what makes them, lark, Python."""
+    here = Path(__file__).parent
+    sources = (path.read_text("utf-8") for path in sorted((*here.glob("*.py"), *here.parent.glob("*.py"))))
+    return "\0".join((_grammar(), *sources, lark.__version__, sys.version))
+
+
+@cache
+def _parser() -> Lark:
+    def tables() -> bytes:
+        made = io.BytesIO()
+        Lark(
+            _grammar(),
+            start=["library", "claim"],
+            parser="lalr",
+            propagate_positions=True,
+            maybe_placeholders=True,
+        ).save(made)
+        return made.getvalue()
+
+    return Lark.load(io.BytesIO(remembered("grammar", _version().encode(), tables)))
 
 
 def _parse(text: str, source: str, start: str) -> object:

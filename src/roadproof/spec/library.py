@@ -6,7 +6,7 @@ definitions in force for a choice of set and options are a ``Specification``.
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from difflib import get_close_matches
 from fractions import Fraction
@@ -18,7 +18,7 @@ from typing import assert_never
 from roadproof.errors import InputError, Position, TextError
 from roadproof.files import read_limited
 from roadproof.logic import syntax
-from roadproof.logic.parse import parse_library
+from roadproof.logic.parse import parse_bundled, parse_library
 from roadproof.logic.syntax import (
     Definition,
     EachBlock,
@@ -159,7 +159,8 @@ def bundled_library() -> Library:
     """The library that comes with roadproof: ``spec/library/*.spec``."""
     folder = resources.files("roadproof.spec").joinpath("library")
     files = sorted((f for f in folder.iterdir() if f.name.endswith(".spec")), key=lambda f: f.name)
-    return build_library([Source(f.name, f.read_text("utf-8")) for f in files])
+    sources = [Source(f.name, f.read_text("utf-8")) for f in files]
+    return build_library(sources, parse=parse_bundled)
 
 
 def load_library(files: Iterable[Path | Source] = ()) -> Library:
@@ -169,11 +170,18 @@ def load_library(files: Iterable[Path | Source] = ()) -> Library:
     return replace(build_library(extra, library), files=tuple(extra)) if extra else library
 
 
-def build_library(sources: Iterable[Source], below: Library | None = None) -> Library:
-    """Put statements into their mappings. Raises ``TextError`` for duplicates and unknown names."""
+def build_library(
+    sources: Iterable[Source],
+    below: Library | None = None,
+    parse: Callable[[str, str], tuple[Statement, ...]] = parse_library,
+) -> Library:
+    """Put statements into their mappings, as ``parse`` reads them.
+
+    Raises ``TextError`` for duplicates and unknown names.
+    """
     building = _Building(below)
     for source in sources:
-        statements = parse_library(source.text, source.name)
+        statements = parse(source.text, source.name)
         try:
             building.add(statements, source)
         except TextError as error:

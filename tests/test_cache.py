@@ -1,0 +1,88 @@
+"""What is remembered from run to run: never anything but what would be made anew."""
+
+import os
+import pickle
+from pathlib import Path
+
+import pytest
+
+from roadproof.cache import SWITCH, private_folder, remembered
+from roadproof.logic import parse
+from roadproof.logic.parse import parse_bundled, parse_library
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    return tmp_path / "roadproof/made"
+
+
+def make(made_of: bytes = b"one", result: str = "made") -> tuple[str, int]:
+    """What is remembered, and how often it was made for that."""
+    calls = []
+    found = remembered("thing", made_of, lambda: calls.append(1) or result)
+    return found, len(calls)
+
+
+def test_it_is_made_once_for_each_that_it_is_made_of() -> None:
+    assert [make(), make(), make(b"two", "other"), make(b"two"), make()] == [
+        ("made", 1),
+        ("made", 0),
+        ("other", 1),
+        ("other", 0),
+        ("made", 0),
+    ]
+
+
+def test_what_was_changed_is_made_again(home: Path) -> None:
+    make()
+    [path] = home.iterdir()
+    whole = path.read_bytes()
+    evil = pickle.dumps("evil")
+    for content in (b"", whole[:-1], whole + b"x", whole[:32] + evil, evil, bytes(32) + evil):
+        path.write_bytes(content)
+        assert make() == ("made", 1)
+        assert make() == ("made", 0)
+    path.unlink()
+    path.symlink_to(home.parent / "elsewhere")
+    assert make() == ("made", 1)
+
+
+def test_nothing_is_kept_where_others_may_write(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    make()
+    [path] = home.iterdir()
+    path.chmod(0o666)
+    assert make() == ("made", 1)
+    home.chmod(0o777)
+    assert private_folder("made") is None
+    assert make() == ("made", 1)
+    home.chmod(0o700)
+    monkeypatch.setenv(SWITCH, "off")
+    assert make() == ("made", 1)
+    monkeypatch.delenv(SWITCH)
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
+    assert make() == ("made", 1)
+
+
+def test_old_ones_are_forgotten(home: Path) -> None:
+    make()
+    [path] = home.iterdir()
+    os.utime(path, (0, 0))
+    make(b"two")
+    assert path not in home.iterdir()
+
+
+def test_trees_are_those_of_their_text(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = 'def slow(a: vehicle) "a is slow" := v_lon(a) < 3 m/s\n'
+    first = parse_bundled(text, "mine.spec")
+    assert first == parse_library(text, "mine.spec")
+    monkeypatch.setattr(parse, "parse_library", lambda *_: pytest.fail("it was remembered"))
+    assert parse_bundled(text, "mine.spec") == first
+    monkeypatch.undo()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(home.parent.parent))
+    faster = text.replace("3 m/s", "4 m/s")
+    assert parse_bundled(faster, "mine.spec") == parse_library(faster, "mine.spec") != first
+    before = {*home.iterdir()}
+    monkeypatch.setattr(parse, "_version", lambda: "another")
+    assert parse_bundled(text, "mine.spec") == first
+    assert len({*home.iterdir()} - before) == 1
