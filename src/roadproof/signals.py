@@ -6,12 +6,13 @@ each of them when a signal is added here (CONTRIBUTING.md shows how).
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 from roadproof.units import UNITS, Dimension
 
 SignalName: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "a_lat"]
-SizeName: TypeAlias = Literal["length", "width"]
+SizeName: TypeAlias = Literal["length", "width", "kind"]
+Kind: TypeAlias = Literal["car", "truck", "bus", "motorcycle", "other"]
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,12 @@ SIGNALS: Mapping[SignalName, About] = {
     "a_lat": About("m/s^2", "piece", rate_of="v_lat", limited=True),
 }
 SIZES: Mapping[SizeName, str] = {"length": "m", "width": "m"}
-"""What never changes about a vehicle, and its unit."""
+"""The box of a vehicle, which never changes, and its unit."""
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
+"""Every vehicle is of one of these kinds at all times; a term holds them as 1, 2, … in this order."""
+FIXED: tuple[SizeName, ...] = (*SIZES, "kind")
+"""All that never changes about a vehicle."""
 
 STARTING = tuple(name for name, about in SIGNALS.items() if about.kept == "start")
 RECORDED = tuple(name for name, about in SIGNALS.items() if about.recorded)

@@ -15,6 +15,8 @@ UNITS: Mapping[str, tuple[Fraction, Dimension]] = {
     "m/s": (Fraction(1), (1, -1)),
     "km/h": (Fraction(5, 18), (1, -1)),
     "m/s^2": (Fraction(1), (1, -2)),
+    "m/s^3": (Fraction(1), (1, -3)),
+    "1/s": (Fraction(1), (0, -1)),
     "unitless": (Fraction(1), (0, 0)),
 }
 SI: Mapping[Dimension, str] = {dimension: unit for unit, (factor, dimension) in UNITS.items() if factor == 1}

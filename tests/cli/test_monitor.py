@@ -177,7 +177,7 @@ HEADER = "time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"
     [
         ([], "the file is empty"),
         (["time,s"], "row 1: missing columns vehicle, d, v_lon"),
-        ([f"{HEADER},colour"], "row 1: columns 'colour' are not part of the format"),
+        ([f"{HEADER},its colour"], "row 1: columns 'its colour' are not part of the format"),
         ([HEADER], "a header but no rows"),
         ([HEADER, "0,SV,1,2,3,0,0,0,4,2"], "at least two samples"),
         ([HEADER, "0,SV,1,2"], "row 2: the row has 4 fields"),

@@ -64,7 +64,7 @@ def test_a_countermodel():
         (replace(FOUND, instants=FOUND.instants[1:]), "ascend from 0"),
         (replace(FOUND, instants=FOUND.instants[::-1]), "ascend from 0"),
         (replace(FOUND, instants=()), "ascend from 0"),
-        (with_first(length=5), "length or width changes"),
+        (with_first(length=5), "length, width or kind changes"),
         (replace(with_first(width=0), instants=with_first(width=0).instants[:1]), "not greater than 0"),
         (with_first(d=9), "true on it"),
         (with_first(v=4), "true on it"),

@@ -295,7 +295,7 @@ def test_parquet_that_is_wrong(tmp_path: Path) -> None:
     path = tmp_path / "a.parquet"
     for frame, said in (
         (right.drop("d"), "a.parquet: missing columns d"),
-        (right.with_columns(x=1), "a.parquet: unknown columns x"),
+        (right.with_columns(pl.lit(1).alias("an x")), "a.parquet: unknown columns an x"),
         (right.clear(), "a.parquet: the file has no rows"),
         (right.with_columns(s=pl.lit(None, pl.Float64)), "row 2, column s=null: a finite number"),
         (right.with_columns(s=pl.lit(float("nan"))), "row 2, column s=nan: a finite number"),

@@ -13,6 +13,7 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.traces import read_trace
+from roadproof.logic.own import told_freedom
 from roadproof.proving.properties import Task, find_label, name_of_claim
 from roadproof.proving.prover import Result
 from roadproof.searching.settle import Settled, in_doubt, settle, settle_bounded
@@ -102,6 +103,10 @@ class Claims:
     def specification_of(self, task: Task) -> Specification:
         """The definitions that a claim is read with."""
         return self.specifications[task.set_name]
+
+    def supposed(self, task: Task) -> tuple[str, ...]:
+        """What an answer supposes of the own signals of a claim, in words."""
+        return told_freedom(read_claim(self.specification_of(task), task.claim).formula)
 
     @cached_property
     def named(self) -> dict[str, Task]:

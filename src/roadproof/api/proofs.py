@@ -118,9 +118,7 @@ class Proofs(Studied[Claims, Answered]):
 
     def __str__(self) -> str:
         if self.study.are_own:
-            return "\n".join(
-                claims_text.details(x, self.study.specification_of(x.task)) for x in self.answers
-            )
+            return "\n".join(claims_text.details(x, self.study) for x in self.answers)
         table = claims_text.table(self.answers, self.study.library.select())
         return f"{table}\n{len(self.answers)} claims in {self.seconds:.1f} s"
 

@@ -18,6 +18,7 @@ from roadproof.evaluation.one_trace import (
     of_columns,
     read_pair,
     read_samples,
+    refuse_unmeasured,
     sample_drive,
 )
 from roadproof.evidence.drive_file import DriveFile, load_drive
@@ -253,6 +254,7 @@ def _on_trace(
     number, query = home.numbered(what)
     lanes = _lanes(home, query, number, samples, known, asked)
     formula = bind(query.formula, samples.road, lanes, values)
+    refuse_unmeasured(samples, formula)
     observed = observe_samples(query.text, formula, samples.batch, end)
     return Monitored(home.library, observed, _place(samples, home, lanes), samples.notes)
 

@@ -77,6 +77,8 @@ def hand_over(args: argparse.Namespace, found: "Studied[Any, Any]") -> int:
         found.add_files(not getattr(args, "no_pictures", False))
     if args.json != "-":
         print(found)
+        for name, said in found.study.question.library.freedom.items():
+            print(f"{name} is {said}")
     return found.exit_code
 
 

@@ -99,8 +99,7 @@ def run(args: argparse.Namespace) -> int:
 
     def show(name: str, answer: "Answered") -> None:
         clear()
-        told = details(answer, asked.specification_of(answer.task)) if asked.are_own else line(answer)
-        print_at_once(told, args.out is not None)
+        print_at_once(details(answer, asked) if asked.are_own else line(answer), args.out is not None)
 
     each = None
     if args.json != "-" and (asked.are_own or args.verbose):

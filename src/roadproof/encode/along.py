@@ -11,6 +11,7 @@ from typing import assert_never
 
 from roadproof.encode.circuit import Leaf, nodes
 from roadproof.encode.inequalities import Quantity, inequalities_of, sizes_of
+from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.unroll import Grid
 from roadproof.logic.formula import Compare, Formula, subformulas
@@ -45,8 +46,13 @@ def slope_along(polynomial: Polynomial[Quantity]) -> Polynomial[Quantity]:
     return total
 
 
-def _is_place_along(signal: SignalName) -> bool:
-    """Whether a signal grows by a metre for each metre that its vehicle is moved along; else it stays."""
+def _is_place_along(signal: SignalName | OwnName) -> bool:
+    """Whether a signal grows by a metre for each metre that its vehicle is moved along; else it stays.
+
+    An own signal is any function of time, of which a moved drive has the same.
+    """
+    if isinstance(signal, OwnName):
+        return False
     match signal:
         case "s":
             return True

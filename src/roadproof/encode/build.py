@@ -9,6 +9,7 @@ from typing import TypeAlias, assert_never
 from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
 from roadproof.encode.inequalities import Quantity, inequalities_of, sizes_of
 from roadproof.encode.motion import Layout, Motions, encode_motions
+from roadproof.encode.own import OwnName, own_columns
 from roadproof.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.encode.polynomial import Inequality, Polynomial, affine, variable
 from roadproof.encode.problem import ColumnInequality, Problem, Row, row_of
@@ -79,7 +80,7 @@ def build_problem(
 
     Raises ``UsageError`` for interval bounds that are no multiples of dt.
     """
-    layout = Layout(tuple(vehicles), grid)
+    layout = Layout(tuple(vehicles), grid, own_columns(formula))
     wanted = encode_formula(formula, vehicles, layout, assumptions)
     return frame(wanted, road, vehicles, layout, assumptions), layout
 
@@ -92,7 +93,7 @@ def frame(
     assumptions: Assumptions,
 ) -> Problem:
     """An encoded formula put among motions, road and assumptions."""
-    motions = _motions(road, vehicles, layout.grid, assumptions)
+    motions = _motions(road, vehicles, layout, assumptions)
     around = surroundings(road, vehicles, layout, assumptions)
     rows = (*motions.rows, *_starts_within(layout, assumptions))
     return Problem(motions.columns, rows, all_of([wanted, *around]))
@@ -105,7 +106,9 @@ def encode_formula(
     return ground(unroll(formula, layout.grid), vehicles, layout, assumptions.margin, assumptions.lasting)
 
 
-def _motions(road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, assumptions: Assumptions) -> Motions:
+def _motions(
+    road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
+) -> Motions:
     right, left = span(road)
     starts: dict[str, Range] = dict.fromkeys(
         vehicles, assumptions.starts or (-assumptions.reach, assumptions.reach)
@@ -114,7 +117,14 @@ def _motions(road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, assumption
         starts[next(iter(vehicles))] = Fraction(0), Fraction(0)
     across: dict[str, Range] = {name: (right + v.width, left) for name, v in vehicles.items()}
     return encode_motions(
-        vehicles, grid, starts, across, assumptions.natural, assumptions.inside, assumptions.straight
+        vehicles,
+        layout.grid,
+        starts,
+        across,
+        assumptions.natural,
+        assumptions.inside,
+        assumptions.straight,
+        layout.own,
     )
 
 
@@ -198,6 +208,8 @@ def inequality_for_ever(inequality: Inequality[Quantity], layout: Layout) -> Cir
     def state(quantity: Quantity) -> Polynomial[int]:
         vehicle, signal = quantity
         now = layout.state(vehicle, signal, step)
+        if isinstance(signal, OwnName):
+            return now
         match signal:
             case "s":
                 return now + layout.state(vehicle, "v_lon", step) * variable(_LATER)

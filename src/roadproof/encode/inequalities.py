@@ -10,22 +10,27 @@ from itertools import product
 from typing import TypeAlias, assert_never
 
 from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
+from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Inequality, Polynomial, constant, variable
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare
+from roadproof.logic.own import code_of
 from roadproof.logic.terms import Term
 from roadproof.signals import SIZES
 from roadproof.world.vehicle import Vehicle
 
-# A vehicle and one of its signals, such as ("SV", "v_lon").
-Quantity: TypeAlias = tuple[str, t.SignalName]
+# A vehicle and one of its signals, such as ("SV", "v_lon"); "" and an own signal of no vehicle.
+Quantity: TypeAlias = tuple[str, t.SignalName | OwnName]
+KIND: t.SizeName = "kind"
 Sizes: TypeAlias = Mapping[tuple[str, t.SizeName], Fraction]
 Summands: TypeAlias = tuple[tuple[Fraction, Term], ...]
 
 
 def sizes_of(vehicles: Mapping[str, Vehicle]) -> Sizes:
-    """The boxes of ``vehicles``, in m."""
-    return {(name, size): getattr(vehicle, size) for name, vehicle in vehicles.items() for size in SIZES}
+    """The boxes of ``vehicles``, in m, and their kinds where models say what they are."""
+    boxes = {(name, size): getattr(vehicle, size) for name, vehicle in vehicles.items() for size in SIZES}
+    kinds = {(n, KIND): Fraction(code_of(v.kind)) for n, v in vehicles.items() if v.kind is not None}
+    return {**boxes, **kinds}
 
 
 def inequalities_of(atom: Compare, sizes: Sizes) -> Circuit[Inequality[Quantity]]:
@@ -152,7 +157,7 @@ def _replace(term: Term, old: Term, new: Term) -> Term:
             return t.Minimum(tuple(_replace(x, old, new) for x in terms))
         case t.Inverse(inner):
             return t.Inverse(_replace(inner, old, new))
-        case t.Number() | t.Parameter() | t.Variable() | t.Signal() | t.Size():
+        case t.Number() | t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.Own():
             return term
         case _:
             assert_never(term)
@@ -167,6 +172,8 @@ def polynomial_of(term: Term, sizes: Sizes) -> Polynomial[Quantity]:
             return constant(sizes[vehicle, name])
         case t.Signal(name, vehicle):
             return variable((vehicle, name))
+        case t.Own(name, vehicle):
+            return variable((vehicle, OwnName(name)))
         case t.Sum(terms):
             total: Polynomial[Quantity] = constant(Fraction(0))
             for x in terms:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import assert_never
 
+from roadproof.encode.own import OwnColumns, OwnName, index_of
 from roadproof.encode.polynomial import Polynomial, affine, constant, variable
 from roadproof.encode.problem import Column, Row, Unknown, row_of
 from roadproof.encode.unroll import Grid
@@ -27,6 +28,7 @@ class Layout:
 
     vehicles: tuple[str, ...]
     grid: Grid
+    own: tuple[OwnColumns, ...] = ()
 
     def column(self, vehicle: str, signal: SignalName, step: int) -> int:
         """Raises ``ValueError`` for a signal that follows from others, and so has no columns."""
@@ -42,8 +44,21 @@ class Layout:
             for step in range(self.grid.steps + 1):
                 yield Unknown(vehicle, signal, step)
 
-    def state(self, vehicle: str, signal: SignalName, step: int) -> Polynomial[int]:
+    def own_column(self, vehicle: str, name: str, step: int) -> int:
+        """The columns of own signals come after those of all vehicles."""
+        rows = len(self.vehicles) * len(STARTING) + index_of(self.own, name, vehicle)
+        return rows * (self.grid.steps + 1) + step
+
+    def own_unknowns(self) -> Iterator[Column]:
+        """The columns of own signals, in their order."""
+        for x in self.own:
+            for step in range(self.grid.steps + 1):
+                yield Column(Unknown(x.signal.vehicle, OwnName(x.signal.name), step), *x.range)
+
+    def state(self, vehicle: str, signal: SignalName | OwnName, step: int) -> Polynomial[int]:
         """A signal at a sample; an acceleration is that of the piece which begins there."""
+        if isinstance(signal, OwnName):
+            return variable(self.own_column(vehicle, signal, step))
         match signal:
             case "s" | "d" | "v_lon" | "v_lat":
                 return variable(self.column(vehicle, signal, step))
@@ -79,6 +94,7 @@ def encode_motions(
     natural: bool,
     inside: Fraction,
     straight: Collection[str] = (),
+    own: tuple[OwnColumns, ...] = (),
 ) -> Motions:
     """Columns and rows for ``vehicles``.
 
@@ -87,9 +103,9 @@ def encode_motions(
     and last sample and that accelerations change by no more than the vehicle's jumps, from and to
     none at the end; the first speed is then the vehicle's cruising speed. ``inside`` is how far
     accelerations stay inside their limits, so that rounding cannot break them. Vehicles in
-    ``straight`` never move across the road.
+    ``straight`` never move across the road. ``own``: own signals, whose columns come last.
     """
-    layout = Layout(tuple(vehicles), grid)
+    layout = Layout(tuple(vehicles), grid, own)
     columns = tuple(
         Column(of, *_bounds(of, vehicle, grid, starts[name], across[name], natural, name in straight))
         for name, vehicle in vehicles.items()
@@ -98,7 +114,7 @@ def encode_motions(
     rows = [
         row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural, inside)
     ]
-    return Motions(layout, columns, tuple(rows))
+    return Motions(layout, (*columns, *layout.own_unknowns()), tuple(rows))
 
 
 def _bounds(

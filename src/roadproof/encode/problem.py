@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, nodes
+from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Inequality, Polynomial
 from roadproof.signals import SignalName
 
@@ -18,7 +19,7 @@ class Unknown:
     """What a column stands for: a signal of a vehicle at a sample."""
 
     vehicle: str
-    signal: SignalName
+    signal: SignalName | OwnName
     step: int
 
     def __str__(self) -> str:

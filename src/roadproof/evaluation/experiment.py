@@ -171,6 +171,8 @@ def _evaluate(job: _Job) -> str | None:
         return f"{job.source.place_of_rate(recording.rate)}: {error}"
     try:
         findings = evaluate_recording(recording, questions)
+    except InputError as error:
+        return f"{job.source.files[-1]}: {error}"
     except Exception as error:
         raise RuntimeError(f"recording {job.source.name}: {type(error).__name__}: {error}") from error
     save_findings(_path(job.out, job.source), findings, job.mark)

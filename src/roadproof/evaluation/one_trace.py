@@ -5,35 +5,35 @@ Where a file is one trace, it has for every time one row a vehicle, in equal ste
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.evaluation.traces import gather
+from roadproof.evaluation.traces import KIND, by_vehicle, gather, refuse_missing
 from roadproof.formats import openscenario
 from roadproof.formats.pairs import row_of
-from roadproof.formats.recording import Bools, Integers, Recording
-from roadproof.formats.samples import HEADER, ROAD_ENDING, read_columns
+from roadproof.formats.recording import Bools, Integers, Recording, kind_called, own_numbers
+from roadproof.formats.samples import HEADER, LABEL, ROAD_ENDING, own_columns, read_columns
 from roadproof.formats.source import beside
 from roadproof.formats.sources import find_source
 from roadproof.formats.straight import whole
+from roadproof.formats.table import Table
 from roadproof.logic.formula import Formula
+from roadproof.logic.own import code_of, own_of
 from roadproof.logic.rewrite import with_values
 from roadproof.monitoring.batch import Array, Batch
-from roadproof.signals import RECORDED, SIGNALS, SIZES, SignalName, SizeName
+from roadproof.signals import FIXED, RECORDED, SIGNALS, SIZES, Kind, SizeName
 from roadproof.spec.bind import occupies
 from roadproof.spec.scenarios import roles
-from roadproof.world.drive import Drive
+from roadproof.world.drive import Drive, value_at
 from roadproof.world.models import load_recorded_road, load_road
 from roadproof.world.motion import state_at
 from roadproof.world.road import Lanelet, Road
 
-Column: TypeAlias = SignalName | SizeName
 _PAIR = re.compile(r"(?P<path>.+):(?P<ids>\d{1,9}(?:,\d{1,9}){0,2})")
 
 
@@ -108,6 +108,7 @@ def cut_trace(
         recording, {n: one(v) for n, v in vehicles.items()}, one(frames[0]), one(frames[1]), RECORDED
     )
     given: dict[Formula, Array] = {}
+    own: dict[str, dict[str, Array]] = {}
     lanes = {}
     for name, v in vehicles.items():
         begin = int(row_of(recording, one(v), one(frames[0]))[0])
@@ -116,7 +117,10 @@ def cut_trace(
             given[with_values(occupies(name, lanelet), {})] = inside[:, None]
         at = int(recording.lane[begin])
         lanes[name] = recording.lanes[at].name if at >= 0 else ""
-    batch = Batch(made.dt, made.lengths, made.signals, made.sizes, given)
+        for column, values in recording.own.items():
+            own.setdefault(column, {})[name] = values[rows, None]
+    signals = {**made.signals, **dict(by_vehicle(own))}
+    batch = Batch(made.dt, made.lengths, signals, made.sizes, given, source)
     return OneTrace(source, batch, road, lanes, f"frame {frames[0]}", recording.notes)
 
 
@@ -148,10 +152,21 @@ def sample_drive(drive: Drive, road: Road, horizon: Fraction, dt: Fraction, sour
     for name, motion in drive.vehicles.items():
         states = [state_at(motion, time) for time in times]
         columns |= {(x, name): [float(getattr(state, x)) for state in states] for x in SIGNALS}
-    sizes: dict[tuple[str, str], float] = {
+    sizes: dict[tuple[SizeName, str], float] = {
         (x, n): float(getattr(m, x)) for n, m in drive.vehicles.items() for x in SIZES
     }
-    return _one_trace(source, dt, columns, sizes, road, "0 s")
+    kinds = {n: m.kind for n, m in drive.vehicles.items() if m.kind is not None}
+    own = {key: [float(value_at(course, time)) for time in times] for key, course in drive.own.items()}
+    return _one_trace(source, dt, columns, {**sizes, **_codes(kinds)}, road, "0 s", own)
+
+
+def _codes(kinds: Mapping[str, Kind]) -> dict[tuple[SizeName, str], float]:
+    return {(KIND, name): float(code_of(kind)) for name, kind in kinds.items()}
+
+
+def refuse_unmeasured(trace: OneTrace, formula: Formula) -> None:
+    """Raise ``InputError`` where a trace lacks an own signal that a formula speaks of."""
+    refuse_missing(((x.name, x.vehicle) for x in own_of([formula])), trace.batch.signals, trace.source)
 
 
 def read_samples(path: Path, road: Road | None = None) -> OneTrace:
@@ -162,17 +177,27 @@ def read_samples(path: Path, road: Road | None = None) -> OneTrace:
     """
     if path.suffix == ".xosc":
         table, named, _ = openscenario.read_columns(path)
-        return of_columns({name: table[name].tolist() for name in HEADER}, road or named, str(path))
+        return of_columns(_lists(table), road or named, str(path))
     table = read_columns(path)
     if road is None:
         known = beside(path, ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
-    return of_columns({name: table[name].tolist() for name in HEADER}, road, str(path))
+    return of_columns(_lists(table), road, str(path))
+
+
+def _is_column(values: object, rows: int) -> bool:
+    """Whether something beside the columns that are asked for is a column too."""
+    return isinstance(values, Sized) and not isinstance(values, str) and len(values) == rows
+
+
+def _lists(table: Table) -> dict[str, list[object]]:
+    return {name: values.tolist() for name, values in table.columns.items()}
 
 
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
     """The trace of columns named as in ``HEADER``: arrays, or a frame with such columns, in any order.
 
+    There may be ``kind``, a class that makes every vehicle a car where it is missing, and own signals.
     Times are numbers of seconds, taken as the decimals that they are shown as (nine places). Raises
     ``InputError`` with column, row, value and rule.
     """
@@ -181,7 +206,10 @@ def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str 
         raise InputError(
             f"{source}: there is no column {', '.join(missing)}; columns are {', '.join(HEADER)}"
         )
-    read = {name: list(columns[name]) for name in HEADER}
+    rows = len(list(columns[HEADER[0]]))
+    own = [name for name in own_columns(columns) if _is_column(columns[name], rows)]
+    kind = [next(name for name in (LABEL, "kind") if name in columns)] if "kind" in columns else []
+    read = {name: list(columns[name]) for name in (*HEADER, *kind, *own)}
     lengths = {name: len(values) for name, values in read.items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name} {length}" for name, length in lengths.items())
@@ -190,12 +218,23 @@ def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str 
         (Fraction(repr(round(_finite(source, k, "time", time), 9))), str(name))
         for k, (time, name) in enumerate(zip(read["time"], read["vehicle"], strict=True))
     ]
-    cells = [{x: _finite(source, k, x, read[x][k]) for x in (*RECORDED, *SIZES)} for k in range(len(keys))]
-    return of_rows(source, keys, cells, road)
+    cells: list[dict[str, float]] = [
+        {x: _finite(source, k, x, read[x][k]) for x in (*RECORDED, *SIZES)} for k in range(len(keys))
+    ]
+    for name in own:
+        for cell, value in zip(cells, own_numbers(read[name]), strict=True):
+            cell[name] = float(value)
+    for k, cell in enumerate(cells):
+        cell[KIND] = float(code_of(kind_called(str(read[kind[0]][k]) if kind else "car")))
+    return _of_rows(source, keys, cells, own, road)
 
 
-def of_rows(
-    source: str, keys: Sequence[tuple[Fraction, str]], cells: Sequence[Mapping[Column, float]], road: Road
+def _of_rows(
+    source: str,
+    keys: Sequence[tuple[Fraction, str]],
+    cells: Sequence[Mapping[str, float]],
+    own: Sequence[str],
+    road: Road,
 ) -> OneTrace:
     """The trace of rows, each with its time and vehicle. Raises ``InputError`` where they are no table."""
     names = list(dict.fromkeys(name for _, name in keys))
@@ -212,18 +251,24 @@ def of_rows(
             f"{source}: {len(keys)} rows for {len(times)} times and {len(names)} vehicles: every vehicle "
             "needs exactly one row at every time"
         )
-    columns: dict[tuple[str, str], list[float]] = {(x, n): [] for x in (*RECORDED, *SIZES) for n in names}
+    said = (*RECORDED, *FIXED, *own)
+    columns: dict[tuple[str, str], list[float]] = {(x, n): [] for x in said for n in names}
     for (_, name), row in sorted(zip(keys, cells, strict=True), key=lambda x: x[0][0]):
-        for x in (*RECORDED, *SIZES):
+        for x in said:
             columns[x, name].append(row[x])
-    sizes: dict[tuple[str, str], float] = {}
+    sizes: dict[tuple[SizeName, str], float] = {}
     for name in names:
-        for x in SIZES:
-            values = columns.pop((x, name))
+        for size in FIXED:
+            values = columns.pop((size, name))
             if len(set(values)) > 1:
-                raise InputError(f"{source}: {x} of {name} changes; the size of a vehicle stays the same")
-            sizes[x, name] = values[0]
-    return _one_trace(source, dt, columns, sizes, road, f"{float(times[0]):g} s")
+                what = "class" if size == KIND else "size"
+                raise InputError(
+                    f"{source}: {size} of {name} changes; the {what} of a vehicle stays the same"
+                )
+            sizes[size, name] = values[0]
+    measured = {x: {n: np.array(columns.pop((x, n))) for n in names} for x in own}
+    made = {key: values.tolist() for key, values in by_vehicle(measured)}
+    return _one_trace(source, dt, columns, sizes, road, f"{float(times[0]):g} s", made)
 
 
 def _finite(source: str, row: int, column: str, value: object) -> float:
@@ -240,16 +285,18 @@ def _one_trace(
     source: str,
     dt: Fraction,
     columns: Mapping[tuple[str, str], Sequence[float]],
-    sizes: Mapping[tuple[str, str], float],
+    sizes: Mapping[tuple[SizeName, str], float],
     road: Road,
     first: str,
+    own: Mapping[tuple[str, str], Sequence[float]],
 ) -> OneTrace:
     length = len(next(iter(columns.values())))
     batch = Batch(
         dt,
         np.array([length]),
-        {key: np.array(values)[:, None] for key, values in columns.items()},  # type: ignore[misc]
-        {key: np.array([value]) for key, value in sizes.items()},  # type: ignore[misc]
+        {key: np.array(values)[:, None] for key, values in {**columns, **own}.items()},
+        {key: np.array([value]) for key, value in sizes.items()},
+        source=source,
     )
     names = dict.fromkeys(name for _, name in columns)
     lanes = {n: _lane_of(road, columns["s", n][0], columns["d", n][0], sizes["width", n]) for n in names}

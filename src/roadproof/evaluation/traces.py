@@ -1,6 +1,6 @@
 """Vehicles of a recording as traces for the monitor: time-major arrays, lane predicates decided."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 import numpy as np
@@ -10,8 +10,11 @@ from roadproof.evaluation.lane_atoms import LaneAtom
 from roadproof.formats.pairs import row_of
 from roadproof.formats.recording import ZONES, Bools, Integers, Recording
 from roadproof.logic.formula import Formula
+from roadproof.logic.terms import Own
 from roadproof.monitoring.batch import Array, Batch
-from roadproof.signals import RECORDED, SIZES, SignalName
+from roadproof.signals import RECORDED, SIGNALS, SIZES, SignalName, SizeName
+
+KIND: SizeName = "kind"
 
 
 def gather(
@@ -19,7 +22,7 @@ def gather(
     vehicles: Mapping[str, Integers],
     low: Integers,
     high: Integers,
-    signals: Iterable[SignalName],
+    signals: Iterable[SignalName | Own],
     lanes: Mapping[str, Integers] | None = None,
     atoms: Mapping[Formula, LaneAtom] | None = None,
 ) -> Batch:
@@ -29,18 +32,65 @@ def gather(
     none, which nobody occupies) for each trace; ``atoms`` are decided for the vehicles and lanes
     that are there. Raises ``InputError`` for signals that recordings do not have.
     """
-    wanted = tuple(dict.fromkeys(signals))
+    asked = tuple(dict.fromkeys(signals))
+    own = [signal for signal in asked if isinstance(signal, Own)]
+    wanted = [signal for signal in asked if not isinstance(signal, Own)]
     for signal in wanted:
         if signal not in RECORDED:
             raise InputError(f"no recording has the signal {signal}, which a formula needs")
     rows = {name: rows_of(recording, index, low, high) for name, index in vehicles.items()}
+    columns = {name: recording.own[name] for name in (x.name for x in own) if name in recording.own}
+    own_signals = dict(by_vehicle({x: {v: c[at] for v, at in rows.items()} for x, c in columns.items()}))
+    for x in own:
+        whose = rows if x.vehicle else ("",)
+        refuse_missing([(x.name, v) for v in whose], own_signals, f"recording {recording.name}")
     return Batch(
         dt=Fraction(1, recording.rate),
         lengths=high - low + 1,
-        signals={(x, name): getattr(recording, x)[at] for name, at in rows.items() for x in wanted},
-        sizes={(x, name): getattr(recording, x)[index] for name, index in vehicles.items() for x in SIZES},
+        signals={
+            **{(x, name): getattr(recording, x)[at] for name, at in rows.items() for x in wanted},
+            **own_signals,
+        },
+        sizes={
+            **{(x, name): getattr(recording, x)[index] for name, index in vehicles.items() for x in SIZES},
+            **{(KIND, name): recording.kind_code[index] for name, index in vehicles.items()},
+        },
         given=dict(_decide(recording, rows, lanes or {}, atoms or {})),
+        source=f"recording {recording.name}",
     )
+
+
+def by_vehicle(columns: Mapping[str, Mapping[str, Array]]) -> Iterator[tuple[tuple[str, str], Array]]:
+    """Columns of own signals, by name and vehicle, as signals of a batch.
+
+    One that is the same for all vehicles at every instant is a signal of no vehicle ('') too.
+    """
+    for name, values in columns.items():
+        for vehicle, column in values.items():
+            yield (name, vehicle), column
+        first, *others = values.values()
+        if all(np.array_equal(first, other, equal_nan=True) for other in others):
+            yield (name, ""), first
+
+
+def refuse_missing(
+    wanted: Iterable[tuple[str, str]], there: Collection[tuple[str, str]], source: str
+) -> None:
+    """Raise ``InputError`` for an own signal of which there is no column, or not one for all vehicles."""
+    for name, vehicle in wanted:
+        if (name, vehicle) in there:
+            continue
+        if any(name == known for known, _ in there):
+            raise InputError(
+                f"{source}: column {name} is not the same for all vehicles at every instant, but signal "
+                f"{name} is of no vehicle; declare it of one: signal {name}(a: vehicle): …"
+            )
+        known = ", ".join(dict.fromkeys(x for x, _ in there if x not in SIGNALS))
+        raise InputError(
+            f"{source}: there is no column {name}, which signal {name} is read from; "
+            f"{f'of own signals there are {known}' if known else 'there is none of any own signal'}. CSV, "
+            "Parquet and frames may have such columns; or say what it is: signal … derived by …"
+        )
 
 
 def blocks(low: Integers, high: Integers, cells: int) -> Iterator[Integers]:

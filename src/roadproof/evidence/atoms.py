@@ -16,7 +16,7 @@ from roadproof.logic.formula import Formula, Named
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import rename, road_names, terms_of, without_names
 from roadproof.logic.show import text
-from roadproof.logic.terms import Signal, leaves
+from roadproof.logic.terms import Varying, leaves
 
 ZONES = ("main", "merge", "depart")
 
@@ -99,7 +99,7 @@ def is_rigid(formula: Formula) -> bool:
     """Whether time cannot change ``formula``: it speaks of parameters and variables only."""
     if any(isinstance(part, f.Occupies | f.Some | f.Every) for part in f.subformulas(formula)):
         return False
-    return not any(isinstance(leaf, Signal) for side in terms_of(formula) for leaf in leaves(side))
+    return not any(isinstance(leaf, Varying) for side in terms_of(formula) for leaf in leaves(side))
 
 
 def _combined(formula: Formula) -> Iterator[Formula]:

@@ -12,16 +12,16 @@ from typing import Any, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, is_rational, rational, read_json, text
-from roadproof.signals import SIZES, STARTING
+from roadproof.signals import KINDS, SIZES, STARTING
 from roadproof.spec.scenarios import LANE
-from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
 SCHEMA = "roadproof/drive/1"
-MOST = {"lanelets": 1000, "adjacent": 1000, "vehicles": 20, "pieces": 2000}
+MOST = {"lanelets": 1000, "adjacent": 1000, "vehicles": 20, "pieces": 2000, "signals": 100, "values": 2000}
 _FIELDS = (
     *("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed"),
-    *("parameters", "road", "vehicles", "verdict"),
+    *("parameters", "road", "vehicles", "signals", "verdict"),
 )
 _NUMBERS = (*SIZES, *STARTING)
 
@@ -57,6 +57,8 @@ def drive_data(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
     data["parameters"] = values | dict(file.options)
     data["road"] = road_data(file.road)
     data["vehicles"] = {name: _motion_json(motion) for name, motion in file.drive.vehicles.items()}
+    if file.drive.own:
+        data["signals"] = [_course_json(*key, course) for key, course in file.drive.own.items()]
     return data | {"verdict": dict(verdict)}
 
 
@@ -90,7 +92,14 @@ def _motion_json(motion: Motion) -> dict[str, Any]:
         }
         for p in motion.pieces
     ]
-    return {str(name): str(getattr(motion, name)) for name in _NUMBERS} | {"pieces": pieces}
+    kind = {} if motion.kind is None else {"kind": motion.kind}
+    return kind | {str(name): str(getattr(motion, name)) for name in _NUMBERS} | {"pieces": pieces}
+
+
+def _course_json(name: str, vehicle: str, course: Course) -> dict[str, Any]:
+    """An own signal in SI units, 0 and 1 for false and true; ``vehicle`` null where it is of none."""
+    values = [{"from": str(start), "value": str(value)} for start, value in course]
+    return {"signal": name, "vehicle": vehicle or None, "values": values}
 
 
 def load_drive(path: Path) -> DriveFile:
@@ -123,9 +132,28 @@ def read_drive(content: object, where: str) -> DriveFile:
         values,
         options,
         read_road(data.content.get("road"), f"{where}, road"),
-        Drive({k: _motion(v, f"{where}, vehicle {k}") for k, v in data.mapping("vehicles").items()}),
+        _drive(data, where),
         data.flag("overlaps_allowed") if "overlaps_allowed" in data.content else False,
     )
+
+
+def _drive(data: Fields, where: str) -> Drive:
+    vehicles = {k: _motion(v, f"{where}, vehicle {k}") for k, v in data.mapping("vehicles").items()}
+    own: dict[tuple[str, str], Course] = {}
+    entries = data.items("signals") if "signals" in data.content else []
+    _few(entries, "signals", where)
+    for k, entry in enumerate(entries):
+        course = Fields(entry, f"{where}, signal {k + 1}", ("signal", "vehicle", "values"))
+        key = course.text("signal"), course.text("vehicle") if course.has("vehicle") else ""
+        if key in own:
+            raise InputError(f"{course.where}: {' of '.join(filter(None, key))} is given twice")
+        _few(course.items("values"), "values", course.where)
+        values = (Fields(v, f"{course.where}, value", ("from", "value")) for v in course.items("values"))
+        own[key] = tuple((v.rational("from"), v.rational("value")) for v in values)
+    try:
+        return Drive(vehicles, own)
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
 
 
 def natural_of(content: object, where: str) -> bool | None:
@@ -203,7 +231,10 @@ def _lanelet(content: object, where: str) -> Lanelet:
 
 
 def _motion(content: object, where: str) -> Motion:
-    data = Fields(content, where, (*_NUMBERS, "pieces"))
+    data = Fields(content, where, (*_NUMBERS, "kind", "pieces"))
+    kind = next((x for x in KINDS if data.has("kind") and x == data.text("kind")), None)
+    if data.has("kind") and kind is None:
+        raise InputError(f"{where}: kind={data.text('kind')!r}, but kinds are {', '.join(KINDS)}")
     _few(data.items("pieces"), "pieces", where)
     pieces = []
     for k, entry in enumerate(data.items("pieces")):
@@ -212,6 +243,6 @@ def _motion(content: object, where: str) -> Motion:
         pieces.append(Piece(duration, piece.rational("a_lon"), piece.rational("a_lat")))
     numbers = {str(name): data.rational(name) for name in _NUMBERS}
     try:
-        return Motion(**numbers, pieces=tuple(pieces))
+        return Motion(**numbers, pieces=tuple(pieces), kind=kind)
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None

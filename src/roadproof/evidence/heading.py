@@ -1,12 +1,13 @@
 """How answers begin as plain data: what kind of answer, which version gave it, what the definitions said."""
 
 import re
+from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields
 from roadproof.spec.library import Library
 
-HEADING = ("schema", "roadproof", "library")
+HEADING = ("schema", "roadproof", "library", "signals")
 _FINGERPRINT = re.compile("[0-9a-f]{16}")
 
 
@@ -17,9 +18,13 @@ def version(name: str) -> str:
     return metadata.version(name)
 
 
-def heading(schema: str, library: Library) -> dict[str, str]:
-    """The first fields of an answer; ``library`` has the definitions that it was given with."""
-    return {"schema": schema, "roadproof": version("roadproof"), "library": library.fingerprint}
+def heading(schema: str, library: Library) -> dict[str, Any]:
+    """The first fields of an answer; ``library`` has the definitions that it was given with.
+
+    ``signals`` tells what is supposed of own signals, where there are some that are not derived.
+    """
+    free = {"signals": library.freedom} if library.freedom else {}
+    return {"schema": schema, "roadproof": version("roadproof"), "library": library.fingerprint, **free}
 
 
 def library_of(data: Fields) -> str | None:

@@ -18,7 +18,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
-from roadproof.signals import SIZES
+from roadproof.signals import FIXED
 from roadproof.spec.bind import bind
 from roadproof.world.models import check_lanelets, shared_boundaries
 from roadproof.world.road import Road
@@ -66,7 +66,7 @@ def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, st
         return f"its instants are {', '.join(map(str, times))}, but must ascend from 0"
     sizes = [_sizes(instant) for instant in countermodel.instants]
     if any(other != sizes[0] for other in sizes) or any(value <= 0 for value in sizes[0].values()):
-        return "a length or width changes or is not greater than 0"
+        return "a length, width or kind changes or is not greater than 0"
     try:
         if countermodel.road is not None:
             check_lanelets(countermodel.road.lanelets, "its road")
@@ -140,11 +140,14 @@ def _with_variables(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
 def _holds(part: f.Compare, instant: Instant) -> bool:
     """Whether a comparison holds in a state, evaluated exactly."""
     found = {leaf for side in terms_of(part) for leaf in t.leaves(side)}
-    named = {leaf: f"{leaf.name}({leaf.vehicle})" for leaf in found if isinstance(leaf, t.Signal | t.Size)}
-    signals = {
+    named: dict[t.Leaf, str] = {
+        leaf: f"{leaf.name}({leaf.vehicle})" for leaf in found if isinstance(leaf, t.Signal | t.Size)
+    }
+    named |= {leaf: leaf.told for leaf in found if isinstance(leaf, t.Own)}
+    signals: dict[t.Signal | t.Own, tuple[tuple[Fraction, Fraction], ...]] = {
         leaf: ((Fraction(0), instant.values[name]),)
         for leaf, name in named.items()
-        if isinstance(leaf, t.Signal) and name in instant.values
+        if isinstance(leaf, t.Signal | t.Own) and name in instant.values
     }
     sizes = {
         leaf: instant.values[name]
@@ -161,7 +164,7 @@ def _spread(times: Sequence[Fraction], values: Sequence[bool], held: Held) -> Tr
 
 
 def _sizes(instant: Instant) -> dict[str, Fraction]:
-    return {name: value for name, value in instant.values.items() if name.partition("(")[0] in SIZES}
+    return {name: value for name, value in instant.values.items() if name.partition("(")[0] in FIXED}
 
 
 # --- plain data ----------------------------------------------------------------------------------

@@ -34,7 +34,7 @@ def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tup
 
 def _check_adds_only(below: Library, above: Library, paths: Sequence[Path]) -> None:
     changed: list[str] = []
-    for kind in ("parameters", "options", "definitions", "sets", "lanes", "titles"):
+    for kind in ("parameters", "options", "definitions", "sets", "lanes", "titles", "signals"):
         after: Mapping[object, object] = getattr(above, kind)
         changed += [str(name) for name, meaning in getattr(below, kind).items() if after.get(name) != meaning]
     # One more variant replaces definitions under a value that may be the default one.

@@ -1,6 +1,6 @@
 """What a state predicate says about one instant, as SMT-LIB: signals are real constants."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import assert_never
 
@@ -12,12 +12,12 @@ from roadproof.logic.rewrite import terms_of
 from roadproof.logic.terms import Term
 
 
-def symbol(leaf: t.Parameter | t.Variable | t.Signal | t.Size) -> str:
+def symbol(leaf: t.Parameter | t.Variable | t.Signal | t.Size | t.Own) -> str:
     """The SMT-LIB constant for a leaf of a term."""
     match leaf:
         case t.Parameter(name, _) | t.Variable(name, _):
             return constant(name)
-        case t.Signal(name, vehicle) | t.Size(name, vehicle):
+        case t.Signal(name, vehicle) | t.Size(name, vehicle) | t.Own(name, vehicle):
             return f"|{name}({vehicle})|"
 
 
@@ -26,7 +26,7 @@ def term(expression: Term) -> str:
     match expression:
         case t.Number(value, _):
             return rational(value)
-        case t.Parameter() | t.Variable() | t.Signal() | t.Size():
+        case t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.Own():
             return symbol(expression)
         case t.Sum(terms):
             return f"(+ {' '.join(map(term, terms))})"
@@ -179,6 +179,7 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
     ``bounds`` gives the declared bound of a parameter against 0 (``>``, ``>=`` or '').
     """
     reals: dict[str, str] = {}
+    own: dict[t.Own, None] = {}
     booleans: set[str] = set()
     ratios: dict[tuple[Term, Term], None] = {}
     for formula in formulas:
@@ -194,14 +195,25 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
                     reals[symbol(leaf)] = ">"
                 case t.Signal() | t.Variable():
                     reals[symbol(leaf)] = ""
+                case t.Own():
+                    reals[symbol(leaf)] = ""
+                    own[leaf] = None
         booleans |= set(opaque_symbols(formula))
     lines = [f"(declare-const {name} Real)" for name in sorted(_ratio(*r) for r in ratios)]
     solved, equations = _solve(list(ratios))
     lines += [f"(declare-const {name} Real)" for name in sorted(reals) if name not in solved]
     lines += [f"(define-fun {name} () Real {value})" for name, value in solved.items()]
     lines += [f"(assert ({bound} {name} 0.0))" for name, bound in sorted(reals.items()) if bound]
+    lines += [bound for leaf in sorted(own, key=symbol) for bound in _within(leaf)]
     lines += equations
     return lines + [f"(declare-const {name} Bool)" for name in sorted(booleans)]
+
+
+def _within(own: t.Own) -> Iterator[str]:
+    """The declared bounds of an own signal, which it keeps at every instant."""
+    for op, bound in (("<=", own.low), (">=", own.high)):
+        if bound is not None:
+            yield f"(assert ({op} {rational(bound)} {symbol(own)}))"
 
 
 def _solve(ratios: list[tuple[Term, Term]]) -> tuple[dict[str, str], list[str]]:

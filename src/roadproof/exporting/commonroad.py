@@ -13,6 +13,7 @@ from roadproof.exporting.layout import Layout, Section, together
 from roadproof.exporting.points import centre
 from roadproof.exporting.subject import WRITTEN, Subject, kind_of
 from roadproof.exporting.xml import Element, decimal, document, element
+from roadproof.signals import Kind
 from roadproof.spec.scenarios import SUBJECT
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State
@@ -21,6 +22,9 @@ from roadproof.world.road import Attribute, Lanelet
 _TYPES: Mapping[Attribute, str] = {"main": "mainCarriageWay", "merge": "accessRamp", "departure": "exitRamp"}
 FIRST_LANELET, PROBLEM = 1001, 9001
 """Ids: vehicles count from 1, lanelets from 1001; ids differ among all of them."""
+
+# Kinds that CommonRoad calls otherwise.
+_OBSTACLES: Mapping[Kind, str] = {"other": "unknown"}
 
 
 @dataclass(frozen=True)
@@ -115,7 +119,7 @@ def _obstacle(subject: Subject, name: str, motion: Motion) -> Element:
     )
     return element(
         "dynamicObstacle",
-        element("type", text=kind_of(motion.length)),
+        element("type", text=_OBSTACLES.get(kind_of(motion), kind_of(motion))),
         element("shape", box),
         first,
         element("trajectory", *others),

@@ -5,9 +5,10 @@ import io
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.exporting.road_toml import road_toml
-from roadproof.exporting.subject import Subject
+from roadproof.exporting.subject import Subject, kind_of
 from roadproof.exporting.xml import decimal
 from roadproof.signals import RECORDED, SIZES
+from roadproof.world.drive import value_at
 
 HEADER = ("time", "vehicle", *RECORDED, *SIZES)
 
@@ -27,10 +28,17 @@ def csv_of(file: DriveFile) -> str:
 def _table(subject: Subject) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(HEADER)
+    kinds = {name: kind_of(motion) for name, motion in subject.vehicles.items()}
+    told = ["kind"] if any(kind != "car" for kind in kinds.values()) else []
+    courses = subject.file.drive.own
+    own = list(dict.fromkeys(name for name, _ in courses))
+    writer.writerow([*HEADER, *told, *own])
     for k, time in enumerate(subject.times):
         for name, motion in subject.vehicles.items():
+            known = [courses.get((x, name), courses.get((x, ""))) for x in own]
+            more = ["" if course is None else decimal(value_at(course, time)) for course in known]
             signals = [getattr(subject.samples[name][k], signal) for signal in RECORDED]
             sizes = [getattr(motion, size) for size in SIZES]
-            writer.writerow([decimal(time), name, *map(decimal, (*signals, *sizes))])
+            kind = [kinds[name].title()] if told else []
+            writer.writerow([decimal(time), name, *map(decimal, (*signals, *sizes)), *kind, *more])
     return out.getvalue()

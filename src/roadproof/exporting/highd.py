@@ -13,7 +13,7 @@ import numpy as np
 
 from roadproof.exporting.points import upper_left
 from roadproof.exporting.road_toml import road_toml
-from roadproof.exporting.subject import Subject, kind_of
+from roadproof.exporting.subject import Subject, class_of
 from roadproof.formats.highd import LOWER, lanes_of_markings
 from roadproof.formats.recording import Floats, Recording, beside_by_order, occupy_bands, offsets
 from roadproof.formats.table import table_bytes
@@ -77,7 +77,7 @@ def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
         beside=beside_by_order(lanes),
         vehicle_id=np.array([*subject.ids.values()]),
         direction=direction,
-        kind=np.array([kind_of(m.length).title() for m in motions]),
+        kind=np.array([class_of(m) for m in motions]),
         length=length,
         width=width,
         first_frame=np.ones(len(motions), np.int64),

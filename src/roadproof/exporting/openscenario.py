@@ -5,6 +5,7 @@ A vehicle's reference point is its rear axle, and its box is turned as it moves.
 """
 
 import math
+from collections.abc import Mapping
 from fractions import Fraction
 
 from roadproof.exporting import opendrive
@@ -12,12 +13,16 @@ from roadproof.exporting.points import OVERHANG, axle_to_centre, rear_axle
 from roadproof.exporting.polyline import ROUNDING, Polyline, polyline_of
 from roadproof.exporting.subject import WRITTEN, Subject, kind_of
 from roadproof.exporting.xml import Element, decimal, document, element
+from roadproof.signals import Kind
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State
 
 HEIGHT = Fraction(3, 2)
 WHEEL = Fraction(3, 5)
 """Metres: the height of the box and the diameter of the wheels, which our vehicles do not have."""
+
+# Kinds that OpenSCENARIO calls otherwise; a van is read back as what is none of the other kinds.
+_CATEGORIES: Mapping[Kind, str] = {"motorcycle": "motorbike", "other": "van"}
 
 
 def files(subject: Subject) -> dict[str, bytes]:
@@ -91,9 +96,9 @@ def _vehicle(motion: Motion, line: Polyline) -> Element:
     )
     apart = motion.length * (1 - 2 * OVERHANG)
     axles = element("Axles", _axle("FrontAxle", motion, apart), _axle("RearAxle", motion, Fraction(0)))
-    return element(
-        "Vehicle", box, can, axles, element("Properties"), name="box", vehicleCategory=kind_of(motion.length)
-    )
+    kind = kind_of(motion)
+    category = _CATEGORIES.get(kind, kind)
+    return element("Vehicle", box, can, axles, element("Properties"), name="box", vehicleCategory=category)
 
 
 def _axle(tag: str, motion: Motion, place: Fraction) -> Element:

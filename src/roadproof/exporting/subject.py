@@ -10,6 +10,7 @@ from functools import cached_property
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.exporting.layout import Layout, lay_out, span_of
+from roadproof.signals import Kind
 from roadproof.spec.scenarios import SUBJECT
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, advance, starts_of
@@ -93,6 +94,13 @@ def _states(motion: Motion, times: list[Fraction]) -> Iterator[State]:
         yield advance(begun, time - begun.time)
 
 
-def kind_of(length: Fraction) -> str:
-    """``car`` or ``truck``."""
-    return "car" if length <= TRUCK_LENGTH else "truck"
+def kind_of(motion: Motion) -> Kind:
+    """What the drive says that it is; where it says nothing, ``car`` or ``truck``."""
+    if motion.kind is not None:
+        return motion.kind
+    return "car" if motion.length <= TRUCK_LENGTH else "truck"
+
+
+def class_of(motion: Motion) -> str:
+    """As recordings have it that know two classes: ``Car`` or ``Truck``."""
+    return "Truck" if kind_of(motion) in ("truck", "bus") else "Car"

@@ -49,6 +49,7 @@ class _Obstacle:
 
     id: int
     kind: str
+    label: str
     length: float
     width: float
     first_step: int
@@ -100,6 +101,7 @@ def _traffic(name: str, rate: int, obstacles: Sequence[_Obstacle], notes: tuple[
         rate=rate,
         vehicle_id=np.array([o.id for o in obstacles]),
         kind=np.array([o.kind for o in obstacles]),
+        label=np.array([o.label for o in obstacles]),
         length=length,
         width=width,
         first_frame=np.array([o.first_step for o in obstacles]),
@@ -240,7 +242,8 @@ def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) 
         raise InputError(f"{path}: {where}: time step {steps}; the steps of a trajectory have no gaps")
     label = (node.findtext("type") or "").strip()
     kind = "Truck" if label in ("truck", "bus") or length > truck_length else "Car"
-    return _Obstacle(number, kind, length, width, int(states[0, 0]), states[:, 1:])
+    told = kind if label == "car" else label
+    return _Obstacle(number, kind, told, length, width, int(states[0, 0]), states[:, 1:])
 
 
 def _read_state(path: Path, node: Element, where: str) -> list[float]:

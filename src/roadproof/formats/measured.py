@@ -43,6 +43,7 @@ class MeasuredTraffic:
     acceleration: Floats
     notes: tuple[str, ...] = ()
     moments: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
+    label: npt.NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, np.str_))
 
 
 def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
@@ -67,6 +68,7 @@ def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
         vehicle_id=traffic.vehicle_id,
         direction=direction,
         kind=traffic.kind,
+        label=traffic.label,
         length=traffic.length,
         width=traffic.width,
         first_frame=traffic.first_frame,

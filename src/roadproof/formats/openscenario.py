@@ -15,7 +15,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.formats.recording import Floats, Recording
-from roadproof.formats.samples import DIRECTION, recording_of
+from roadproof.formats.samples import DIRECTION, LABEL, recording_of
 from roadproof.formats.source import Files, Format, with_suffix
 from roadproof.formats.straight import of_road
 from roadproof.formats.table import Table
@@ -34,6 +34,7 @@ _KINDS = {
     "semitrailer": "Truck",
     "trailer": "Truck",
     "bus": "Truck",
+    "motorbike": "Motorcycle",
 }
 _ACTION = "Story/Act/ManeuverGroup"
 _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
@@ -41,9 +42,13 @@ _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 @dataclass(frozen=True)
 class Box:
-    """A vehicle's class and box; ``centre`` is that of the box, ahead and left of the reference point (m)."""
+    """A vehicle's class, what the file calls it, and its box.
+
+    ``centre`` is that of the box, ahead and left of the reference point (m).
+    """
 
     kind: str
+    label: str
     length: float
     width: float
     centre: tuple[float, float]
@@ -122,7 +127,7 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         size, centre = vehicle.find("BoundingBox/Dimensions"), vehicle.find("BoundingBox/Center")
         length, width = (_number(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
         ahead, left = (_number(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
-        yield name, Box(_KINDS[category], length, width, (ahead, left))
+        yield name, Box(_KINDS[category], category, length, width, (ahead, left))
     if not seen:
         raise InputError(f"{path}: there is no ScenarioObject")
 
@@ -194,6 +199,7 @@ def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, Way]) -> Table:
             "time": np.arange(first, last + 1) / RATE,
             "vehicle": np.full(len(times), name),
             "kind": np.full(len(times), box.kind),
+            LABEL: np.full(len(times), box.label),
         }
         told |= zip(map(str, RECORDED), moving, strict=True)
         told |= {str(x): np.full(len(times), getattr(box, x)) for x in SIZES}

@@ -10,10 +10,13 @@ from roadproof.errors import InputError
 from roadproof.formats.table import RULES, Column, Kind, Table, cell_error, polars_module
 
 
-def read_parquet(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind]) -> Table:
+def read_parquet(
+    path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind], others: Kind | None = None
+) -> Table:
     """The columns of a Parquet file with ``wanted`` and perhaps ``optional`` columns, in any order.
 
-    Whole numbers may stand for texts. Raises ``InputError``.
+    Whole numbers may stand for texts. ``others``: what all further columns are read as, where there may be
+    any; in a list, cells may be empty. Raises ``InputError``.
     """
     pl = polars_module()
     try:
@@ -24,6 +27,11 @@ def read_parquet(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, 
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
         told = str(error).partition("\n")[0][:200]
         raise InputError(f"{path}: no readable Parquet file ({told}); get it again from its source") from None
+    if others is not None:
+        rest: dict[str, Kind] = {
+            name: others for name in frame.columns if name not in wanted and name.isidentifier()
+        }
+        optional = {**rest, **optional}
     missing = [name for name in wanted if name not in frame.columns]
     extra = [name for name in frame.columns if name not in (*wanted, *optional)]
     if missing or extra:
@@ -39,6 +47,8 @@ def read_parquet(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, 
 def _parquet_column(path: Path, values: Any, name: str, kind: Kind) -> Column:
     """A column as an array of its kind."""
     pl = polars_module()
+    if kind == "list":
+        return np.array(["" if x is None else str(x) for x in values.to_list()], np.str_)
     whole, text = values.dtype.is_integer(), values.dtype in (pl.String, pl.Categorical)
     if not {"integer": whole, "number": values.dtype.is_numeric()}.get(kind, whole or text):
         raise InputError(f"{path}, column {name}: {values.dtype} is no type for it; {RULES[kind]}")

@@ -6,15 +6,17 @@ Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 ``start[v]:start[v + 1]``, and its row of frame f is ``start[v] + f - first_frame[v]``.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.signals import RECORDED
+from roadproof.signals import KINDS, RECORDED, Kind
 from roadproof.world.road import Lanelet, Zone
 
 Floats: TypeAlias = npt.NDArray[np.float64]
@@ -22,6 +24,16 @@ Integers: TypeAlias = npt.NDArray[np.int64]
 Masks: TypeAlias = npt.NDArray[np.uint32]
 Bools: TypeAlias = npt.NDArray[np.bool_]
 
+_TRUTHS = {"true": 1.0, "false": 0.0}
+# What highD, exiD, CommonRoad and OpenSCENARIO call the kinds that have a name of their own.
+_CLASSES: Mapping[str, Kind] = {
+    "car": "car",
+    "taxi": "car",
+    "truck": "truck",
+    "bus": "bus",
+    "motorcycle": "motorcycle",
+    "motorbike": "motorcycle",
+}
 ZONES: tuple[Zone, ...] = ("main", "merge", "depart")
 
 
@@ -64,7 +76,9 @@ class Recording:
     ``lanelets``: where lanes are more than bands without end, what they consist of, and ``inside``, of shape
     (samples, lanelets), whether the box overlaps each with positive area. On a curved road their bounds only
     tell them apart. ``slack``: what projecting a measured road on a line does to places; None where s and d
-    are measured themselves.
+    are measured themselves. ``own``: columns that are no signals of the list, an entry a sample: true and
+    false as 1 and 0, NaN where there is no number. ``label``: what the file calls each vehicle, where
+    ``kind`` puts several together.
     """
 
     name: str
@@ -92,6 +106,15 @@ class Recording:
     lanelets: tuple[Lanelet, ...] = ()
     inside: Bools = field(default_factory=lambda: np.zeros((0, 0), np.bool_))
     slack: Slack | None = None
+    own: Mapping[str, Floats] = field(default_factory=dict)
+    label: npt.NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, np.str_))
+
+    @cached_property
+    def kind_code(self) -> Integers:
+        """What kind each vehicle is of, as terms hold it (``signals.KINDS``)."""
+        names, index = np.unique(self.label if len(self.label) else self.kind, return_inverse=True)
+        codes: Integers = np.array([KINDS.index(kind_called(str(name))) + 1 for name in names], np.int64)
+        return codes[index]
 
     @property
     def vehicles(self) -> int:
@@ -127,6 +150,30 @@ class Recording:
         return sum(1 << k for k, x in enumerate(self.lanes) if frozenset((x.name, name)) in self.beside)
 
 
+def kind_called(name: str) -> Kind:
+    """The kind that recordings call by this name: Car, truck, motorbike; what they call otherwise is other.
+
+    >>> kind_called("Truck"), kind_called("bicycle")
+    ('truck', 'other')
+    """
+    return _CLASSES.get(name.lower(), "other")
+
+
+def own_numbers(values: Iterable[object]) -> Floats:
+    """A column as numbers: true and false as 1 and 0, NaN for what is no finite number."""
+    return np.array([_own_number(value) for value in values], np.float64)
+
+
+def _own_number(value: object) -> float:
+    if isinstance(value, str):
+        value = _TRUTHS.get(value.strip().lower(), value)
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return math.nan
+    return found if math.isfinite(found) else math.nan
+
+
 def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
     """The recording with only the vehicles for which ``wanted`` (one entry a vehicle) is true."""
     rows = np.repeat(wanted, np.diff(recording.start))
@@ -140,6 +187,10 @@ def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
         changed["moments"] = recording.moments[rows]
     if recording.lanelets:
         changed["inside"] = recording.inside[rows]
+    if len(recording.label):
+        changed["label"] = recording.label[wanted]
+    if recording.own:
+        changed["own"] = {name: values[rows] for name, values in recording.own.items()}
     if recording.slack is not None:
         changed["slack"] = Slack(*(values[rows] for values in vars(recording.slack).values()))
     return _replace(recording, changed | {"start": offsets(counts)})
@@ -157,6 +208,8 @@ def join_vehicles(recording: Recording, guests: Recording) -> Recording:
         raise ValueError("recordings of measured roads cannot be joined")
     if len(recording.moments) or len(guests.moments):
         raise ValueError("recordings whose moments others may show cannot be joined")
+    if any(x.own or len(x.label) for x in (recording, guests)):
+        raise ValueError("recordings with own signals or labels cannot be joined")
     if recording.vehicles and guests.vehicle_id.min() <= recording.vehicle_id.max():
         raise ValueError("the ids of the guests must be greater than those of the recording")
     per_vehicle = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")

@@ -1,11 +1,12 @@
 """Samples of vehicles in road coordinates, as CSV or Parquet: a recording, or one trace.
 
 A file has the columns ``HEADER``, and may have ``kind`` (a class such as Car, which is the default, or
-Truck); SI units and coordinates are those of semantics §2. NAME_road.toml beside NAME.csv or NAME.parquet,
-in the form of models/roads, says where its lanes are.
+Truck), and columns of users' own signals; SI units and coordinates are those of semantics §2.
+NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, says where its lanes are.
 """
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from roadproof.formats.plausible import (
     LARGEST_SPEED,
     Implausible,
 )
-from roadproof.formats.recording import Floats, Integers, Recording, with_notes
+from roadproof.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
 from roadproof.formats.source import TRACK_FILES, Files, Format, beside, first_line, with_suffix
 from roadproof.formats.straight import StraightRoad, of_road, place
 from roadproof.formats.table import Kind, Table, read_table
@@ -29,22 +30,33 @@ from roadproof.world.models import load_recorded_road
 
 HEADER = ("time", "vehicle", *RECORDED, *SIZES)
 ROAD_ENDING = "_road.toml"
+LABEL = "vehicle category"
+"""What a file calls a vehicle, where ``kind`` puts several together; no file of samples has it."""
 DIRECTION = 1
 """The only driving direction of such a file."""
 LARGEST_PLACE = 1_000_000.0
 LARGEST_RATE = 1000
 _ROUNDING = 0.00101
 """s: two times with three decimals are this far from what they stand for, together."""
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 _KINDS: dict[str, Kind] = {name: "text" if name == "vehicle" else "number" for name in HEADER}
 
 
 def read_columns(path: Path) -> Table:
-    """The columns of a file, ``kind`` only where it has one. Raises ``InputError``."""
+    """The columns of a file, with ``kind`` and own signals where it has them. Raises ``InputError``."""
     if path.suffix == ".parquet":
-        return read_parquet(path, _KINDS, {"kind": "text"})
-    if first_line(path).split(",")[-1] == "kind":
-        return read_table(path, (*HEADER, "kind"), {**_KINDS, "kind": "text"})
-    return read_table(path, HEADER, _KINDS)
+        return read_parquet(path, _KINDS, {"kind": "text"}, others="list")
+    names = tuple(first_line(path).split(","))
+    more = names[len(HEADER) :] if names[: len(HEADER)] == HEADER else ()
+    if len({*names}) < len(names) or not all(_NAME.fullmatch(name) for name in more):
+        more = ()
+    kinds: dict[str, Kind] = {name: "text" if name == "kind" else "list" for name in more}
+    return read_table(path, (*HEADER, *more), {**_KINDS, **kinds})
+
+
+def own_columns(names: Iterable[str]) -> tuple[str, ...]:
+    """Those of the columns that may be own signals."""
+    return tuple(name for name in names if name not in (*HEADER, "kind", LABEL))
 
 
 def read_recording(path: Path) -> Recording:
@@ -97,6 +109,8 @@ def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str
         lanelets=road.lanelets,
         inside=placed.inside,
         notes=(*notes, *numbered, *begin),
+        label=table[LABEL].astype(np.str_)[first] if LABEL in table.columns else np.zeros(0, np.str_),
+        own={name: own_numbers(table[name].tolist()) for name in own_columns(table.columns)},
     )
     return with_notes(recording, _check_plausible(table, recording))
 

@@ -11,7 +11,8 @@ from roadproof.judge import piecewise
 from roadproof.judge.piecewise import Pieces
 from roadproof.judge.polynomial import ONE, Polynomial, add, multiply, polynomial
 from roadproof.logic import terms as t
-from roadproof.logic.terms import Signal, Size, Term
+from roadproof.logic.own import code_of, refuse_value
+from roadproof.logic.terms import Own, Signal, Size, Term
 from roadproof.world.drive import Drive, Motion
 from roadproof.world.motion import State, starts_of
 
@@ -19,9 +20,12 @@ LARGEST_DEGREE = 24
 
 
 class Signals(Protocol):
-    """Where the judge finds vehicles: signals as pieces, sizes in m. Both raise ``UsageError``."""
+    """Where the judge finds vehicles: signals as pieces, sizes in m, kinds as numbers.
 
-    def signal(self, signal: Signal) -> Pieces: ...
+    Both raise ``UsageError`` for vehicles that are not there, ``InputError`` for what is not said of them.
+    """
+
+    def signal(self, signal: Signal | Own) -> Pieces: ...
 
     def size(self, size: Size) -> Fraction: ...
 
@@ -33,10 +37,26 @@ class DriveSignals:
     drive: Drive
     _starts: dict[str, tuple[State, ...]] = field(default_factory=dict, repr=False, compare=False)
 
-    def signal(self, signal: Signal) -> Pieces:
+    def signal(self, signal: Signal | Own) -> Pieces:
+        if isinstance(signal, Own):
+            return self._own(signal)
         if signal.vehicle not in self._starts:
             self._starts[signal.vehicle] = starts_of(self._motion(signal.vehicle))
         return tuple((x.time, _course(signal.name, x)) for x in self._starts[signal.vehicle])
+
+    def _own(self, signal: Own) -> Pieces:
+        """Raises ``InputError`` for a value that the declaration of the signal excludes."""
+        if signal.vehicle:
+            self._motion(signal.vehicle)
+        course = self.drive.own.get((signal.name, signal.vehicle))
+        if course is None:
+            raise InputError(
+                f"the drive says nothing of {signal.told}: derive the signal (signal … derived by …), or "
+                "take a drive that was found for a formula that speaks of it"
+            )
+        for start, value in course:
+            refuse_value(signal, value, f"at {start} s")
+        return tuple((start, polynomial(value)) for start, value in course)
 
     def size(self, size: Size) -> Fraction:
         motion = self._motion(size.vehicle)
@@ -45,6 +65,12 @@ class DriveSignals:
                 return motion.length
             case "width":
                 return motion.width
+            case "kind":
+                if motion.kind is None:
+                    raise InputError(
+                        f"the drive does not say what kind of vehicle {size.vehicle} is: add kind to its file"
+                    )
+                return Fraction(code_of(motion.kind))
             case _:
                 assert_never(size.name)
 
@@ -59,12 +85,16 @@ class DriveSignals:
 class AbstractSignals:
     """Signals that are constant on pieces: ascending (start, value), the first start 0."""
 
-    signals: Mapping[Signal, tuple[tuple[Fraction, Fraction], ...]]
+    signals: Mapping[Signal | Own, tuple[tuple[Fraction, Fraction], ...]]
     sizes: Mapping[Size, Fraction]
 
-    def signal(self, signal: Signal) -> Pieces:
+    def signal(self, signal: Signal | Own) -> Pieces:
         if signal not in self.signals:
-            raise UsageError(f"the trace has no {signal.name} of vehicle={signal.vehicle}: add it")
+            of = f" of vehicle={signal.vehicle}" if signal.vehicle else ""
+            raise UsageError(f"the trace has no {signal.name}{of}: add it")
+        if isinstance(signal, Own):
+            for start, value in self.signals[signal]:
+                refuse_value(signal, value, f"at {start} s")
         return tuple((start, polynomial(value)) for start, value in self.signals[signal])
 
     def size(self, size: Size) -> Fraction:
@@ -90,7 +120,7 @@ class Courses:
         match term:
             case t.Number(value, _):
                 return piecewise.constant(polynomial(value))
-            case t.Signal():
+            case t.Signal() | t.Own():
                 return self.signals.signal(term)
             case t.Size():
                 return piecewise.constant(polynomial(self.signals.size(term)))

@@ -74,7 +74,7 @@ def signal_degree(term: Term) -> int | None:
     match term:
         case t.Number() | t.Parameter() | t.Variable() | t.Size():
             return 0
-        case t.Signal():
+        case t.Signal() | t.Own():
             return 1
         case t.Power(inner, exponent):
             degree = signal_degree(inner)

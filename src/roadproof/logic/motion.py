@@ -29,7 +29,7 @@ RATES: Mapping[SignalName, SignalName] = {
 
 def is_rigid(term: Term) -> bool:
     """Whether ``term`` has one value at all times."""
-    return not any(isinstance(leaf, t.Signal) for leaf in t.leaves(term))
+    return not any(isinstance(leaf, t.Varying) for leaf in t.leaves(term))
 
 
 def is_continuous(term: Term) -> bool:
@@ -44,6 +44,8 @@ def is_continuous(term: Term) -> bool:
         return False
     if isinstance(term, t.Signal):
         return term.name in RATES
+    if isinstance(term, t.Own):
+        return False
     return all(map(is_continuous, t.children(term)))
 
 

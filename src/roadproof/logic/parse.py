@@ -69,6 +69,8 @@ def _definitions(statements: tuple[Statement, ...]) -> list[syntax.Definition]:
         match statement:
             case syntax.Definition():
                 found.append(statement)
+            case syntax.SignalDeclaration() if statement.body is not None:
+                found.append(syntax.Definition(statement.name, (), "", statement.body, statement.at))
             case syntax.EachBlock() | syntax.SetBlock() | syntax.WhenBlock():
                 found += statement.definitions
             case _:
@@ -254,6 +256,30 @@ def _doc(token: Token | None) -> str:
     return "" if token is None else str(token)[1:-1]
 
 
+def _range(name: str, sort: str, within: tuple[Any, Any], at: Position) -> tuple[Any, Any]:
+    """Both bounds of a signal in its unit, None without bound."""
+    ends: list[Fraction | None] = []
+    for end, without in zip(within, ("-inf", "inf"), strict=True):
+        if isinstance(end, str):
+            if end != without:
+                raise TextError(f"signal '{name}' has no values: its bounds are the wrong way round", at)
+            ends.append(None)
+            continue
+        value, unit, place = end
+        factor, dimension = UNITS[unit or sort]
+        if dimension != UNITS[sort][1]:
+            raise TextError(f"signal '{name}' is in {sort}, but its bound is in {unit}", place)
+        ends.append(value * factor / UNITS[sort][0])
+    low, high = ends
+    if low is not None and high is not None and low >= high:
+        raise TextError(
+            f"signal '{name}' has no room: low={low} is not below high={high}",
+            at,
+            "Write the smaller bound first.",
+        )
+    return low, high
+
+
 @v_args(meta=True)
 class _Build(Transformer_NonRecursive[Token, Any]):
     """Parse tree to syntax tree, bottom up; not recursive, so that input cannot exhaust the stack."""
@@ -361,6 +387,37 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             )
         comparison = "" if bound is None else bound[1]
         return syntax.ParameterDeclaration(str(name), value, str(unit), comparison, _doc(doc), _at(meta))
+
+    def edge(self, meta: Meta, items: list[Any]) -> tuple[Fraction, str, Position]:
+        return items[0], "" if items[1] is None else str(items[1]), _at(meta)
+
+    def no_edge(self, _: Meta, items: list[Token | None]) -> str:
+        return "inf" if items[0] is None else "-inf"
+
+    def within(self, _: Meta, items: list[Any]) -> tuple[Any, Any]:
+        return items[0], items[1]
+
+    def signal(self, meta: Meta, items: list[Any]) -> Statement:
+        name, bindings, sort, within, doc, *rest = items
+        body = rest[0] if rest else None
+        vehicle = ""
+        if bindings is not None:
+            if len(bindings) != 1 or bindings[0].sort != "vehicle":
+                raise TextError(
+                    f"signal '{name}' is of one vehicle or of none",
+                    bindings[0].at,
+                    f"Write signal {name}(a: vehicle): {sort}, or signal {name}: {sort}.",
+                )
+            vehicle = bindings[0].name
+        if sort not in UNITS and sort != "bool":
+            raise TextError(
+                f"'{sort}' is no unit of a signal", _at(meta), f"There are {', '.join((*UNITS, 'bool'))}."
+            )
+        if within is not None and (sort == "bool" or body is not None):
+            why = "is true or false" if sort == "bool" else "is derived, so its bounds follow"
+            raise TextError(f"signal '{name}' {why}", _at(meta), "Leave out in […].")
+        low, high = (None, None) if within is None else _range(str(name), sort, within, _at(meta))
+        return syntax.SignalDeclaration(str(name), vehicle, sort, low, high, _doc(doc), body, _token_at(name))
 
     def option(self, meta: Meta, items: list[Any]) -> Statement:
         *names, doc = items

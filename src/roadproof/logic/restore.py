@@ -14,8 +14,9 @@ from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.syntax import Binary, Bounds, Call, Expression, Literal_, Name, Prefix
+from roadproof.logic.syntax import Binary, BinaryOperator, Bounds, Call, Expression, Literal_, Name, Prefix
 from roadproof.logic.terms import Dimension, Term
+from roadproof.signals import KINDS, Kind
 from roadproof.units import SI
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -30,6 +31,10 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
     match formula:
         case f.Truth(value):
             return Literal_(value)
+        case f.Compare(t.Own(truth=True) as own, op, _):
+            return term_as_syntax(own) if op == ">" else Prefix("not", term_as_syntax(own))
+        case f.Compare(t.Size("kind", vehicle), op, t.Number(value, _)):
+            return _kind_from(vehicle, op, value)
         case f.Compare(left, op, right):
             return Binary(op, term_as_syntax(left), term_as_syntax(right))
         case f.Occupies(vehicle, lanelet):
@@ -44,6 +49,14 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
             return Binary("=", term_as_syntax(a), term_as_syntax(b))
         case f.Or((f.Compare(a, "<", b), f.Compare(c, ">", d))) if (a, b) == (c, d):
             return Binary("!=", term_as_syntax(a), term_as_syntax(b))
+        case f.And(
+            (f.Compare(t.Size("kind", a), ">=", t.Number(low, _)), f.Compare(t.Size("kind", b), "<", high))
+        ) if (a, t.number(low + 1)) == (b, high):
+            return _kind(a, "=", KINDS[int(low)])
+        case f.Or(
+            (f.Compare(t.Size("kind", a), "<", t.Number(low, _)), f.Compare(t.Size("kind", b), ">=", high))
+        ) if (a, t.number(low + 1)) == (b, high):
+            return _kind(a, "!=", KINDS[int(low)])
         case f.And(parts):
             return _chain("and", [as_syntax(part, expand) for part in parts])
         case f.Or(parts):
@@ -60,6 +73,20 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
             return Call(name, tuple(Name(argument) for argument in arguments))
         case _:
             assert_never(formula)
+
+
+def _kind(vehicle: str, op: BinaryOperator, kind: Kind) -> Expression:
+    return Binary(op, Call("kind", (Name(vehicle),)), Name(kind))
+
+
+def _kind_from(vehicle: str, op: f.Comparison, bound: Fraction) -> Expression:
+    """One comparison of a kind (``logic.own``): as equal to the first or the last, where it says that."""
+    first, last = bound == Fraction(3, 2), bound == len(KINDS) - Fraction(1, 2)
+    if first:
+        return _kind(vehicle, "=" if op == "<" else "!=", KINDS[0])
+    if last:
+        return _kind(vehicle, "!=" if op == "<" else "=", KINDS[-1])
+    return _kind(vehicle, op, KINDS[int(bound)])
 
 
 def _chain(op: Literal["and", "or"], parts: Sequence[Expression]) -> Expression:
@@ -100,6 +127,8 @@ def term_as_syntax(term: Term) -> Expression:
             return Name(name)
         case t.Signal(name, vehicle) | t.Size(name, vehicle):
             return Call(name, (Name(vehicle),))
+        case t.Own(name, vehicle):
+            return Call(name, (Name(vehicle),)) if vehicle else Name(name)
         case t.Sum(terms):
             return _sum(terms)
         case t.Product((t.Number(Fraction(numerator=-1, denominator=1), (0, 0)), factor)) if not isinstance(

@@ -1,6 +1,7 @@
 """Formulas to formulas with the same meaning, or with names replaced by values."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.logic.formula import (
@@ -22,6 +23,7 @@ from roadproof.logic.formula import (
 from roadproof.logic.terms import (
     Leaf,
     Number,
+    Own,
     Parameter,
     Signal,
     Size,
@@ -88,8 +90,9 @@ def vehicles_of(formula: Formula) -> tuple[str, ...]:
     """Names of the vehicles that occur, sorted."""
     found = {f.vehicle for f in subformulas(formula) if isinstance(f, Occupies)}
     found |= {
-        leaf.vehicle for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Signal | Size)
+        leaf.vehicle for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Signal | Size | Own)
     }
+    found -= {""}  # an own signal of no vehicle
     return tuple(sorted(found))
 
 
@@ -159,6 +162,8 @@ def rename_vehicles(formula: Formula, roles: Mapping[str, str]) -> Formula:
     def leaf(old: Leaf) -> Term:
         if isinstance(old, Signal | Size):
             return type(old)(old.name, roles.get(old.vehicle, old.vehicle))  # type: ignore[arg-type]
+        if isinstance(old, Own):
+            return replace(old, vehicle=roles.get(old.vehicle, old.vehicle))
         return old
 
     def visit(current: Formula) -> Formula:

@@ -161,6 +161,24 @@ class Definition:
 
 
 @dataclass(frozen=True)
+class SignalDeclaration:
+    """``signal name(a: vehicle): unit in [low, high] "doc" derived by body``: a signal of a user's.
+
+    ``vehicle`` is what the vehicle is called in ``body``, empty where the signal is of none. ``sort`` is a
+    unit or ``bool``; ``low`` and ``high`` are in it, None without bound.
+    """
+
+    name: str
+    vehicle: str
+    sort: str
+    low: Fraction | None
+    high: Fraction | None
+    doc: str
+    body: Expression | None
+    at: Position = field(default_factory=_nowhere, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
 class EachBlock:
     """``each i in 1..8, 12 { … }``: the definitions once for every index, ``{i-8}`` replaced."""
 
@@ -213,6 +231,7 @@ class TitleDeclaration:
 
 Statement: TypeAlias = (
     ParameterDeclaration
+    | SignalDeclaration
     | OptionDeclaration
     | Definition
     | EachBlock
@@ -221,6 +240,11 @@ Statement: TypeAlias = (
     | LaneDeclaration
     | TitleDeclaration
 )
+
+
+def is_kind(expression: Expression) -> bool:
+    """Whether an expression is ``kind(a)``: a name that it is compared with is that of a kind."""
+    return isinstance(expression, Call) and expression.name == "kind"
 
 
 def parts(expression: Expression) -> tuple[Expression, ...]:

@@ -58,6 +58,27 @@ class Size:
 
 
 @node
+class Own:
+    """A quantity that a specification declares with ``signal``: of ``vehicle``, or of none ('').
+
+    It is any function of time whose values lie within ``low`` and ``high`` (SI; None is without bound).
+    Where ``truth``, it is 0 or 1, and only ``logic.formula.own_truth`` compares it.
+    """
+
+    name: str
+    vehicle: str
+    dimension: Dimension = (0, 0)
+    low: Fraction | None = None
+    high: Fraction | None = None
+    truth: bool = False
+
+    @property
+    def told(self) -> str:
+        """As it is written: ``jerk(SV)``, ``red``."""
+        return f"{self.name}({self.vehicle})" if self.vehicle else self.name
+
+
+@node
 class Sum:
     terms: tuple["Term", ...]
 
@@ -104,6 +125,7 @@ Term: TypeAlias = (
     | Variable
     | Signal
     | Size
+    | Own
     | Sum
     | Product
     | Power
@@ -112,7 +134,9 @@ Term: TypeAlias = (
     | Minimum
     | Inverse
 )
-Leaf: TypeAlias = Number | Parameter | Variable | Signal | Size
+Leaf: TypeAlias = Number | Parameter | Variable | Signal | Size | Own
+Varying: TypeAlias = Signal | Own
+"""The leaves that change with time."""
 
 
 def number(value: Fraction | int, dimension: Dimension = (0, 0)) -> Number:
@@ -135,7 +159,7 @@ def subtract(left: Term, right: Term) -> Term:
 def children(term: Term) -> tuple[Term, ...]:
     """The direct sub-terms of ``term``."""
     match term:
-        case Number() | Parameter() | Variable() | Signal() | Size():
+        case Number() | Parameter() | Variable() | Signal() | Size() | Own():
             return ()
         case Sum(terms) | Maximum(terms) | Minimum(terms):
             return terms
@@ -154,7 +178,7 @@ def children(term: Term) -> tuple[Term, ...]:
 def with_children(term: Term, new: tuple[Term, ...]) -> Term:
     """``term`` with its direct sub-terms replaced, in the order of ``children``."""
     match term:
-        case Number() | Parameter() | Variable() | Signal() | Size():
+        case Number() | Parameter() | Variable() | Signal() | Size() | Own():
             return term
         case Sum():
             return Sum(new)
@@ -176,7 +200,7 @@ def with_children(term: Term, new: tuple[Term, ...]) -> Term:
 
 def leaves(term: Term) -> Iterator[Leaf]:
     """Every leaf of ``term``, from left to right."""
-    if isinstance(term, Number | Parameter | Variable | Signal | Size):
+    if isinstance(term, Number | Parameter | Variable | Signal | Size | Own):
         yield term
         return
     for child in children(term):
@@ -185,7 +209,7 @@ def leaves(term: Term) -> Iterator[Leaf]:
 
 def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:
     """``term`` with each leaf replaced by ``replace(leaf)``."""
-    if isinstance(term, Number | Parameter | Variable | Signal | Size):
+    if isinstance(term, Number | Parameter | Variable | Signal | Size | Own):
         return replace(term)
     return with_children(term, tuple(replace_leaves(child, replace) for child in children(term)))
 
@@ -199,7 +223,7 @@ def constant_value(term: Term) -> Fraction | None:
     match term:
         case Number(value, _):
             return value
-        case Parameter() | Variable() | Signal() | Size() | Inverse():
+        case Parameter() | Variable() | Signal() | Size() | Own() | Inverse():
             return None
         case _:
             values: list[Fraction] = []

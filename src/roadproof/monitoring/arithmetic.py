@@ -15,6 +15,7 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Comparison
+from roadproof.logic.own import refuse_value
 from roadproof.monitoring.batch import Array, Batch
 
 Operation: TypeAlias = Callable[..., Any]
@@ -43,7 +44,7 @@ def difference(left: Array, right: Array) -> Array:
 class Load:
     """A leaf: a constant, a signal or a size."""
 
-    leaf: float | t.Signal | t.Size
+    leaf: float | t.Signal | t.Size | t.Own
 
 
 @dataclass(frozen=True)
@@ -120,11 +121,14 @@ def _run(program: Program, batch: Batch, rows: slice, columns: slice, clean: boo
 
 
 def _load(
-    leaf: float | t.Signal | t.Size, batch: Batch, rows: slice, columns: slice, inside: Array | None
+    leaf: float | t.Signal | t.Size | t.Own, batch: Batch, rows: slice, columns: slice, inside: Array | None
 ) -> Any:
     match leaf:
         case float():
             return np.float64(leaf)
+        case t.Own():
+            block = _own(leaf, batch, rows, columns)
+            return block if inside is None else np.where(inside, block, 1.0)
         case t.Signal(name, vehicle):
             signal = batch.signals.get((name, vehicle))
             if signal is None:
@@ -133,11 +137,35 @@ def _load(
             return block if inside is None else np.where(inside, block, 1.0)
         case t.Size(name, vehicle):
             size = batch.sizes.get((name, vehicle))
+            if size is None and name == "kind":
+                raise InputError(f"nothing says what kind of vehicle {vehicle} is, which the formula asks")
             if size is None:
                 raise InputError(f"the batch has no size {name}({vehicle}), which the formula needs")
             return size[columns].astype(np.float64, copy=False)
         case _:
             assert_never(leaf)
+
+
+def _own(own: t.Own, batch: Batch, rows: slice, columns: slice) -> Array:
+    """An own signal, whose values have to be there and within what is declared."""
+    signal = batch.signals.get((own.name, own.vehicle))
+    source = f"{batch.source}: " if batch.source else ""
+    if signal is None:
+        raise InputError(f"{source}the batch has no signal {own.told}, which the formula needs")
+    block = signal[rows, columns].astype(np.float64, copy=False)
+    within = np.isin(block, (0.0, 1.0)) if own.truth else np.isfinite(block)
+    with np.errstate(invalid="ignore"):
+        within &= block >= (-np.inf if own.low is None else float(own.low))
+        within &= block <= (np.inf if own.high is None else float(own.high))
+    wrong = np.argwhere(~within & (np.arange(rows.start, rows.stop)[:, None] < batch.lengths[None, columns]))
+    if len(wrong):
+        sample, trace = wrong[0]
+        value = float(block[sample, trace])
+        where = f"in trace {columns.start + trace} at sample {rows.start + sample}"
+        if not np.isfinite(value):
+            raise InputError(f"{source}{own.told} {where} is missing, or no finite number; fill the gap")
+        refuse_value(own, value, where, source)
+    return block
 
 
 def _program(
@@ -188,7 +216,7 @@ class _Building:
         if constant is not None:
             return self.add(Load(float(constant)))
         match term:
-            case t.Signal() | t.Size():
+            case t.Signal() | t.Size() | t.Own():
                 return self.add(Load(term))
             case t.Sum(terms):
                 return self.sum_of(terms)

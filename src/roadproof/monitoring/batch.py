@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from roadproof.errors import InputError
 from roadproof.logic.formula import Formula, is_state
-from roadproof.logic.terms import SignalName, SizeName
+from roadproof.logic.terms import SizeName
+from roadproof.signals import SIGNALS
 
 Array: TypeAlias = NDArray[Any]
 Integers: TypeAlias = NDArray[np.int64]
@@ -22,9 +23,11 @@ class Batch:
 
     ``signals`` and ``given`` are of shape (time, traces), ``sizes`` and ``lengths`` of shape (traces,).
     Trace i has the samples 0 … lengths[i]-1; what the arrays hold after them is never read into an
-    answer. ``given`` holds the truth of state formulas that the monitor need not compute, found by
-    structure (names of definitions do not matter): lane predicates on a measured road, above all.
-    Units are SI; float32 signals are widened to float64 before any arithmetic.
+    answer. Own signals are among ``signals``, with the vehicle '' where they are of none. ``given`` holds
+    the truth of state formulas that the monitor need not compute, found by structure (names of definitions
+    do not matter): lane predicates on a measured road, above all.
+    ``source``: where the traces are from, for messages. Units are SI; float32 signals are widened to float64
+    before any arithmetic.
 
     Raises ``InputError`` for arrays that do not fit together, for NaN and infinities inside a trace,
     and for sizes that are not greater than zero.
@@ -32,16 +35,17 @@ class Batch:
 
     dt: Fraction
     lengths: Integers
-    signals: Mapping[tuple[SignalName, str], Array] = field(default_factory=dict)
+    signals: Mapping[tuple[str, str], Array] = field(default_factory=dict)
     sizes: Mapping[tuple[SizeName, str], Array] = field(default_factory=dict)
     given: Mapping[Formula, Array] = field(default_factory=dict)
+    source: str = ""
 
     def __post_init__(self) -> None:
         if self.dt <= 0:
             raise InputError(f"a batch needs a time step above zero, but dt={self.dt} s")
         _check_lengths(self.lengths)
         for (name, vehicle), values in self.signals.items():
-            _check_signal(f"{name}({vehicle})", values, self.lengths)
+            _check_signal(f"{name}({vehicle})", values, self.lengths, name in SIGNALS)
         for (size, vehicle), values in self.sizes.items():
             _check_size(f"{size}({vehicle})", values, self.lengths)
         for formula, truth in self.given.items():
@@ -102,10 +106,12 @@ def _check_shape(what: str, values: Array, lengths: Integers) -> None:
         )
 
 
-def _check_signal(what: str, values: Array, lengths: Integers) -> None:
+def _check_signal(what: str, values: Array, lengths: Integers, finite: bool) -> None:
     _check_shape(what, values, lengths)
     if values.dtype not in (np.dtype(np.float64), np.dtype(np.float32)):
         raise InputError(f"{what} must be an array of float64 or float32, not of {values.dtype}")
+    if not finite:
+        return  # an own signal, of which more is known where a formula speaks of it
     rows = max(1, 65536 // len(lengths))  # small blocks stay in the cache
     for start in range(0, int(lengths.max()), rows):
         block = values[start : start + rows]

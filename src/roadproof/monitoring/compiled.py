@@ -17,7 +17,9 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula, Named
 from roadproof.logic.fragment import intervals_of
+from roadproof.logic.own import own_of
 from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_names
+from roadproof.logic.terms import Own
 from roadproof.monitoring.answers import (
     Convention,
     Key,
@@ -65,14 +67,14 @@ class Observation:
 class Monitor(Generic[Key]):
     """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
 
-    ``signals``: what they speak of, of any vehicle.
+    ``signals``: what they speak of, of any vehicle; own signals of some vehicle stand for all.
     """
 
     formulas: Mapping[Key, Formula]
     plain: Mapping[Key, Formula]
     named: Mapping[Named, Formula]
     states: frozenset[Formula]
-    signals: tuple[SignalName, ...]
+    signals: tuple[SignalName | Own, ...]
 
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
         """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
@@ -202,8 +204,9 @@ def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
         node for x in formulas.values() for node in f.subformulas(x) if isinstance(node, Named)
     )
     named = {node: f.transform(node, share) for node in nodes}
+    own = {(x.name, not x.vehicle): x for x in own_of(formulas.values())}.values()
     states = frozenset(x for x in pool if f.is_state(x))
-    return Monitor(dict(formulas), plain, named, states, signals_of(formulas.values()))
+    return Monitor(dict(formulas), plain, named, states, (*signals_of(formulas.values()), *own))
 
 
 def _check_closed(name: object, formula: Formula) -> None:

@@ -181,7 +181,7 @@ class Reading:
         if constant is not None:
             return constant
         match term:
-            case t.Signal(name, vehicle):
+            case t.Signal(name, vehicle) | t.Own(name, vehicle):
                 return float(self.trace.signals[name, vehicle][k])
             case t.Size(name, vehicle):
                 return float(self.trace.sizes[name, vehicle])

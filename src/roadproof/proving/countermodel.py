@@ -15,13 +15,14 @@ from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of, when_true
 from roadproof.logic import terms as t
+from roadproof.logic.own import code_of, kind_of
 from roadproof.logic.rewrite import terms_of, vehicles_of
 from roadproof.proving.place import place
 from roadproof.proving.roads import lay_road
 from roadproof.proving.search import Model
 from roadproof.proving.states import TYPICAL_SIZE
 from roadproof.proving.wishes import layout_of
-from roadproof.signals import SIZES
+from roadproof.signals import FIXED
 from roadproof.spec.query import Query
 
 HELD: tuple[Held, ...] = ("before", "after")
@@ -91,8 +92,9 @@ def _fixed_values(query: Query, model: Model, defaults: Mapping[str, Fraction]) 
             rest[leaf.name] = Fraction(0)
     for vehicle in vehicles_of(query.formula):
         rest |= {state.symbol(t.Size(name, vehicle)): value for name, value in TYPICAL_SIZE.items()}
-    return {**rest, **fixed}
+    kinds = {name: Fraction(code_of(kind_of(x))) for name, x in fixed.items() if name.startswith("|kind(")}
+    return {**rest, **fixed, **kinds}
 
 
 def _is_size(symbol: str) -> bool:
-    return symbol.strip("|").partition("(")[0] in SIZES
+    return symbol.strip("|").partition("(")[0] in FIXED

@@ -10,6 +10,7 @@ from roadproof.judge import TruthSet
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
+from roadproof.logic.own import HALF
 from roadproof.logic.rewrite import terms_of, without_names
 from roadproof.proving.search import Model
 
@@ -56,6 +57,8 @@ def _standing(
                 values[f"{size}({vehicle})"] = fixed[state.symbol(leaf)]
             case t.Signal(name, vehicle):
                 values[f"{name}({vehicle})"] = known.get(f"{name}({vehicle})", Fraction(0))
+            case t.Own():
+                values[leaf.told] = _own_value(leaf, known.get(state.symbol(leaf).strip("|")))
             case _:
                 pass
     reach = max((known[f"s({v})"] for v in vehicles if f"s({v})" in known), default=-GAP)
@@ -72,6 +75,17 @@ def _standing(
             top += GAP / 2 + width
             values[d] = top
     return values
+
+
+def _own_value(own: t.Own, known: Fraction | None) -> Fraction:
+    """The value of an own signal in a model, or else one that its declaration allows."""
+    if own.truth:
+        return Fraction(known is not None and known > HALF)
+    if known is not None:
+        return known
+    if own.low is not None and own.low > 0:
+        return own.low
+    return own.high if own.high is not None and own.high < 0 else Fraction(0)
 
 
 def _pattern(found: Mapping[str, Fraction | bool], vehicle: str) -> str:

@@ -28,7 +28,11 @@ Clause: TypeAlias = tuple[tuple[str, bool], ...]
 QUICK = 0.3
 CASE = 5.0
 SHRINK = 0.1
-TYPICAL_SIZE: Mapping[t.SizeName, Fraction] = {"length": Fraction(9, 2), "width": Fraction(9, 5)}
+TYPICAL_SIZE: Mapping[t.SizeName, Fraction] = {
+    "length": Fraction(9, 2),
+    "width": Fraction(9, 5),
+    "kind": Fraction(1),
+}
 
 
 class StateChecker:
@@ -137,7 +141,7 @@ class _Question:
                     return t.Number(defaults[name], dimension)
                 case t.Size(name, _):
                     self.numbers[state.symbol(leaf)] = TYPICAL_SIZE[name]
-                    return t.Number(TYPICAL_SIZE[name], t.SIZE_DIMENSIONS[name])
+                    return t.Number(TYPICAL_SIZE[name], t.SIZE_DIMENSIONS.get(name, (0, 0)))
                 case _:
                     return leaf
 
@@ -183,12 +187,14 @@ class _Question:
         return [self.switches[switch] for switch in self.session.core()]
 
 
-def _leaves(formulas: Iterable[Formula]) -> list[t.Parameter | t.Variable | t.Signal | t.Size]:
+def _leaves(formulas: Iterable[Formula]) -> list[t.Parameter | t.Variable | t.Signal | t.Size | t.Own]:
     found = {leaf for x in formulas for side in terms_of(x) for leaf in t.leaves(side)}
     return sorted((leaf for leaf in found if not isinstance(leaf, t.Number)), key=state.symbol)
 
 
-def _plausible(leaf: t.Parameter | t.Variable | t.Signal | t.Size, defaults: Mapping[str, Fraction]) -> str:
+def _plausible(
+    leaf: t.Parameter | t.Variable | t.Signal | t.Size | t.Own, defaults: Mapping[str, Fraction]
+) -> str:
     """What a reader expects of a signal, or of a parameter; only to look there first."""
     match leaf:
         case t.Signal(name, _):

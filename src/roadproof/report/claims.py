@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import groupby
 
-from roadproof.analysis.claims import Answered
+from roadproof.analysis.claims import Answered, Claims
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel
 from roadproof.spec.library import Specification
@@ -51,14 +51,20 @@ def table(answered: Sequence[Answered], specification: Specification) -> str:
     return "\n".join(rows)
 
 
-def details(answered: Answered, specification: Specification) -> str:
-    """The verdict with its evidence: certificate in numbers, drive or trace; what scenarios are called."""
+def details(answered: Answered, asked: Claims) -> str:
+    """The verdict with its evidence: certificate in numbers, drive or trace.
+
+    Also what scenarios are called, and what is supposed of own signals.
+    """
     task, settled = answered.task, answered.settled
     result = settled.result
     lines = [f"{verdict(answered)}  {statement(task.assuming, ' '.join(task.claim.split()))}"]
-    lines += [f"  {words}" for words in called_by(specification, [task.claim]).values() if words.name]
+    lines += [
+        f"  {words}" for words in called_by(asked.specification_of(task), [task.claim]).values() if words.name
+    ]
     within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
     lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
+    lines += [f"  {said}" for said in asked.supposed(task)]
     if result.reason:
         lines.append(f"  {result.reason}")
     if result.certificate is not None:

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from roadproof.logic.formula import conjunction
+from roadproof.logic.own import told_freedom
 from roadproof.searching.compare import Comparison
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
@@ -27,6 +29,8 @@ def as_text(comparison: Comparison, specification: Specification) -> str:
         *_called(comparison.second, specification.in_set(sets[1])),
         _SENTENCES[comparison.relation],
     ]
+    both = told_freedom(conjunction(comparison.first.formula, comparison.second.formula))
+    lines += [f"  {said}" for said in both]
     for name, direction in comparison.directions.items():
         shown = f"  {name}: {direction.verdict}"
         shown += " for all time, on every road" if direction.certificate else ""

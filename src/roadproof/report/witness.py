@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from roadproof.evidence.judged import Judged
 from roadproof.exporting.csv_table import csv_of
+from roadproof.logic.own import told_freedom
 from roadproof.report.drive import draw_drive
 from roadproof.searching.ask import Outcome
 from roadproof.spec.library import Library, Specification
@@ -25,6 +26,7 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
     shown += f" {outcome.seconds['all']:.2f} s"
     if outcome.scenario is not None:
         shown += _called(words_of(specification, outcome.scenario))
+    shown += "".join(f"\n  {said}" for said in told_freedom(outcome.query.formula))
     if outcome.reason:
         shown += f"\n  {outcome.reason}"
     if outcome.impossibility is not None:

@@ -4,7 +4,7 @@ What is no restriction, because one drive stands for others (``encode.along``), 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -24,7 +24,8 @@ class Limits:
     is read at the samples, of which the last stands for all later time. At the samples boxes are on
     ``road`` and, unless ``collisions``, apart. ``vehicles``: model by vehicle; ``lanes``: free lanes that
     stand for one lane only; ``values``: parameters (SI); ``reach``: how far apart vehicles start (m);
-    ``starts``: where fronts are at time 0 (m), None where it makes no difference.
+    ``starts``: where fronts are at time 0 (m), None where it makes no difference. ``own``: own signals,
+    which keep their values between samples, and their ranges.
     """
 
     road: str
@@ -36,6 +37,7 @@ class Limits:
     starts: Range | None
     collisions: bool
     shown: tuple[str, ...] = ()
+    own: Mapping[str, str] = field(default_factory=dict)
 
     def text(self, options: Sequence[str] = SEARCH_OPTIONS) -> str:
         """One sentence that names every limit, and the ``options`` that widen them."""
@@ -56,6 +58,9 @@ class Limits:
             parts.append(f"starts between s={low} and s={high}")
         if self.values:
             parts.append(f"parameters {_listed({k: f'{float(v):g}' for k, v in self.values.items()})}")
+        if self.own:
+            listed = ", ".join(f"{name} in {held}" for name, held in self.own.items())
+            parts.append(f"own signals constant between samples, {listed}")
         shown = f" ({', '.join(self.shown)})" if self.shown else ""
         hint = f"; widen with {', '.join(options)}" if options else ""
         return f"{', '.join(parts)}{hint}{shown}"
@@ -75,6 +80,7 @@ class Limits:
             "reach": str(self.reach),
             "starts": None if self.starts is None else [str(end) for end in self.starts],
             "shown": list(self.shown),
+            **({"signals": dict(self.own)} if self.own else {}),
         }
 
 

@@ -10,18 +10,22 @@ from typing import Literal, TypeAlias
 from roadproof.effort import Effort
 from roadproof.encode.along import starting_range
 from roadproof.encode.build import Assumptions
+from roadproof.encode.own import own_columns
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
 from roadproof.logic import formula as f
+from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.own import told_range
 from roadproof.logic.rewrite import parameters_of
 from roadproof.searching.grid import fitting_grid, make_grid
+from roadproof.searching.kinds import refuse_unknown, usual_model
 from roadproof.searching.limits import Limits
 from roadproof.spec.bind import bind, values_with
 from roadproof.spec.library import Library
 from roadproof.spec.query import Query
 from roadproof.world.drive import Drive
-from roadproof.world.models import load_road, load_vehicle
+from roadproof.world.models import load_road
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Range, Vehicle, with_limits
 
@@ -34,9 +38,10 @@ class Setting:
     """Where, with whom and for how long drives are looked for; a formula makes a ``Posed`` of it.
 
     ``road`` None is the usual road of the formula; ``lanes`` are free lanes that stand for one lane.
-    ``vehicles`` by name, "" for all others (a car where nothing is said), and ``limits`` other limits than
-    theirs, such as ``{"POV": {"a_lon.min": -2}}`` (``world.vehicle.with_limits``). ``values``: parameters
-    with another value than the declared one (SI). ``horizon``, ``dt``: seconds; ``dt`` None is the coarsest
+    ``vehicles`` by name, "" for all others (where nothing is said a car, or of what kind the formula asks
+    for), and ``limits`` other limits than theirs, such as ``{"POV": {"a_lon.min": -2}}``
+    (``world.vehicle.with_limits``). ``values``: parameters with another value than the declared one (SI).
+    ``horizon``, ``dt``: seconds; ``dt`` None is the coarsest
     that fits (``grid.fitting_grid``). ``reach``: how far apart
     vehicles may start (m). ``collisions``: boxes may overlap. ``natural``: whether natural drives are tried
     first.
@@ -93,7 +98,21 @@ class Posed:
             self.starts,
             self.assumptions.collisions,
             tuple(sorted(set(shown))),
+            self._own_ranges(),
         )
+
+    def _own_ranges(self) -> dict[str, str]:
+        """Between which values own signals are looked for, whatever lanes are chosen."""
+        found: dict[t.Own, list[Range]] = {}
+        for lanes in self.lanes:
+            for own in own_columns(self.bound(lanes)):
+                found.setdefault(own.signal, []).append(own.range)
+        return {
+            signal.told: "false or true"
+            if signal.truth
+            else told_range(max(x for x, _ in ranges), min(x for _, x in ranges), signal.dimension)
+            for signal, ranges in found.items()
+        }
 
 
 @dataclass(frozen=True)
@@ -131,8 +150,12 @@ def pose(library: Library, query: Query, setting: Setting) -> Posed:
             raise UsageError(f"vehicle {name}: the formula speaks of {known or 'no vehicle'}")
     if not query.vehicles:
         raise UsageError("the formula speaks of no vehicle, so no drive can show anything about it")
-    usual = setting.vehicles.get("") or load_vehicle("car")
-    models = {name: setting.vehicles.get(name, usual) for name in query.vehicles}
+    models = {
+        name: setting.vehicles.get(name) or setting.vehicles.get("") or usual_model(query.formula, name)
+        for name in query.vehicles
+    }
+    for name, model in models.items():
+        refuse_unknown(query.formula, name, model)
     vehicles = {name: with_limits(model, setting.limits.get(name, {})) for name, model in models.items()}
     values = values_with(library, setting.values)
     lanes = assignments(query, road, setting.lanes)

@@ -8,8 +8,9 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from roadproof.encode.motion import Layout
+from roadproof.logic.own import HALF
 from roadproof.signals import SignalName
-from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.vehicle import Vehicle
 
 
@@ -42,8 +43,29 @@ def round_drive(
             along[0],
             across[0],
             _pieces(along, across, layout.grid.dt),
+            vehicles[name].kind,
         )
-    return Drive(motions)
+    return Drive(motions, _courses(layout, values, grain))
+
+
+def _courses(
+    layout: Layout, values: Sequence[float | Fraction], grain: Fraction | None
+) -> dict[tuple[str, str], Course]:
+    """Own signals, each constant from a sample to the next; equal neighbours are one piece."""
+    made: dict[tuple[str, str], Course] = {}
+    for own in layout.own:
+        name, vehicle = own.signal.name, own.signal.vehicle
+        course: list[tuple[Fraction, Fraction]] = []
+        for step in range(layout.grid.steps + 1):
+            value = Fraction(values[layout.own_column(vehicle, name, step)])
+            if own.signal.truth:
+                value = Fraction(value > HALF)
+            elif grain is not None:
+                value = min(max(round(value / grain) * grain, own.range[0]), own.range[1])
+            if not course or course[-1][1] != value:
+                course.append((step * layout.grid.dt, value))
+        made[name, vehicle] = tuple(course)
+    return made
 
 
 def _pieces(along: Sequence[Fraction], across: Sequence[Fraction], dt: Fraction) -> tuple[Piece, ...]:

@@ -9,6 +9,7 @@ from itertools import combinations, product
 from roadproof.encode.build import Assumptions, Margin, encode_formula, frame
 from roadproof.encode.circuit import Circuit
 from roadproof.encode.motion import Layout
+from roadproof.encode.own import own_columns
 from roadproof.encode.problem import ColumnInequality, Problem
 from roadproof.encode.unroll import Grid
 from roadproof.errors import UsageError
@@ -168,7 +169,7 @@ class _Search:
 
     def _problem(self, formula: Formula, grid: Grid, assumptions: Assumptions) -> tuple[Problem, Layout]:
         vehicles = self.question.vehicles
-        layout = Layout(tuple(vehicles), grid)
+        layout = Layout(tuple(vehicles), grid, own_columns(formula))
         key = (formula, grid, assumptions.margin, assumptions.lasting)
         if key not in self.encoded:
             self.encoded[key] = encode_formula(formula, vehicles, layout, assumptions)

@@ -5,8 +5,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from roadproof.encode.build import NONE, ground
 from roadproof.encode.circuit import evaluate, implicant
 from roadproof.encode.motion import Layout
+from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Polynomial
-from roadproof.encode.problem import ColumnInequality, Problem
+from roadproof.encode.problem import Column, ColumnInequality, Problem
 from roadproof.encode.unroll import unroll_at
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.searching.question import Objective
@@ -35,7 +36,7 @@ def reshape(
     """
     choices = implicant(problem.circuit, lambda inequality: value_of(inequality, found))
     squares = list(comfort(layout, road, vehicles, found))
-    widths = [_trust(column.of.signal) for column in problem.columns]
+    widths = [_trust_column(column) for column in problem.columns]
     best = tuple(found)
     for _ in range(rounds):
         box = narrow(box_of(problem), best, widths)
@@ -53,6 +54,12 @@ def reshape(
             break
         best = better[: len(problem.columns)]
     return best
+
+
+def _trust_column(column: Column) -> float:
+    """How far a column may move in one round; an own signal over its whole range."""
+    signal = column.of.signal
+    return float(column.high - column.low) if isinstance(signal, OwnName) else _trust(signal)
 
 
 def _trust(signal: SignalName) -> float:

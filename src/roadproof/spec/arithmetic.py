@@ -7,7 +7,8 @@ from roadproof.errors import Position, TextError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.syntax import Binding, Definition, ParameterDeclaration
+from roadproof.logic.own import own_signal, own_truth
+from roadproof.logic.syntax import Binding, Definition, ParameterDeclaration, SignalDeclaration
 from roadproof.spec.quantity import SECONDS, Quantity, product_dimension, same_dimension, unit_name
 from roadproof.units import UNITS
 
@@ -30,6 +31,25 @@ def of_vehicle(name: str, vehicle: str) -> Quantity:
         if name == signal:
             return Quantity(t.Signal(signal, vehicle), dimension)
     raise AssertionError(name)
+
+
+def own(signal: SignalDeclaration, vehicle: str) -> Formula | Quantity:
+    """An own signal that is not derived: a number, or that it is true."""
+    made = own_signal(signal, vehicle)
+    return own_truth(made) if made.truth else Quantity(made, made.dimension)
+
+
+def check_derived(signal: SignalDeclaration, made: Formula | Quantity, at: Position) -> None:
+    """What an own signal is derived by has to be what it is declared as."""
+    if isinstance(made, Quantity) != (signal.sort != "bool"):
+        found = "a number" if isinstance(made, Quantity) else "a formula"
+        raise TextError(f"signal '{signal.name}' is declared {signal.sort}, but derived by {found}", at)
+    if isinstance(made, Quantity) and made.dimension not in (None, UNITS[signal.sort][1]):
+        raise TextError(
+            f"signal '{signal.name}' is declared in {signal.sort}, but derived in "
+            f"{unit_name(made.dimension)}",
+            at,
+        )
 
 
 def argument(given: Quantity, binding: Binding, definition: Definition, at: Position) -> Quantity:
@@ -158,7 +178,7 @@ def bound(quantity: Quantity, parameters: Parameters, at: Position) -> t.Term:
     value = t.constant_value(quantity.term)
     if (value is None or quantity.dimension not in (None, (0, 0))) and quantity.dimension != SECONDS:
         raise TextError(f"an interval bound is a time, but this is in {unit_name(quantity.dimension)}", at)
-    if any(isinstance(leaf, t.Signal) for leaf in t.leaves(quantity.term)):
+    if any(isinstance(leaf, t.Varying) for leaf in t.leaves(quantity.term)):
         raise TextError("an interval bound may not depend on a vehicle's motion", at)
     if value is None and not _is_positive(quantity.term, parameters, or_zero=True):
         raise TextError(

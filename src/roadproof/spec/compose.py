@@ -174,6 +174,10 @@ def _with_names(expression: Expression, names: Mapping[str, str]) -> Expression:
             return syntax.Call(name, tuple(_with_names(a, names) for a in arguments), at)
         case Prefix(op, body, at):
             return Prefix(op, _with_names(body, names), at)
+        case Binary(op, left, syntax.Name() as kind, at) if syntax.is_kind(left):
+            return Binary(op, _with_names(left, names), kind, at)
+        case Binary(op, syntax.Name() as kind, right, at) if syntax.is_kind(right):
+            return Binary(op, kind, _with_names(right, names), at)
         case Binary(op, left, right, at):
             return Binary(op, _with_names(left, names), _with_names(right, names), at)
         case Chain(op, parts, at):

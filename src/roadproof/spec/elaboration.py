@@ -9,11 +9,12 @@ from fractions import Fraction
 
 from roadproof.errors import Position, TextError
 from roadproof.logic import formula as f
-from roadproof.logic import syntax
+from roadproof.logic import own, syntax
 from roadproof.logic import terms as t
 from roadproof.logic.foreign import instead_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.syntax import Bounds, Definition, Expression
+from roadproof.logic.syntax import Bounds, Definition, Expression, SignalDeclaration
+from roadproof.signals import KINDS
 from roadproof.spec import arithmetic, scopes
 from roadproof.spec.library import BUILT_IN, Specification, source_of, unknown
 from roadproof.spec.quantity import Quantity
@@ -48,7 +49,10 @@ class Elaborator:
         return None if self.stack else self.free
 
     def given(self, claim: syntax.Claim) -> Scope:
-        return scopes.scope_of(claim.given, self.specification.library.parameters, self.free)
+        library = self.specification.library
+        for binding in claim.given:
+            scopes.refuse_signal(binding.name, library.signals, binding.at)
+        return scopes.scope_of(claim.given, library.parameters, self.free)
 
     def reference(self, expression: Expression | Ref, sort: str, scope: Scope) -> Ref:
         return scopes.reference(expression, sort, scope, self._open)
@@ -62,11 +66,25 @@ class Elaborator:
         if name in BUILT_IN:
             return self._built_in(call, name, scope)
         definition = self.specification.definitions.get(name)
+        if definition is None and name in self.specification.library.signals:
+            return self._own(self.specification.library.signals[name], call, scope)
         if definition is None:
-            everything = [*self.specification.definitions, *BUILT_IN]
+            everything = [*self.specification.definitions, *self.specification.library.signals, *BUILT_IN]
             raise TextError(unknown("definition", name, everything), call.at, instead_of(name))
         bound = self._bind(definition, call, scope)
         return self.apply(definition, bound, call.at)
+
+    def _own(self, signal: SignalDeclaration, call: syntax.Call, scope: Scope) -> Formula | Quantity:
+        wanted = 1 if signal.vehicle else 0
+        if len(call.arguments) != wanted:
+            raise TextError(
+                f"'{signal.name}' takes {wanted} argument{'' if wanted == 1 else 's'} "
+                f"but got {len(call.arguments)}",
+                call.at,
+                f"It is {signal.name}{f'({signal.vehicle}: vehicle)' if wanted else ''}: {signal.sort}.",
+            )
+        vehicle = self.reference(call.arguments[0], "vehicle", scope).name if wanted else ""
+        return arithmetic.own(signal, vehicle)
 
     def _in_other_set(self, call: syntax.Call, name: str, qualifier: str, scope: Scope) -> Formula | Quantity:
         if qualifier not in self.specification.library.sets:
@@ -100,7 +118,10 @@ class Elaborator:
         try:
             for binding in definition.parameters:
                 scopes.check_sort(binding)
-            return self.expression(definition.body, scope)
+            made = self.expression(definition.body, scope)
+            if name in self.specification.library.signals:
+                arithmetic.check_derived(self.specification.library.signals[name], made, definition.body.at)
+            return made
         except TextError as error:
             source = source_of(self.specification.library, definition)
             raise error.locate(source.name, source.text) from None
@@ -198,10 +219,14 @@ class Elaborator:
         if declared is not None:
             dimension = UNITS[declared.unit][1]
             return Quantity(t.Parameter(name, dimension), dimension)
-        if name in self.specification.definitions:
+        signal = self.specification.library.signals.get(name)
+        if signal is not None and not signal.vehicle:
+            return self.call(syntax.Call(name, (), at), scope)
+        if signal is not None or name in self.specification.definitions:
             raise TextError(f"'{name}' needs its arguments", at, f"Write {name}(…).")
         numbers = [n for n, v in scope.items() if isinstance(v, Quantity)]
-        known = [*self.specification.library.parameters, *self.specification.definitions, *numbers]
+        library = self.specification.library
+        known = [*library.parameters, *library.signals, *self.specification.definitions, *numbers]
         raise TextError(unknown("parameter or definition", name, known), at, instead_of(name))
 
     def _binary(self, expression: syntax.Binary, scope: Scope) -> Formula | Quantity:
@@ -209,10 +234,44 @@ class Elaborator:
         if op == "->" or op == "<->":
             join = f.implication if op == "->" else f.equivalence
             return join(self.formula(expression.left, scope), self.formula(expression.right, scope))
+        if op in arithmetic.COMPARISONS and (
+            syntax.is_kind(expression.left) or syntax.is_kind(expression.right)
+        ):
+            return self._of_kind(expression, scope)
         left, right = self.term(expression.left, scope), self.term(expression.right, scope)
         if op in arithmetic.COMPARISONS:
             return arithmetic.compare(op, left, right, at)
         return arithmetic.combine(op, left, right, self.specification.library.parameters, at)
+
+    def _of_kind(self, expression: syntax.Binary, scope: Scope) -> Formula:
+        """``kind(a) = truck``, or the kinds of two vehicles compared; < and >= go by the order of kinds."""
+        left, right, op = expression.left, expression.right, expression.op
+        if not syntax.is_kind(left):
+            left, right = right, left
+        vehicle = self._whose_kind(left, scope)
+        if syntax.is_kind(right) and op in ("=", "!="):
+            other = self._whose_kind(right, scope)
+            alike = (f.And((own.is_kind(vehicle, k), own.is_kind(other, k))) for k in KINDS)
+            same = f.disjunction(*alike)
+            return same if op == "=" else f.negation(same)
+        kind = next((k for k in KINDS if isinstance(right, syntax.Name) and right.name == k), None)
+        if kind is None:
+            told = right.name if isinstance(right, syntax.Name | syntax.Call) else "this"
+            raise TextError(
+                f"kind({vehicle}) is compared with '{told}', which is no kind of vehicle",
+                right.at,
+                f"Kinds are {', '.join(KINDS)}: write kind({vehicle}) = {KINDS[1]}.",
+            )
+        if op in ("<", ">=") and kind != KINDS[0] and left is expression.left:
+            return own.from_kind(vehicle, "<" if op == "<" else ">=", kind)
+        if op not in ("=", "!="):
+            raise TextError("kinds are compared with = and != only", expression.at)
+        return own.is_kind(vehicle, kind) if op == "=" else own.is_no_kind(vehicle, kind)
+
+    def _whose_kind(self, call: Expression, scope: Scope) -> str:
+        if not isinstance(call, syntax.Call) or len(call.arguments) != 1:
+            raise TextError("'kind' takes 1 argument, a vehicle", call.at)
+        return self.reference(call.arguments[0], "vehicle", scope).name
 
     def interval(self, bounds: Bounds | None, scope: Scope) -> f.Interval:
         if bounds is None:
@@ -229,6 +288,7 @@ class Elaborator:
 
     def _quantified(self, expression: syntax.Quantified, scope: Scope) -> Formula:
         variable = expression.variable
+        scopes.refuse_signal(variable, self.specification.library.signals, expression.at)
         vehicles = scopes.vehicles_in(expression.domain, scope, self._open)
         if vehicles is not None:
             made = [self.formula(expression.body, {**scope, variable: v}) for v in vehicles]
@@ -250,6 +310,8 @@ class Elaborator:
             if not call.arguments:
                 raise TextError(f"'{name}' needs at least one argument", call.at)
             return arithmetic.extremum(name, [self.term(a, scope) for a in call.arguments], call.at)
+        if name == "kind":
+            raise TextError("a kind is no number", call.at, f"Compare it: kind(SV) = {KINDS[1]}.")
         wanted = 2 if name == "occ" else 1
         if count != wanted:
             raise TextError(

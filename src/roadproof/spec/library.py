@@ -18,8 +18,10 @@ from typing import assert_never
 from roadproof.errors import InputError, Position, TextError
 from roadproof.files import read_limited
 from roadproof.logic import syntax
+from roadproof.logic.own import freedom_of, own_signal
 from roadproof.logic.parse import parse_bundled, parse_library
 from roadproof.logic.syntax import (
+    Binding,
     Definition,
     EachBlock,
     Expression,
@@ -27,11 +29,12 @@ from roadproof.logic.syntax import (
     OptionDeclaration,
     ParameterDeclaration,
     SetBlock,
+    SignalDeclaration,
     Statement,
     TitleDeclaration,
     WhenBlock,
 )
-from roadproof.signals import SIGNALS, SIZES
+from roadproof.signals import FIXED, SIGNALS
 
 LARGEST_FILE = 1_000_000
 _MENTION = re.compile(r"\[(\w+)\]")
@@ -53,7 +56,7 @@ class Library:
 
     ``lanes``: by scenario, whose lane L is where that is not SV's (semantics §5). ``titles``: by scenario,
     what it is called, and where that is said; no reading depends on that. ``files``: the users' texts, in
-    order.
+    order. ``signals``: own signals; one that is derived is a definition, too.
     """
 
     parameters: Mapping[str, ParameterDeclaration]
@@ -65,6 +68,7 @@ class Library:
     lanes: Mapping[int, LaneDeclaration]
     titles: Mapping[int, tuple[TitleDeclaration, Source]] = field(default_factory=dict)
     files: tuple[Source, ...] = ()
+    signals: Mapping[str, SignalDeclaration] = field(default_factory=dict)
 
     @property
     def bounds(self) -> dict[str, str]:
@@ -72,9 +76,17 @@ class Library:
         return {name: parameter.bound for name, parameter in self.parameters.items()}
 
     @cached_property
+    def freedom(self) -> dict[str, str]:
+        """What an answer supposes of each own signal that is not derived: ``unconstrained: …``."""
+        return {x.name: freedom_of(own_signal(x, "")) for x in self.signals.values() if x.body is None}
+
+    @cached_property
     def fingerprint(self) -> str:
         """A short text that changes with all that is declared; with places and titles it does not."""
-        parts = [x.name for x in fields(self) if x.name not in ("sources", "titles", "files")]
+        left_out = (
+            ("sources", "titles", "files") if self.signals else ("sources", "titles", "files", "signals")
+        )
+        parts = [x.name for x in fields(self) if x.name not in left_out]
         declared = [repr(sorted(getattr(self, part).items())) for part in parts]
         return hashlib.sha256("\0".join(declared).encode()).hexdigest()[:16]
 
@@ -199,6 +211,7 @@ class _Building:
         self.sources = dict(below.sources) if below else {}
         self.lanes = dict(below.lanes) if below else {}
         self.titles = dict(below.titles) if below else {}
+        self.signals = dict(below.signals) if below else {}
 
     def library(self) -> Library:
         return Library(
@@ -210,6 +223,7 @@ class _Building:
             self.sources,
             self.lanes,
             self.titles,
+            signals=self.signals,
         )
 
     def add(self, statements: Iterable[Statement], source: Source) -> None:
@@ -226,6 +240,8 @@ class _Building:
                             statement.at,
                             "Give a value within the bound, or another bound.",
                         )
+                    if statement.name in self.signals:
+                        raise TextError(f"'{statement.name}' is a signal already", statement.at)
                     self.parameters[statement.name] = statement
                     self.sources[_key(statement)] = source
                 case OptionDeclaration():
@@ -233,6 +249,8 @@ class _Building:
                     self.options[statement.name] = statement
                 case Definition():
                     self._define(statement, fresh, source)
+                case SignalDeclaration():
+                    self._declare(statement, fresh, source)
                 case EachBlock():
                     for definition in _instances(statement):
                         self._define(definition, fresh, source)
@@ -255,8 +273,33 @@ class _Building:
         _once(fresh, "definition", definition.name, definition.at)
         if definition.name in BUILT_IN:
             raise TextError(f"'{definition.name}' is built in and cannot be defined", definition.at)
+        if definition.name in self.signals:
+            raise TextError(
+                f"'{definition.name}' is a signal",
+                definition.at,
+                "Say what it is with signal … derived by ….",
+            )
         self.definitions[definition.name] = definition
         self.sources[_key(definition)] = source
+
+    def _declare(self, signal: SignalDeclaration, fresh: set[tuple[str, str]], source: Source) -> None:
+        """An own signal; one that is derived is a definition whose body has to be of its unit."""
+        name, at = signal.name, signal.at
+        _once(fresh, "signal", name, at)
+        if name in BUILT_IN:
+            raise TextError(f"'{name}' is built in and cannot be declared", at)
+        if ROLE.fullmatch(name) or name in NOT_A_COLUMN:
+            raise TextError(f"'{name}' means something else already", at, "Give the signal another name.")
+        known = self.definitions.keys() - self.signals.keys()
+        for what, others in (("definition", known), ("parameter", self.parameters)):
+            if name in others:
+                raise TextError(f"'{name}' is a {what} already", at, "Give the signal another name.")
+        self.definitions.pop(name, None)
+        self.signals[name] = signal
+        self.sources[_key(signal)] = source
+        if signal.body is not None:
+            bindings = (Binding(signal.vehicle, "vehicle", at),) if signal.vehicle else ()
+            self.definitions[name] = Definition(name, bindings, signal.doc, signal.body, at)
 
     def _override(self, block: SetBlock | WhenBlock, fresh: set[tuple[str, str]], source: Source) -> None:
         inside: set[tuple[str, str]] = set()
@@ -285,8 +328,11 @@ class _Building:
 
 # Names that mean something without a definition; spec.elaborate gives their meaning.
 BUILT_IN = frozenset(
-    {*SIGNALS, *SIZES, "occ"} | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
+    {*SIGNALS, *FIXED, "occ"} | {"max", "min", "abs", "inverse", "lanes", "lanelets", "zone", "adjacentLanes"}
 )
+# Names of vehicles and lanes that need no declaration, and columns that recordings have beside signals.
+ROLE = re.compile(r"SV|POV[0-9]?|L[0-9]?")
+NOT_A_COLUMN = frozenset({"time", "vehicle"})
 
 
 def is_within(bound: str, value: Fraction) -> bool:
@@ -294,11 +340,11 @@ def is_within(bound: str, value: Fraction) -> bool:
     return value > 0 if bound == ">" else value >= 0 if bound == ">=" else True
 
 
-def _key(declared: Definition | ParameterDeclaration) -> str:
+def _key(declared: Definition | ParameterDeclaration | SignalDeclaration) -> str:
     return f"{declared.name}:{declared.at.line}:{declared.at.column}"
 
 
-def source_of(library: Library, declared: Definition | ParameterDeclaration) -> Source:
+def source_of(library: Library, declared: Definition | ParameterDeclaration | SignalDeclaration) -> Source:
     """Where a definition or a parameter was written."""
     return library.sources.get(_key(declared), Source("", ""))
 

@@ -230,8 +230,8 @@ def _term(specification: Specification, query: Query, written: str) -> Quantity:
         made = walk.term(_parsed(written), walk.given(query.claim))
     except TextError as error:
         raise error.locate(SOURCE, written) from None
-    moving = {x.vehicle for x in t.leaves(made.term) if isinstance(x, t.Signal | t.Size)}
-    _refuse(moving - {*query.vehicles}, written)
+    moving = {x.vehicle for x in t.leaves(made.term) if isinstance(x, t.Signal | t.Size | t.Own)}
+    _refuse(moving - {*query.vehicles, ""}, written)
     return made
 
 

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from roadproof.errors import TextError
+from roadproof.errors import Position, TextError
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
@@ -15,7 +15,7 @@ from roadproof.spec.quantity import Quantity
 from roadproof.units import UNITS
 
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")
-_FREE = {"vehicle": re.compile(r"SV|POV[0-9]?"), "lane": re.compile(r"L[0-9]?")}
+_FREE = {"vehicle": re.compile(r"SV|POV[0-9]?"), "lane": re.compile(r"L[0-9]?")}  # library.ROLE
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,14 @@ Free: TypeAlias = Mapping[str, set[str]]
 def check_sort(binding: Binding) -> None:
     if binding.sort not in SORTS and binding.sort not in UNITS:
         raise TextError(unknown("sort or unit", binding.sort, (*SORTS, *UNITS)), binding.at)
+
+
+def refuse_signal(name: str, signals: Collection[str], at: Position) -> None:
+    """A name that is declared in a claim may not hide a signal."""
+    if name in signals:
+        raise TextError(
+            f"'{name}' is a signal of the specification", at, "Give what is declared another name."
+        )
 
 
 def value_of(binding: Binding) -> Value:

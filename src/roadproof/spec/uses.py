@@ -18,12 +18,12 @@ def definitions_used(specification: Specification, expression: Expression) -> tu
 
     def visit(home: Specification, current: Expression) -> None:
         for call in syntax.walk(current):
-            if not isinstance(call, syntax.Call):
+            if not isinstance(call, syntax.Call | syntax.Name):
                 continue
             name, _, qualifier = call.name.partition("@")
             there = home.in_set(qualifier) if qualifier else home
             definition = there.definitions.get(name)
-            if definition is None:
+            if definition is None or (isinstance(call, syntax.Name) and definition.parameters):
                 continue
             ours = definition is specification.definitions.get(name)
             shown = name if ours else f"{name}@{there.set_name}"

@@ -4,8 +4,19 @@ At a knot the acceleration is that of the piece which begins there; the last pie
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import TypeAlias
+
+from roadproof.signals import Kind
+
+# Values that are constant from one start to the next.
+Course: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
+
+
+def value_at(course: Course, time: Fraction) -> Fraction:
+    """What an own signal is at ``time`` >= 0."""
+    return max((start, value) for start, value in course if start <= time)[1]
 
 
 @dataclass(frozen=True)
@@ -19,7 +30,10 @@ class Piece:
 
 @dataclass(frozen=True)
 class Motion:
-    """One vehicle: its box in m, its state at time 0 (m, m/s; front-left corner), and its pieces."""
+    """One vehicle: its box in m, its state at time 0 (m, m/s; front-left corner), and its pieces.
+
+    ``kind`` None: nothing says what it is.
+    """
 
     length: Fraction
     width: Fraction
@@ -28,6 +42,7 @@ class Motion:
     v_lon: Fraction
     v_lat: Fraction
     pieces: tuple[Piece, ...]
+    kind: Kind | None = None
 
     def __post_init__(self) -> None:
         if self.length <= 0 or self.width <= 0:
@@ -41,6 +56,19 @@ class Motion:
 
 @dataclass(frozen=True)
 class Drive:
-    """The motions of all vehicles by name, on one clock."""
+    """The motions of all vehicles by name, on one clock.
+
+    ``own``: the courses of own signals by name and vehicle ('' for none), each a value from every start on
+    (SI; 0 and 1 are false and true), the first at 0, the last for ever.
+    """
 
     vehicles: Mapping[str, Motion]
+    own: Mapping[tuple[str, str], Course] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for (name, vehicle), course in self.own.items():
+            starts = [start for start, _ in course]
+            if not starts or starts[0] != 0 or starts != sorted(set(starts)):
+                raise ValueError(f"the values of {name} {vehicle}: their times must ascend from 0")
+            if vehicle and vehicle not in self.vehicles:
+                raise ValueError(f"{name} is said of {vehicle}, which the drive does not have")

@@ -15,7 +15,7 @@ from typing import Any, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.shipped import shipped
-from roadproof.signals import LIMITED
+from roadproof.signals import KINDS, LIMITED
 from roadproof.world.opendrive import read_lanelets
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 from roadproof.world.vehicle import Range, Vehicle
@@ -69,8 +69,11 @@ def _road(path: Path, content: Mapping[str, Any]) -> Road:
 def load_vehicle(name_or_path: str | Path) -> Vehicle:
     """A bundled vehicle by name, or a user's by path. Raises ``InputError``."""
     path, content = _read("vehicles", name_or_path)
-    fields = [field.name for field in dataclasses.fields(Vehicle) if field.name != "name"]
-    _only(content, {*fields, "name"}, str(path))
+    fields = [field.name for field in dataclasses.fields(Vehicle) if field.name not in ("name", "kind")]
+    _only(content, {*fields, "name", "kind"}, str(path))
+    kind = content.get("kind")
+    if kind is not None and kind not in KINDS:
+        raise InputError(f"{path}: kind={kind!r}, but it must be one of {', '.join(KINDS)}")
     for field in fields:
         if field not in content:
             raise InputError(f"{path}: '{field}' is missing; a vehicle has {', '.join(fields)}")
@@ -95,7 +98,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
             raise InputError(
                 f"{path}: {field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on"
             )
-    return Vehicle(str(content.get("name", path.stem)), **one, **two)  # type: ignore[arg-type]
+    return Vehicle(str(content.get("name", path.stem)), **one, **two, kind=kind)  # type: ignore[arg-type]
 
 
 def read_toml(path: Path) -> Mapping[str, Any]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.errors import UsageError
-from roadproof.signals import LIMITED, SIGNALS
+from roadproof.signals import LIMITED, SIGNALS, Kind
 
 Range = tuple[Fraction, Fraction]
 
@@ -17,7 +17,7 @@ class Vehicle:
     ``lateral_share``: |v_lat| is at most this share of v_lon, which keeps the heading below
     arctan(share); ``cruise`` is the range of speeds that a natural drive starts with, and
     ``jump_lon`` and ``jump_lat`` bound how far the acceleration of a natural drive
-    changes from one piece to the next.
+    changes from one piece to the next. ``kind`` None: the model does not say.
     """
 
     name: str
@@ -31,6 +31,7 @@ class Vehicle:
     cruise: Range
     jump_lon: Fraction
     jump_lat: Fraction
+    kind: Kind | None = None
 
 
 # Ranges whose ends can be moved, and their units.

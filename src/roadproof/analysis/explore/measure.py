@@ -10,7 +10,7 @@ from roadproof.logic import syntax
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text as shown
 from roadproof.logic.syntax import Binding, Expression
-from roadproof.logic.terms import Dimension, Inverse, Signal, Term, leaves
+from roadproof.logic.terms import Dimension, Inverse, Term, Varying, leaves
 from roadproof.searching.ask import Search
 from roadproof.spec.compose import both, eventually
 from roadproof.spec.elaborate import read_claim, read_term
@@ -62,7 +62,7 @@ def read_measure(
     term, dimension = read_term(specification, head + text, f"--{sense}")
     if isinstance(term, Inverse):
         raise UsageError(f"--{sense} '{text}': 1/x may be infinite; ask for the other extreme of x")
-    if not any(isinstance(leaf, Signal) for leaf in leaves(term)):
+    if not any(isinstance(leaf, Varying) for leaf in leaves(term)):
         raise UsageError(f"--{sense} '{text}': no drive changes this; name a signal, such as v_lon(SV)")
     moment = read_claim(specification, head + when, "--when") if when else None
     return Measure(sense, text, parse_claim(head + text).body, term, dimension, when, moment)

@@ -44,6 +44,10 @@ def range_of(term: Term, ranges: Ranges) -> Range:
             return value, value
         case t.Signal(name, vehicle) | t.Size(name, vehicle):
             return ranges[vehicle, name]
+        case t.Own() as own:
+            if own.low is None or own.high is None:
+                raise ValueError("no finite value is known")
+            return own.low, own.high
         case t.Sum(terms):
             parts = [range_of(x, ranges) for x in terms]
             return sum((low for low, _ in parts), Fraction(0)), sum((high for _, high in parts), Fraction(0))

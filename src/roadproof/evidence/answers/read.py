@@ -47,6 +47,9 @@ def read_index(data: Fields, library: Library, find_label: FindLabel) -> list[En
 def faults_of(data: Fields, library: Library, formulas: Mapping[str, str]) -> Iterator[str]:
     """What an index says as a whole and its entries do not show; ``formulas``: of its drives, by file."""
     background = Background(data, library, data.where)
+    told = dict(data.mapping("signals")) if data.has("signals") else {}
+    if library_of(data) == library.fingerprint and told != library.freedom:
+        yield f"{data.where}: what it says of own signals is not what they are declared"
     yield from readers()[data.text("schema")].faults(data, background, formulas)
 
 
