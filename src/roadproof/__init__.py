@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from roadproof.api.checking import check as check
     from roadproof.api.classifying import classify as classify
     from roadproof.api.comparing import compare as compare
+    from roadproof.api.converting import convert as convert
     from roadproof.api.covering import coverage as coverage
     from roadproof.api.definitions import Definitions as Definitions
     from roadproof.api.definitions import load as load
@@ -88,6 +89,7 @@ _HOMES = {
     "trace": "api.traces",
     "evaluate": "api.recordings",
     "roads": "api.roads",
+    "convert": "api.converting",
     "simulate": "api.simulating",
     "export": "api.exporting",
     "check": "api.checking",

@@ -30,6 +30,8 @@ from roadproof.world.models import load_recorded_road
 
 HEADER = ("time", "vehicle", *RECORDED, *SIZES)
 ROAD_ENDING = "_road.toml"
+CONVERTED = ".samples.parquet"
+"""How the files of recordings that were converted end; they are none of these."""
 LABEL = "vehicle category"
 """What a file calls a vehicle, where ``kind`` puts several together; no file of samples has it."""
 DIRECTION = 1
@@ -199,7 +201,8 @@ def _find_csv(path: Path) -> dict[str, Files]:
 
 
 def _find_parquet(path: Path) -> dict[str, Files]:
-    return {x.stem: (*beside(x, ROAD_ENDING), x) for x in with_suffix(path, ".parquet")}
+    found = (x for x in with_suffix(path, ".parquet") if not x.name.endswith(CONVERTED))
+    return {x.stem: (*beside(x, ROAD_ENDING), x) for x in found}
 
 
 def _read(files: Files) -> Recording:

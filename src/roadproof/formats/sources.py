@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.formats import commonroad, exid, highd, openscenario, samples
+from roadproof.formats import commonroad, converted, exid, highd, openscenario, samples
 from roadproof.formats.source import Format, RecordingSource
 
 FORMATS: tuple[Format, ...] = (
@@ -14,6 +14,7 @@ FORMATS: tuple[Format, ...] = (
     openscenario.FORMAT,
     samples.CSV,
     samples.PARQUET,
+    converted.FORMAT,
 )
 
 

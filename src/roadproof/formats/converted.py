@@ -1,0 +1,216 @@
+"""Recordings as they were understood, in Parquet: read and checked once, the same in every later run.
+
+NAME.recording.json says what is said once: lanes, vehicles, notes, the version that read the recording, and a
+digest of NAME.samples.parquet, which has a row a sample. Another version may understand the files that they
+were made of otherwise, and refuses them.
+"""
+
+import hashlib
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import fields
+from fractions import Fraction
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.files import read_limited, write_json, write_whole
+from roadproof.formats.recording import Lane, Recording, Slack, offsets
+from roadproof.formats.samples import CONVERTED
+from roadproof.formats.source import Files, Format, RecordingSource, with_suffix
+from roadproof.formats.table import Column, polars_module
+from roadproof.signals import RECORDED
+from roadproof.world.road import Lanelet
+
+SCHEMA = "roadproof/recording/1"
+HEAD, SAMPLES = ".recording.json", CONVERTED
+_LARGEST_HEAD = 200_000_000  # bytes; two thousand vehicles take 0.3 MB
+_OF_VEHICLES: Mapping[str, type[Any]] = {
+    "vehicle_id": np.int64,
+    "direction": np.int64,
+    "kind": np.str_,
+    "length": np.float64,
+    "width": np.float64,
+    "first_frame": np.int64,
+    "label": np.str_,
+}
+_OF_SAMPLES: Mapping[str, type[Any]] = {
+    **dict.fromkeys(RECORDED, np.float64),
+    "occupancy": np.uint32,
+    "lane": np.int64,
+    "zones": np.uint32,
+    "moments": np.int64,
+}
+_SLACK = tuple(x.name for x in fields(Slack))
+
+
+def write_converted(source: RecordingSource, folder: Path) -> Recording:
+    """Read a recording and write it, each file whole; what is there then is read again and compared.
+
+    Raises ``InputError`` where it cannot be read or written, ``RuntimeError`` where it does not come back.
+    """
+    digests = dict(zip((path.name for path in source.files), source.digests(), strict=True))
+    recording = source.read()
+    samples = io.BytesIO()
+    pl = polars_module()
+    frame = pl.DataFrame({name: pl.Series(name, values) for name, values in _samples(recording).items()})
+    frame.write_parquet(samples, compression="zstd", statistics=False)
+    content = samples.getvalue()
+    head, table = folder / f"{source.name}{HEAD}", folder / f"{source.name}{SAMPLES}"
+    head.unlink(missing_ok=True)  # it is there when the samples are
+    write_whole(table, content)
+    said = {
+        "schema": SCHEMA,
+        "roadproof": version("roadproof"),
+        "made_of": {"format": source.format.name, "sha256": digests},
+        "samples": {"rows": len(recording.s), "sha256": hashlib.sha256(content).hexdigest()},
+        **_said(recording),
+    }
+    write_json(head, said)
+    if not same_recording(read_converted(head), recording):
+        raise RuntimeError(f"recording {source.name} does not come back from {head}")
+    return recording
+
+
+def read_converted(head: Path) -> Recording:
+    """The recording of NAME.recording.json. Raises ``InputError``."""
+    table = head.with_name(f"{head.name.removesuffix(HEAD)}{SAMPLES}")
+    try:
+        said = json.loads(read_limited(head, _LARGEST_HEAD, "it is none of ours"))
+        if said["schema"] != SCHEMA:
+            raise InputError(f"{head}: schema={said['schema']!r}, but must be {SCHEMA!r}")
+        if said["roadproof"] != version("roadproof"):
+            raise InputError(
+                f"{head}: it was converted by version {str(said['roadproof'])[:40]}, and this is "
+                f"{version('roadproof')}, which may read recordings otherwise; convert them again"
+            )
+        columns = _read_samples(table, said["samples"]["sha256"], said["samples"]["rows"])
+        return _recording(said, columns)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        told = f"{type(error).__name__}: {error}"[:120]
+        raise InputError(f"{head}: it is not what convert writes ({told}); convert again") from None
+
+
+def same_recording(one: Recording, other: Recording) -> bool:
+    """Whether two recordings say the same, NaN in columns of users' own included."""
+    return all(_same(getattr(one, x.name), getattr(other, x.name)) for x in fields(Recording))
+
+
+def _same(one: Any, other: Any) -> bool:
+    match one:
+        case np.ndarray():
+            ours, theirs = np.asarray(one), np.asarray(other)
+            exact = ours.dtype.kind == theirs.dtype.kind and ours.shape == theirs.shape
+            return exact and bool(np.array_equal(ours, theirs, equal_nan=ours.dtype.kind == "f"))
+        case Slack():
+            return other is not None and all(_same(getattr(one, x), getattr(other, x)) for x in _SLACK)
+        case dict():
+            return one.keys() == other.keys() and all(_same(one[x], other[x]) for x in one)
+        case _:
+            return bool(one == other)
+
+
+def _samples(recording: Recording) -> dict[str, Column]:
+    """All that there is an entry a sample of, by the name of its column."""
+    rows = len(recording.s)
+    found = {name: getattr(recording, name) for name in _OF_SAMPLES}
+    found = {name: values for name, values in found.items() if len(values) == rows}
+    if recording.slack is not None:
+        found |= {f"slack:{name}": getattr(recording.slack, name) for name in _SLACK}
+    found |= {f"inside:{k}": recording.inside[:, k] for k in range(recording.inside.shape[1])}
+    return found | {f"own:{name}": values for name, values in recording.own.items()}
+
+
+def _said(recording: Recording) -> dict[str, Any]:
+    """All that is said once, or of vehicles."""
+    return {
+        "name": recording.name,
+        "rate": recording.rate,
+        "lanes": [{"name": x.name, "direction": x.direction, "d": x.d} for x in recording.lanes],
+        "beside": sorted(sorted(pair) for pair in recording.beside),
+        "lanelets": [_lanelet_data(x) for x in recording.lanelets],
+        "counts": np.diff(recording.start).tolist(),
+        "vehicles": {name: getattr(recording, name).tolist() for name in _OF_VEHICLES},
+        "notes": list(recording.notes),
+    }
+
+
+def _lanelet_data(lanelet: Lanelet) -> dict[str, Any]:
+    bounds = {"s": lanelet.s, "d": lanelet.d}
+    plain = {name: [None if x is None else str(x) for x in ends] for name, ends in bounds.items()}
+    return {x: getattr(lanelet, x) for x in ("id", "lane", "zone", "attribute")} | plain
+
+
+def _lanelet(data: Mapping[str, Any]) -> Lanelet:
+    low, high = (None if x is None else Fraction(x) for x in data["s"])
+    right, left = map(Fraction, data["d"])
+    return Lanelet(data["id"], data["lane"], data["zone"], data["attribute"], s=(low, high), d=(right, left))
+
+
+def _read_samples(path: Path, digest: str, rows: int) -> dict[str, Column]:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read ({error.strerror}); convert again") from None
+    if hashlib.sha256(content).hexdigest() != digest:
+        raise InputError(f"{path}: its content is not what {path.stem} was converted to; convert again")
+    frame = polars_module().read_parquet(io.BytesIO(content))
+    if frame.height != rows:
+        raise ValueError(f"{frame.height} rows of {rows}")
+    return {name: frame[name].to_numpy() for name in frame.columns}
+
+
+def _recording(said: Mapping[str, Any], columns: Mapping[str, Column]) -> Recording:
+    def group(prefix: str) -> dict[str, Column]:
+        return {
+            name.removeprefix(prefix): values for name, values in columns.items() if name.startswith(prefix)
+        }
+
+    plain = {name: columns[name].astype(kind) for name, kind in _OF_SAMPLES.items() if name in columns}
+    vehicles = {name: np.array(said["vehicles"][name], kind) for name, kind in _OF_VEHICLES.items()}
+    slack, inside, rows = group("slack:"), group("inside:"), int(said["samples"]["rows"])
+    counts = np.array(said["counts"], np.int64)
+    if counts.sum() != rows or len(counts) != len(vehicles["vehicle_id"]):
+        raise ValueError("vehicles and samples do not fit")
+    lanelets = tuple(map(_lanelet, said["lanelets"]))
+    if inside:
+        plain["inside"] = np.column_stack([inside[str(k)] for k in range(len(inside))])
+    elif lanelets:
+        plain["inside"] = np.zeros((rows, 0), np.bool_)
+    return Recording(
+        name=said["name"],
+        rate=said["rate"],
+        lanes=tuple(Lane(x["name"], x["direction"], x["d"] and tuple(x["d"])) for x in said["lanes"]),
+        beside=frozenset(frozenset(pair) for pair in said["beside"]),
+        start=offsets(counts),
+        notes=tuple(said["notes"]),
+        lanelets=lanelets,
+        slack=Slack(**slack) if slack else None,
+        own=group("own:"),
+        **vehicles,
+        **plain,
+    )
+
+
+def _find(path: Path) -> dict[str, Files]:
+    if path.name.endswith(SAMPLES):
+        path = path.with_name(f"{path.name.removesuffix(SAMPLES)}{HEAD}")
+    found = with_suffix(path, HEAD)
+    return {
+        x.name.removesuffix(HEAD): (x, x.with_name(f"{x.name.removesuffix(HEAD)}{SAMPLES}")) for x in found
+    }
+
+
+def _read(files: Files) -> Recording:
+    return read_converted(files[0])
+
+
+def _rate_at(files: Files, rate: int) -> str:
+    return f"{files[0]}, rate={rate}"
+
+
+FORMAT = Format("converted", f"NAME{HEAD} and NAME{SAMPLES}, of roadproof convert", _find, _read, _rate_at)
