@@ -35,7 +35,8 @@ NAMES = {
     x["properties"]["schema"]["const"]: n for n, x in SCHEMAS.items() if "schema" in x.get("properties", {})
 }
 DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
-INTERNAL = {"roadproof/recording-findings/3"}  # what evaluate keeps of one recording, for itself
+# What evaluate keeps of one recording, and convert: for this very version, which alone reads it.
+INTERNAL = {"roadproof/recording-findings/3", "roadproof/recording/1"}
 NOT_HEADED = {"drive.json", "certificate.json", "question.json", "answer.json", "common.json"}
 
 STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted
