@@ -15,6 +15,7 @@ import roadproof as rp
 from roadproof.analysis.catalogue import meaning, showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
+from roadproof.analysis.catalogue.figures import figures
 from roadproof.analysis.catalogue.meaning import Fact
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
@@ -161,8 +162,10 @@ def test_danger_that_no_scenario_covers_is_a_gap(asked: Asked, tmp_path: Path) -
     assert GAP not in turned.names  # it is a scenario in other roles
     few = Asked(HOME.alone, (1, 2), None, asked.values)
     gap = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), few, FIXED)
-    assert gap.names == {ENDANGERED, GAP}
-    (fault,) = tested.tested(few, [replace(gap, claims=())], [], [], tested.targets_of(few), 0.5).faults
+    assert gap.names == {ENDANGERED, GAP, "gap_behaviourPOV_1", "gap_behaviourPOV_1_1"}
+    samples = show(Concrete("x", str(EXAMPLE / "samples" / "braking.csv")), few, FIXED)
+    assert samples.names == gap.names
+    (fault,) = tested.tested(few, [replace(gap, claims=())], [], [], tested.targets_of(few), 0.5, None).faults
     assert "a gap, which no scenario covers" in fault.told
 
 
@@ -202,7 +205,7 @@ def test_a_scenario_that_is_neither_shown_nor_excluded_is_no_doubt_unless_it_is_
     few = Asked(HOME.alone, (8,), None, HOME.all_values())
 
     def doubts(entry: Abstract) -> list[str]:
-        found = tested.tested(few, [], [entry], [runs, still_open], tested.targets_of(few), 0.5)
+        found = tested.tested(few, [], [entry], [runs, still_open], tested.targets_of(few), 0.5, None)
         assert not [x for x in found.faults if x.told.startswith("claims")]
         return [x.told for x in found.doubts]
 
@@ -218,7 +221,7 @@ def test_a_drive_in_no_class_is_a_contradiction(asked: Asked) -> None:
     fewer = Asked(asked.specification, NUMBERS, replace(asked.classes, what=what), asked.values)
     answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), fewer, FIXED)
     assert NOWHERE in answer.names
-    found = tested.tested(fewer, [answer], [], [], tested.targets_of(fewer), 0.5)
+    found = tested.tested(fewer, [answer], [], [], tested.targets_of(fewer), 0.5, None)
     assert [x.tests for x in found.contradictions] == [("x",)]
 
 
@@ -279,14 +282,16 @@ def test_road_sectors_are_told_apart(asked: Asked) -> None:
     where = tuple(Cell((number,), (number,), ()) for number in plan.sectors)
     both = Asked(HOME.alone, numbers, Classes(plan, what, where), asked.values)
     answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), both, FIXED)
-    found = tested.tested(both, [answer], [], [], tested.targets_of(both), 0.5)
+    found = tested.tested(both, [answer], [], [], tested.targets_of(both), 0.5, None)
     assert {x.name: (x.sector, x.tested) for x in found.targets} == {
         "scenario_4": ("main", ("x",)),
         "scenario_12": ("merge", ()),
         "class_4_main": ("main", ("x",)),
         "class_4_merge": ("merge", ()),
     }
-    assert "  main: 1 of 1 are tested\n  merge: 0 of 1 are tested" in as_text(1, found, [])
+    assert "  main: 1 of 1 are tested\n  merge: 0 of 1 are tested" in as_text(
+        1, found, [], figures("base", found.targets, found.gaps)
+    )
 
 
 ABSTRACT = """
@@ -383,7 +388,7 @@ def test_a_doubt_is_a_doubt(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
 def test_other_values_of_parameters_are_told(asked: Asked) -> None:
     calm = Asked(HOME.alone, NUMBERS, None, {**asked.values, "rho": Fraction(3)})
     answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), calm, FIXED)
-    found = tested.tested(calm, [answer], [], [], tested.targets_of(calm), 0.5)
+    found = tested.tested(calm, [answer], [], [], tested.targets_of(calm), 0.5, None)
     (fault,) = found.faults
     assert fault.told == (
         "claims scenario_4, and shows no scenario; its file has other values of rho than are asked for"

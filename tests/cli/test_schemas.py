@@ -56,6 +56,7 @@ OPTIONAL = {
 MAPS = {
     *("options", "parameters", "values", "vehicles", "lanes", "seconds", "sizes", "detectors", "scenarios"),
     *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered"),
+    "open",
 }
 Place = tuple[str | int, ...]
 Run = Callable[..., Any]

@@ -8,7 +8,7 @@ from typing import Any
 from roadproof.effort import Effort
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.ask import Search
-from roadproof.searching.question import SearchOptions, Setting
+from roadproof.searching.question import Objective, SearchOptions, Setting
 from roadproof.spec.bind import values_with
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
@@ -22,7 +22,7 @@ class Basis:
 
     ``values``: parameters with another value than the declared one (SI); ``horizon``: seconds of driving
     that are searched; ``effort`` for one drive; ``proof``: units of work for a proof before a drive is
-    looked for.
+    looked for; ``objective``: what drives should be like.
     """
 
     specification: Specification
@@ -31,6 +31,7 @@ class Basis:
     horizon: Fraction = Fraction(6)
     effort: Effort = field(default_factory=Effort)
     proof: float = 3.0
+    objective: Objective = "smooth"
 
     @property
     def library(self) -> Library:
@@ -57,9 +58,9 @@ class Basis:
     def search(
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
     ) -> Search:
-        """A search for a smooth drive on which ``query`` holds."""
+        """A search for a drive on which ``query`` holds."""
         setting = Setting(road=road, values=self.values, horizon=self.horizon)
-        search_options = SearchOptions("smooth", effort=effort or self.effort, explain=explain)
+        search_options = SearchOptions(self.objective, effort=effort or self.effort, explain=explain)
         return Search(self.specification, query, setting, search_options)
 
     def proof_of(self, query: Query, units: float | None = None, label: str = "") -> Result:

@@ -2,31 +2,39 @@
 
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, ClassVar, Literal, TypeAlias
 
+from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Asked
-from roadproof.analysis.catalogue.completing import Completion, complete
+from roadproof.analysis.catalogue.completing import Known, complete
+from roadproof.analysis.catalogue.courses import Courses, courses_of, of_drive
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
-from roadproof.analysis.catalogue.meaning import Facts, Meanings
-from roadproof.analysis.catalogue.reading import FILE_NAME, read_catalogue
+from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, Figure, figures, figures_beside, kind_of
+from roadproof.analysis.catalogue.gaps import PREFIX, gap_kinds
+from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
+from roadproof.analysis.catalogue.ranges import Reach, Span, reaches_of, spans_of
+from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
-from roadproof.analysis.catalogue.tested import Remark, Tested, all_facts, targets_of, tested
-from roadproof.analysis.catalogue.writing import catalogue_text
-from roadproof.analysis.classify.classes import plan_of
+from roadproof.analysis.catalogue.tested import Remark, Target, Tested, all_facts, targets_of, tested
+from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import divide
+from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.analysis.coverage.claims import Covered
 from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.completing import Completed, write_completions
 from roadproof.api.definitions import Among, Definitions, load
 from roadproof.api.settings import basis_of, one_of
 from roadproof.api.studied import Studied, drawn
-from roadproof.errors import UsageError
+from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.kinds import Evidence
-from roadproof.files import hold_folder, json_bytes, write_whole
 from roadproof.hands import Jobs
 from roadproof.report import catalogue as report
-from roadproof.spec.scenarios import numbers_of
+from roadproof.report.catalogue_drives import Drawn, draw_tests
+from roadproof.searching.question import Objective
+from roadproof.spec.scenarios import number_in, numbers_of
 from roadproof.study import pool
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict
@@ -37,12 +45,16 @@ BATCH = 20
 
 
 @dataclass(frozen=True, repr=False)
-class Catalogued(Studied[Meanings, Facts]):
-    """What tests show and mean. ``near``: how far apart tests that say the same may begin (m, m/s)."""
+class Catalogued(Studied[Meanings, Kept]):
+    """What tests show and mean. ``near``: how far apart tests that say the same may begin (m, m/s).
+
+    ``beside``: what concrete tests show in further spec sets, in the order of ``study.beside``.
+    """
 
     concrete: tuple[ConcreteAnswer, ...] = ()
     catalogue: Catalogue = field(default_factory=lambda: Catalogue(()))
     near: float = NEAR
+    beside: tuple[tuple[ConcreteAnswer, ...], ...] = ()
     pieces: ClassVar[str] = "questions about abstract tests"
 
     @cached_property
@@ -50,7 +62,32 @@ class Catalogued(Studied[Meanings, Facts]):
         """What is tested, what is missing, and what is to be said of tests."""
         facts = all_facts(self.found.answers)
         words = targets_of(self.study.asked)
-        return tested(self.study.asked, self.concrete, self.study.entries, facts, words, self.near)
+        gaps = None if self.study.gaps is None else self.gap_answers
+        return tested(self.study.asked, self.concrete, self.study.entries, facts, words, self.near, gaps)
+
+    @cached_property
+    def gap_answers(self) -> dict[str, ClassAnswer | None]:
+        """Where it was asked, what is known of each class of gaps by name: None of those that tests show."""
+        if self.study.gaps is None or self.study.survey is None:
+            return {}
+        known = self.study.survey.classes_in(gap_answers(self.found.answers))
+        return {n: known(part) for n, part in self.study.gaps.parts.items()}
+
+    @cached_property
+    def figures(self) -> tuple[Figure, ...]:
+        """How much is tested: by spec set, kind and road sector."""
+        facts, set_name = all_facts(self.found.answers), self.study.basis.specification.set_name
+        found = figures(set_name, self.tested.targets, self.tested.gaps)
+        pairs = zip(self.study.beside, self.beside, strict=True)
+        return (*found, *(x for asked, answers in pairs for x in figures_beside(asked, answers, facts)))
+
+    @cached_property
+    def spans(self) -> tuple[Span, ...]:
+        """Where it was asked, how tests of each class begin, and how drives of it can."""
+        if not self.study.reaches:
+            return ()
+        covered = {x.name: x.covered for x in self.tested.targets}
+        return tuple(spans_of(covered, all_facts(self.found.answers)))
 
     @property
     def tests(self) -> tuple[str, ...]:
@@ -59,17 +96,30 @@ class Catalogued(Studied[Meanings, Facts]):
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The scenarios and classes that no test shows."""
+        """What is to be tested, and no test shows: scenarios, classes, with ``gaps`` classes of gaps."""
         return tuple(x.name for x in self.tested.missing)
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        """COVERED for each scenario and class that a test shows, else GAPS."""
-        return {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in self.tested.targets}
+        """COVERED for what a test shows, else GAPS: scenarios, classes, with ``gaps`` classes of gaps.
+
+        Classes of gaps that are proved empty are IMPOSSIBLE; UNKNOWN are those not known to be.
+        """
+        found = {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in self.tested.targets}
+        gaps = self.tested.gaps
+        if gaps.asked:
+            found |= {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in gaps.targets}
+            found |= dict.fromkeys(gaps.open, Verdict.UNKNOWN)
+            found |= {x.name: Verdict.IMPOSSIBLE for x in gaps.empty}
+        return found
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        found = (y for x in all_facts(self.found.answers) for y in (x.certificate, x.drive))
+        found = [y for x in all_facts(self.found.answers) for y in (x.certificate, x.drive)]
+        claims = gap_answers(self.found.answers).values() if self.tested.gaps.asked else ()
+        found += [x.certificate for x in claims if isinstance(x, Covered)]
+        for answer in self.gap_answers.values():
+            found += [] if answer is None else [answer.certificate, *(gap.drive for gap in answer.gaps)]
         return tuple(x for x in found if x is not None)
 
     @property
@@ -82,18 +132,19 @@ class Catalogued(Studied[Meanings, Facts]):
         return ExitCode.UNEXPECTED if found.missing or found.faults else ExitCode.AS_EXPECTED
 
     def rows(self) -> list[Row]:
-        """A row for each scenario and class."""
+        """A row for each scenario and class, and for each class of gaps that is shown or asked for."""
+        verdicts, gaps = self.verdicts, self.tested.gaps
         return [
             {
                 "target": x.name,
                 "words": x.words,
                 "sector": x.sector,
-                "verdict": str(self.verdicts[x.name]),
+                "verdict": str(verdicts.get(x.name, Verdict.COVERED)),
                 "tests": len(x.tested),
                 "tested_by": ", ".join(x.tested),
                 "possible_in": ", ".join(x.possible),
             }
-            for x in self.tested.targets
+            for x in (*self.tested.all_targets, *gaps.empty)
         ]
 
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
@@ -102,18 +153,11 @@ class Catalogued(Studied[Meanings, Facts]):
             **self.study.question.heading,
             "view": "dense",
             "tests": [self._test(x) for x in self.catalogue.entries],
-            "targets": [
-                {
-                    "name": x.name,
-                    "words": x.words,
-                    "sector": x.sector,
-                    "tested": list(x.tested),
-                    "possible": list(x.possible),
-                    "covered": {name: list(bounds) for name, bounds in x.covered.items()},
-                }
-                for x in found.targets
-            ],
+            "targets": [_target(x) for x in found.targets],
+            "gaps": self._gaps(records),
             "not_tested": list(self.missing),
+            "figures": [vars(x) for x in self.figures],
+            "ranges": [_range(x) for x in self.spans],
             "facts": [fact for record in records.values() for fact in record["facts"]],
             "faults": _remarks(found.faults),
             "doubts": _remarks(found.doubts),
@@ -121,6 +165,20 @@ class Catalogued(Studied[Meanings, Facts]):
             "contradictions": _remarks(found.contradictions),
             "notes": list(self.catalogue.notes),
             "seconds": round(self.seconds, 1),
+        }
+
+    def _gaps(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        """The classes of gaps: those that tests show, or all with what shows that they are empty or not."""
+        gaps = self.tested.gaps
+        kept = [x for record in records.values() if (x := record.get("gaps"))]
+        return {
+            "asked": gaps.asked,
+            "classes_in_all": gaps.total,
+            "targets": [_target(x) for x in gaps.targets],
+            "empty": [x.name for x in gaps.empty],
+            "open": dict(gaps.open),
+            "claims": [x["claim"] for x in kept if "claim" in x and gaps.asked],
+            "classes": [y for x in kept if gaps.asked for y in x.get("classes", ())],
         }
 
     def _test(self, entry: Concrete | Abstract) -> dict[str, Any]:
@@ -131,6 +189,7 @@ class Catalogued(Studied[Meanings, Facts]):
         shown = [{**vars(x), "vehicles": list(x.vehicles)} for x in answer.shown]
         return data | {
             "file": entry.place,
+            "copy_of": entry.copy_of,
             "claims": list(answer.claims),
             "dense": answer.dense,
             "shown": shown,
@@ -139,16 +198,43 @@ class Catalogued(Studied[Meanings, Facts]):
         }
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        """Which test shows which scenario, and how many tests each class has."""
+        """Which test shows which scenario and gap, how many tests each class has; then all tests, small."""
         yield "matrix", picture(report.draw_matrix(self.tests, self.tested))
+        for k, page in enumerate(draw_tests(self._drawn()), 1):
+            yield f"tests-{k}", picture(page)
+
+    def _drawn(self) -> list[Drawn]:
+        """The tests to be drawn, by the first scenario that each shows."""
+        targets = [x for x in self.tested.targets if kind_of(x.name) == SCENARIOS]
+        groups = {
+            test: f"{number_in(x.name)} {x.words}"
+            for x in reversed(targets)
+            for test in (*x.possible, *x.tested)
+        }
+        runs = {x.test: x.drive for x in all_facts(self.found.answers) if x.relation == "runs"}
+        courses: dict[str, Courses | None] = {}
+        for entry in self.catalogue.entries:
+            if isinstance(entry, Concrete):
+                courses[entry.id] = courses_of(entry)
+            elif (drive := runs.get(entry.id)) is not None:
+                courses[entry.id] = of_drive(drive.file)
+        drawn = [
+            Drawn(test, groups.get(test, "no scenario"), x) for test, x in courses.items() if x is not None
+        ]
+        order = [*dict.fromkeys(f"{number_in(x.name)} {x.words}" for x in targets), "no scenario"]
+        return sorted(drawn, key=lambda x: order.index(x.group))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """A table for a spreadsheet, a report for CI, and the picture."""
-        written = {"matrix.csv": self.to_csv().encode(), "junit.xml": self.to_junit().encode()}
+        written = {
+            "matrix.csv": self.to_csv().encode(),
+            "figures.csv": report.figures_csv(self.figures).encode(),
+            "junit.xml": self.to_junit().encode(),
+        }
         return written | drawn(self.pictures() if pictures else {})
 
     def to_csv(self) -> str:
-        """A row a test, a column a scenario or class: x shown or implied, o by some drives of the test."""
+        """A row a test, a column a scenario, class, gap: x shown or implied, o by some drives of the test."""
         return report.as_csv(self.tests, self.tested)
 
     def to_junit(self) -> str:
@@ -156,43 +242,71 @@ class Catalogued(Studied[Meanings, Facts]):
         return report.as_junit(self.tests, self.tested)
 
     def __str__(self) -> str:
-        return report.as_text(len(self.tests), self.tested, self.catalogue.notes)
+        told = report.as_text(len(self.tests), self.tested, self.catalogue.notes, self.figures)
+        return "\n".join([*report.range_lines(self.spans, self.study.basis.horizon), told])
 
-    def complete(self, out: str | Path, jobs: Jobs = None, progress: Progress | None = None) -> "Completed":
+    def complete(
+        self,
+        out: str | Path,
+        objective: Objective = "smooth",
+        spread: int = 1,
+        formats: str | Iterable[str] = (),
+        jobs: Jobs = None,
+        progress: Progress | None = None,
+        specs: Iterable[str | Path] = (),
+    ) -> Completed:
         """Write a drive for all that no test shows into a folder, as tests with a ``catalogue.toml``.
 
-        Raises ``InputError``.
+        ``objective``: what drives are to be like, as for ``witness``. ``spread``: until each class has so
+        many tests, or each scenario where there are no classes, further drives that begin far from all that
+        it has (``far.distance``). ``formats``: for which other tools they are written too, as by ``export``,
+        each with an entry; ``specs``: specification files that these need. Raises ``InputError``,
+        ``UsageError``.
         """
-        asked, folder = self.study.asked, Path(out)
-        made = complete(self.study.basis, asked, self.missing, jobs, progress)
-        words = targets_of(asked)
-        drives = {name: x.drive for name, x in made.items() if x.drive is not None}
-        with hold_folder(folder):
-            for name, drive in drives.items():
-                write_whole(folder / f"{name}.json", json_bytes(drive.as_data()))
-            if drives:
-                listed = {name: words[name] for name in drives}
-                write_whole(folder / FILE_NAME, catalogue_text(listed).encode())
-        return Completed(folder, tuple(made.values()))
+        one_of("objective", objective, Objective)
+        if spread < 1:
+            raise UsageError(f"spread={spread}: write how many tests each class is to have, 1 or more")
+        asked = self.study.asked
+        basis = replace(self.study.basis, objective=objective)
+        made = complete(basis, asked, self.missing, self._known(), spread, jobs, progress)
+        words = {x.name: x.words for x in (*self.tested.all_targets, *self.tested.gaps.empty)}
+        like = "" if objective == "smooth" else f", {objective}"
+        titles = {
+            x.name: words[x.target] + like + (", far from the others" if x.apart is not None else "")
+            for x in made
+        }
+        return write_completions(Path(out), made, titles, asked, formats, specs)
+
+    def _known(self) -> Known:
+        """What is known of targets before drives are looked for."""
+        begins = {x.name: [y.begins for y in self.concrete if x.name in y.names] for x in self.tested.targets}
+        copies = {x.entry.id for x in self.concrete if x.entry.copy_of in self.tests}
+        tests = {x.name: len({*x.tested} - copies) for x in self.tested.targets}
+        gaps = {name: x for name, x in self.gap_answers.items() if x is not None and x.gaps}
+        return Known(begins, tests, gaps)
 
 
-@dataclass(frozen=True)
-class Completed:
-    """The drives that were written into ``folder``, and what was proved empty or not found."""
+def _range(span: Span) -> dict[str, Any]:
+    return {
+        "target": span.target,
+        "term": span.term,
+        "tested": list(span.tested),
+        "reached": list(span.reached),
+        "untested": [list(part) for part in span.untested],
+        "share": round(span.share, 4),
+        "beyond": list(span.beyond),
+    }
 
-    folder: Path
-    completions: tuple[Completion, ...]
 
-    def __str__(self) -> str:
-        drives = sum(x.drive is not None for x in self.completions)
-        lines = (
-            [f"{drives} drive{'s' * (drives != 1)} for what was not tested in {self.folder}"]
-            if drives
-            else []
-        )
-        lines += [f"{x.target}: nothing shows it: that is proved" for x in self.completions if x.empty]
-        lines += [f"{x.target}: {x.reason}" for x in self.completions if not (x.drive or x.empty)]
-        return "\n".join(lines) or "nothing was missing"
+def _target(target: Target) -> dict[str, Any]:
+    return {
+        "name": target.name,
+        "words": target.words,
+        "sector": target.sector,
+        "tested": list(target.tested),
+        "possible": list(target.possible),
+        "covered": {name: list(bounds) for name, bounds in target.covered.items()},
+    }
 
 
 def _remarks(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
@@ -204,6 +318,8 @@ def catalogue(
     among: Among = None,
     using: Definitions | None = None,
     classes: bool = True,
+    gaps: bool = False,
+    explore: bool = False,
     roles: _Look = "fixed",
     lanes: _Look = "fixed",
     start: _Look = "fixed",
@@ -217,35 +333,62 @@ def catalogue(
 ) -> Catalogued:
     """Which scenarios and classes the tests in folders and files show, and which nobody tests.
 
-    ``classes``: whether scenarios are divided into classes (``classify``), which need whole rows of the table
-    in ``among``; ``roles``, ``lanes``, ``start``: whether those are looked at that a test fixes, or "any".
-    ``near``: how far apart tests that say the same may begin, in m and m/s. ``out``: a folder for evidence on
-    abstract tests. Raises ``InputError``, ``TextError``, ``UsageError``.
+    The first spec set of ``using`` is asked about; of further ones there are figures. ``classes``: whether
+    scenarios are divided into classes (``classify``), which need whole rows of the table in ``among``;
+    ``gaps``: whether each class of gaps that there is (``coverage``) is to be tested too; ``explore``: also
+    how far drives of each class that is tested can go, and which part of that nobody tests. ``roles``,
+    ``lanes``, ``start``: whether those are looked at that a test fixes, or "any". ``near``: how far apart
+    tests that say the same may begin, in m and m/s. ``out``: a folder for evidence on abstract tests, gaps
+    and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     begun = time.monotonic()
-    home = using or load()
+    wanted = using or load()
+    home = replace(wanted, sets=wanted.sets[:1])
     for name, choice in (("roles", roles), ("lanes", lanes), ("start", start)):
         one_of(name, choice, _Look)
     if not near >= 0:
         raise UsageError(f"near={near}: write a number, 0 or more")
-    tests = read_catalogue(paths, home.alone)
-    numbers = home.among(among) or numbers_of(home.alone)
+    tests = read_catalogue(paths, home.specification)
+    numbers = home.among(among) or numbers_of(home.specification)
     basis = basis_of(home, effort, timeout)
-    made = None
-    if classes:
-        division = divide(basis, plan_of(home.alone, numbers), jobs, progress, in_few_words=False)
-        if division.cut_off:
-            told = "; ".join(x.reason for x in division.doubts)
-            raise UsageError(f"which classes there are is in doubt ({told}): give more time, or no classes")
-        made = division.classes
-    asked = Asked(home.alone, numbers, made, home.all_values())
+
+    def ask(set_name: str) -> Asked:
+        here = replace(basis, specification=home.specification.in_set(set_name), sets=())
+        made = _divided(here, numbers, jobs, progress) if classes else None
+        return Asked(here.specification, numbers, made, home.all_values())
+
+    asked, *others = (ask(name) for name in wanted.sets)
+    kinds = gap_kinds(basis, numbers) if gaps else None
     abstract = tuple(x for x in tests.entries if isinstance(x, Abstract))
     concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
     freedom = Freedom(roles == "any", lanes == "any", start == "any")
     answers = _shown(concrete, asked, freedom, jobs, progress)
-    more = {"concrete": answers, "catalogue": tests, "near": near}
-    study = Meanings(basis, abstract, asked)
+    beside = tuple(_shown(concrete, other, freedom, jobs, progress) for other in others)
+    more = {"concrete": answers, "catalogue": tests, "near": near, "beside": beside}
+    shown = frozenset(x for answer in answers for x in answer.names if x.startswith(PREFIX))
+    reaches = tuple(_reaches(asked, answers)) if explore else ()
+    study = Meanings(basis, abstract, asked, tuple(others), kinds, shown, reaches)
     return Catalogued.asked(study, out, jobs, progress, say, more=lambda: more, begun=begun)
+
+
+def _reaches(asked: Asked, concrete: Sequence[ConcreteAnswer]) -> Iterator[Reach]:
+    """How far drives can go of the classes that concrete tests show; of scenarios, where there are none."""
+    found = tested(asked, concrete, (), (), targets_of(asked), 0.0, None).targets
+    kind = SCENARIOS if asked.classes is None else CLASSES
+    return reaches_of(asked, {x.name: x.covered for x in found if kind_of(x.name) == kind}, concrete)
+
+
+def _divided(basis: Basis, numbers: tuple[int, ...], jobs: Jobs, progress: Progress | None) -> Classes | None:
+    """The classes of scenarios. Raises ``UsageError`` where it is in doubt which there are."""
+    try:
+        plan = plan_of(basis.specification, numbers)
+    except RoadproofError as error:
+        raise UsageError(f"{error}; or ask for scenarios without classes: --no-classes") from None
+    division = divide(basis, plan, jobs, progress, in_few_words=False)
+    if division.cut_off:
+        told = "; ".join(x.reason for x in division.doubts)
+        raise UsageError(f"which classes there are is in doubt ({told}): give more time, or --no-classes")
+    return division.classes
 
 
 def _shown(

@@ -79,7 +79,7 @@ def export(
     made with. In highD's format the drives are the recordings 01, 02 and so on. Raises ``InputError`` for
     drives that do not stand and roads that a format cannot say, ``UsageError``.
     """
-    formats = _formats(to)
+    formats = formats_in(to)
     library = load_library(Path(x) for x in specs)
     given = [drives] if isinstance(drives, str | Path | Judged | DriveFile) else drives
     files = _named(_judged(given, library))
@@ -103,7 +103,14 @@ def _write(folder: Path, subject: Subject, name: str, files: Mapping[str, bytes]
     return ExportedDrive(subject.name, name, tuple(folder / x for x in files), subject.ids)
 
 
-def _formats(to: str | Iterable[str]) -> list[str]:
+def can_export(drive: str | Path, to: str, specs: Iterable[str | Path] = ()) -> None:
+    """Nothing; raises ``InputError`` where a format cannot say a drive."""
+    [(name, file, _)] = _judged([drive], load_library(Path(x) for x in specs))
+    FORMATS[to](subject_of(name, 1, file, 25))
+
+
+def formats_in(to: str | Iterable[str]) -> list[str]:
+    """Formats by name, each once, from names with commas. Raises ``UsageError``."""
     texts = to.split(",") if isinstance(to, str) else [x for text in to for x in text.split(",")]
     names = list(dict.fromkeys(text.strip() for text in texts))
     for name in names:

@@ -4,9 +4,15 @@ import argparse
 from pathlib import Path
 
 from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
-from roadproof.cli.numbers import add_effort_options, add_working_options
-from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.cli.numbers import add_effort_options, add_working_options, whole
+from roadproof.cli.options import (
+    add_json_option,
+    add_parameter_option,
+    add_specification_options,
+    chosen_sets,
+)
 from roadproof.cli.progress import Counter
+from roadproof.errors import UsageError
 
 SUMMARY = "what a catalogue of tests shows, which scenarios and classes nobody tests, drives for these"
 
@@ -31,20 +37,34 @@ examples:
   roadproof catalogue tests --complete more            drives for what is not, as tests in the folder more
   roadproof catalogue tests more --out report          matrix.csv, junit.xml, a picture, evidence
   roadproof catalogue tests --roles any --lanes any --start any
+  roadproof catalogue tests --gaps                     and gaps: danger that no scenario covers, in classes
+  roadproof catalogue tests --complete more --spread 3 --format openscenario,csv
+  roadproof catalogue tests --complete more --objective severe
+  roadproof catalogue tests --set base,ext             base, and figures of how much of ext is tested
 
 A drive file fixes roles, lane and start; samples fix roles where vehicles are called SV and POV, and are
-looked at in all lanes from all instants on. Exit code 0 where all is tested and each test is what it claims,
-10 where not, 20 where something is in doubt.
+looked at in all lanes from all instants on. Which class of gap a test shows is told in any case; --gaps asks
+for a test of each class that is not proved empty, which takes as long as roadproof coverage.
+Exit code 0 where all is tested and each test is what it claims, 10 where not, 20 where something is in doubt,
+with --gaps also whether a class of gaps is empty, with --explore how far drives of a class go.
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="DIR|FILE", nargs="+", help="folders of tests, or tests")
-    add_specification_options(parser)
+    add_specification_options(parser, several=True)
     add_parameter_option(parser)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1-8")
     parser.add_argument("--no-classes", action="store_true", help="scenarios only")
+    parser.add_argument(
+        "--gaps", action="store_true", help="each class of gaps is to be tested too, or is proved empty"
+    )
+    parser.add_argument(
+        "--explore",
+        action="store_true",
+        help="also how drives of each class can begin, and what of it nobody tests",
+    )
     for name, what in (("roles", "choices of roles"), ("lanes", "lanes"), ("start", "instants")):
         text = f"look at all {what}, not only at what a test fixes"
         parser.add_argument(f"--{name}", choices=("fixed", "any"), default="fixed", help=text)
@@ -56,6 +76,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="tests that show the same and begin within X m and m/s say the same (default: 0.5)",
     )
     parser.add_argument("--complete", type=Path, metavar="DIR", help="write drives for what nobody tests")
+    parser.add_argument(
+        "--objective",
+        choices=("any", "smooth", "margin", "mild", "severe", "short"),
+        help="with --complete: what the drives should be like (default: smooth)",
+    )
+    parser.add_argument(
+        "--spread",
+        type=whole("--spread", 1),
+        metavar="K",
+        help="with --complete: until each class has K tests, drives that begin far from those it has",
+    )
+    parser.add_argument(
+        "--format",
+        dest="formats",
+        metavar="FORMAT",
+        action="append",
+        help="with --complete: write the drives as openscenario, commonroad, highd, csv or opendrive too",
+    )
     add_effort_options(parser, 60.0, "a drive")
     add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write matrix, JUnit, picture, evidence")
@@ -65,13 +103,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.api.cataloguing import catalogue
+    from roadproof.api.exporting import formats_in
 
-    home = read_definitions(args, [args.set_name])
+    for name in ("objective", "spread", "formats"):
+        if getattr(args, name) and args.complete is None:
+            raise UsageError(f"--{name.removesuffix('s')} is for drives that are made: add --complete DIR")
+    formats_in(args.formats or "csv")
+    home = read_definitions(args, chosen_sets(args))
     found = catalogue(
         *args.paths,
         among=args.among,
         using=home,
         classes=not args.no_classes,
+        gaps=args.gaps,
+        explore=args.explore,
         roles=args.roles,
         lanes=args.lanes,
         start=args.start,
@@ -80,7 +125,15 @@ def run(args: argparse.Namespace) -> int:
     )
     code = hand_over(args, found)
     if args.complete is not None:
-        completed = found.complete(args.complete, args.jobs, Counter())
+        completed = found.complete(
+            args.complete,
+            args.objective or "smooth",
+            args.spread or 1,
+            args.formats or (),
+            args.jobs,
+            Counter(),
+            args.specs,
+        )
         if args.json != "-":
             print(completed)
     return code

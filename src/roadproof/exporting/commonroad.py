@@ -20,6 +20,8 @@ from roadproof.world.motion import State
 from roadproof.world.road import Attribute, Lanelet
 
 _TYPES: Mapping[Attribute, str] = {"main": "mainCarriageWay", "merge": "accessRamp", "departure": "exitRamp"}
+MOTORCYCLE_WIDTH = Fraction(6, 5)
+"""A vehicle as narrow as that (m) is a motorcycle: cars are 1.4 m wide or more."""
 FIRST_LANELET, PROBLEM = 1001, 9001
 """Ids: vehicles count from 1, lanelets from 1001; ids differ among all of them."""
 
@@ -119,12 +121,20 @@ def _obstacle(subject: Subject, name: str, motion: Motion) -> Element:
     )
     return element(
         "dynamicObstacle",
-        element("type", text=_OBSTACLES.get(kind_of(motion), kind_of(motion))),
+        element("type", text=_type(motion)),
         element("shape", box),
         first,
         element("trajectory", *others),
         id=str(subject.ids[name]),
     )
+
+
+def _type(motion: Motion) -> str:
+    """The type of an obstacle; where a drive says sizes only, no car is as narrow as a motorcycle."""
+    if motion.kind is None and motion.width <= MOTORCYCLE_WIDTH:
+        return "motorcycle"
+    kind = kind_of(motion)
+    return _OBSTACLES.get(kind, kind)
 
 
 def _state(tag: str, step: int, state: State, motion: Motion) -> Element:

@@ -3,21 +3,24 @@
 import csv
 import io
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import Any
 from xml.etree import ElementTree as xml
 
+from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, Figure, kind_of
+from roadproof.analysis.catalogue.gaps import PREFIX
+from roadproof.analysis.catalogue.ranges import Span
 from roadproof.analysis.catalogue.tested import Remark, Target, Tested
-from roadproof.report.figures import as_bytes, make_figure
+from roadproof.report.figures import as_bytes, count_axis, make_figure
 from roadproof.spec.scenarios import number_in
 
 MOST_TOLD = 40
 _SURE, _POSSIBLE, _NONE = "#1f5fbf", "#9dbbe3", "#b5473c"
 
 
-def as_text(tests: int, found: Tested, notes: Sequence[str]) -> str:
-    """How much is tested, what is missing, and every remark."""
-    lines = [f"{tests} test{'s' * (tests != 1)}"]
-    for kind, those in kinds(found).items():
-        lines += [_counted(kind, those), *_by_sector(those)] if those else []
+def as_text(tests: int, found: Tested, notes: Sequence[str], counted: Sequence[Figure]) -> str:
+    """How much is tested, in ``counted`` figures, what is missing, and every remark."""
+    lines = [f"{tests} test{'s' * (tests != 1)}", *_figures(counted), *_gaps(found)]
     lines += _listed("not tested", [f"{x.name}: {x.words}" for x in found.missing])
     for heading, remarks in headings(found).items():
         lines += _listed(heading, [remark_line(x) for x in remarks])
@@ -26,19 +29,50 @@ def as_text(tests: int, found: Tested, notes: Sequence[str]) -> str:
 
 def kinds(found: Tested) -> dict[str, list[Target]]:
     """The targets by what they are."""
-    scenarios = [x for x in found.targets if number_in(x.name) is not None]
-    return {"scenarios": scenarios, "classes": [x for x in found.targets if x not in scenarios]}
+    return {kind: [x for x in found.targets if kind_of(x.name) == kind] for kind in (SCENARIOS, CLASSES)}
 
 
-def _counted(kind: str, targets: Sequence[Target]) -> str:
-    done = sum(bool(x.tested) for x in targets)
-    return f"{kind}: {done} of {len(targets)} are tested"
+def _figures(counted: Sequence[Figure]) -> Iterator[str]:
+    """A line a figure, those of road sectors below; which spec set, where there are several."""
+    sets = dict.fromkeys(x.set_name for x in counted)
+    for x in counted:
+        where = f"set {x.set_name}, " if len(sets) > 1 and not x.sector else ""
+        what = f"  {x.sector.replace('_', ' and ')}" if x.sector else f"{where}{x.kind}"
+        yield f"{what}: {x.tested} of {x.total} are tested"
 
 
-def _by_sector(targets: Sequence[Target]) -> list[str]:
-    """A line for each road sector, where there are several."""
-    sectors = dict.fromkeys(x.sector for x in targets if x.sector)
-    return [_counted(f"  {x.replace('_', ' and ')}", [y for y in targets if y.sector == x]) for x in sectors]
+def _gaps(found: Tested) -> Iterator[str]:
+    """What is known of gaps beyond figures."""
+    gaps = found.gaps
+    if gaps.empty:
+        yield f"classes of gaps that are proved empty: {len(gaps.empty)}"
+    if not gaps.asked and any(x.tested or x.possible for x in gaps.targets):
+        shown = sum(bool(x.tested) for x in gaps.targets)
+        yield f"classes of gaps: {shown} of {gaps.total} are shown (--gaps: which others there are)"
+
+
+def range_lines(spans: Sequence[Span], horizon: Fraction) -> Iterator[str]:
+    """What part of the ranges nobody tests, a line a number, and within which limits that is."""
+    if spans:
+        yield (
+            f"how tests begin, of how drives can that were found ({horizon} s of driving, cars, at most 80 m "
+            "apart at the start):"
+        )
+    for name in dict.fromkeys(x.target for x in spans):
+        yield f"  {name}"
+        for x in (y for y in spans if y.target == name):
+            unit = "m/s" if x.term.startswith("v") else "m"
+            tested, can = (f"{low:.4g} to {high:.4g}" for low, high in (x.tested, x.reached))
+            yield f"    {x.term}: {tested} of {can} {unit}; {x.share:.0%} is not tested"
+
+
+def figures_csv(counted: Sequence[Figure]) -> str:
+    """The figures as a table."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["set", "kind", "sector", "tested", "total"])
+    writer.writerows([x.set_name, x.kind, x.sector, x.tested, x.total] for x in counted)
+    return out.getvalue()
 
 
 def headings(found: Tested) -> dict[str, Sequence[Remark]]:
@@ -78,12 +112,12 @@ def _summary(found: Tested) -> str:
 
 
 def as_csv(tests: Sequence[str], found: Tested) -> str:
-    """A row a test, a column a scenario or class: ``x`` shown or implied, ``o`` by some drives of it."""
+    """A row a test, a column a scenario, class or gap: ``x`` shown or implied, ``o`` by some drives of it."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["test", *(x.name for x in found.targets)])
+    writer.writerow(["test", *(x.name for x in found.all_targets)])
     for test in tests:
-        writer.writerow([test, *(_mark(test, x) for x in found.targets)])
+        writer.writerow([test, *(_mark(test, x) for x in found.all_targets)])
     return out.getvalue()
 
 
@@ -96,7 +130,10 @@ def as_junit(tests: Sequence[str], found: Tested) -> str:
     suites = xml.Element("testsuites", name="roadproof catalogue")
     wrong = {x.tests[0]: x.told for x in (*found.doubts, *found.faults, *found.contradictions)}
     _suite(suites, "tests", {test: wrong.get(test, "") for test in tests})
-    _suite(suites, "tested", {x.name: "" if x.tested else f"no test shows {x.words}" for x in found.targets})
+    targets = (*found.targets, *(found.gaps.targets if found.gaps.asked else ()))
+    missing = {x.name: f"no test shows {x.words}" for x in found.missing}
+    in_doubt = {name: f"in doubt: {reason}" for name, reason in found.gaps.open.items()}
+    _suite(suites, "tested", {x.name: (missing | in_doubt).get(x.name, "") for x in targets})
     xml.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + xml.tostring(suites, "unicode") + "\n"
 
@@ -111,20 +148,32 @@ def _suite(suites: xml.Element, name: str, cases: dict[str, str]) -> None:
 
 
 def draw_matrix(tests: Sequence[str], found: Tested) -> dict[str, bytes]:
-    """Tests over scenarios, and how many tests each class has: ``{"png": …, "svg": …}``."""
+    """Tests over scenarios and gaps, how many tests each class has, and each class of gaps, if that is asked:
+    ``{"png": …, "svg": …}``.
+    """
     scenarios, classes = kinds(found).values()
-    heights = [0.16 * len(tests) + 3.4] + ([2.2] if classes else [])
-    width = max(7.0, 1.5 + 0.26 * len(scenarios), 1.0 + 0.15 * len(classes))
+    gaps = [x for x in found.gaps.targets if x.tested or x.possible]
+    bars = {"tests of each class (red: none)": classes}
+    bars |= {"tests of each class of gaps (red: none)": [*found.gaps.targets] if found.gaps.asked else []}
+    bars = {title: those for title, those in bars.items() if those}
+    heights = [0.16 * len(tests) + 3.4, *(2.2 + 0.6 * ("gaps" in title) for title in bars)]
+    columns = [*scenarios, *gaps]
+    longest = max(map(len, bars.values()), default=0)
+    width = max(7.0, 1.5 + 0.26 * len(columns), 1.0 + 0.15 * longest)
     figure, axes = make_figure(heights, width=width)
     above = axes[0]
-    for x, target in enumerate(scenarios):
+    for x, target in enumerate(columns):
         for y, test in enumerate(tests):
             mark = _mark(test, target)
             if mark:
                 above.scatter(x, y, s=26, marker="s", color=_SURE if mark == "x" else _POSSIBLE)
     names = [f"{number_in(x.name)} {x.words}" for x in scenarios]
-    above.set_xticks(range(len(scenarios)), names, fontsize=7, rotation=90)
-    for label, target in zip(above.get_xticklabels(), scenarios, strict=True):
+    names += [x.name.removeprefix(PREFIX).replace("_", " ") + " (gap)" for x in gaps]
+    if gaps:
+        above.axvline(len(scenarios) - 0.5, color="#888888", lw=0.8)
+    above.xaxis.tick_top()  # before labels have colours, since it draws others
+    above.set_xticks(range(len(columns)), names, fontsize=7, rotation=90)
+    for label, target in zip(above.get_xticklabels(), columns, strict=True):
         label.set_color("black" if target.tested else _NONE)
     above.set_yticks(range(len(tests)), tests, fontsize=6)
     wrong = {test for x in (*found.faults, *found.contradictions) for test in x.tests}
@@ -133,21 +182,25 @@ def draw_matrix(tests: Sequence[str], found: Tested) -> dict[str, bytes]:
     above.grid(color="#eeeeee", lw=0.6)
     above.set_axisbelow(True)
     above.set_ylim(len(tests) - 0.5, -0.5)
-    above.set_xlim(-0.6, len(scenarios) - 0.4)
-    above.xaxis.tick_top()
+    above.set_xlim(-0.6, len(columns) - 0.4)
     above.set_title(
-        "scenarios, and tests; red: not tested, not what it claims; light: by some drives of it only",
+        "scenarios, gaps and tests; red: not tested, not what it claims; light: by some drives of it only",
         fontsize=8,
     )
-    if classes:
-        below, counts = axes[1], [len(x.tested) for x in classes]
-        below.bar(range(len(classes)), counts, color=_SURE, width=0.8)
-        missing = [k for k, count in enumerate(counts) if not count]
-        below.scatter(missing, [0] * len(missing), marker="x", s=16, color=_NONE, zorder=3)
-        labels = [x.name.removeprefix("class_").replace("_", " ") for x in classes]
-        below.set_xticks(range(len(classes)), labels, fontsize=5, rotation=90)
-        below.set_xlim(-0.8, len(classes) - 0.2)
-        below.yaxis.get_major_locator().set_params(integer=True)
-        below.tick_params(axis="y", labelsize=7)
-        below.set_title("tests of each class (red: none)", fontsize=8)
+    for below, (title, those) in zip(axes[1:], bars.items(), strict=True):
+        _draw_bars(below, title, those)
     return as_bytes(figure)
+
+
+def _draw_bars(axes: Any, title: str, targets: Sequence[Target]) -> None:
+    """How many tests each target has."""
+    counts = [len(x.tested) for x in targets]
+    axes.bar(range(len(targets)), counts, color=_SURE, width=0.8)
+    missing = [k for k, count in enumerate(counts) if not count]
+    axes.scatter(missing, [0] * len(missing), marker="x", s=16, color=_NONE, zorder=3)
+    labels = [x.name.removeprefix("class_").removeprefix(PREFIX).replace("_", " ") for x in targets]
+    axes.set_xticks(range(len(targets)), labels, fontsize=5, rotation=90)
+    axes.set_xlim(-0.8, len(targets) - 0.2)
+    count_axis(axes.yaxis)
+    axes.tick_params(axis="y", labelsize=7)
+    axes.set_title(title, fontsize=8)

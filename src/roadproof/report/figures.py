@@ -14,6 +14,25 @@ def make_figure(heights: Sequence[float], width: float = 9.0) -> tuple[Any, list
 
     Raises ``MissingSolverError`` where matplotlib is not installed.
     """
+    figure_class, canvas = _matplotlib()
+    figure = figure_class(figsize=(width, sum(heights) + 0.4), layout="constrained")
+    canvas(figure)
+    rows = figure.subplots(len(heights), 1, height_ratios=list(heights), squeeze=False)
+    return figure, [axes for (axes,) in rows]
+
+
+def make_page(width: float, height: float) -> Any:
+    """An empty figure of that size (inches), on which each axes is put in its place.
+
+    Raises ``MissingSolverError`` where matplotlib is not installed.
+    """
+    figure_class, canvas = _matplotlib()
+    figure = figure_class(figsize=(width, height))
+    canvas(figure)
+    return figure
+
+
+def _matplotlib() -> tuple[Any, Any]:
     try:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
@@ -21,10 +40,17 @@ def make_figure(heights: Sequence[float], width: float = 9.0) -> tuple[Any, list
         raise MissingSolverError(
             "pictures need matplotlib: install matplotlib, or go without pictures"
         ) from None
-    figure = Figure(figsize=(width, sum(heights) + 0.4), layout="constrained")
-    FigureCanvasAgg(figure)
-    rows = figure.subplots(len(heights), 1, height_ratios=list(heights), squeeze=False)
-    return figure, [axes for (axes,) in rows]
+    return Figure, FigureCanvasAgg
+
+
+def shorten(text: Any, width: float) -> None:
+    """Leave out the middle of a drawn text until it is no wider than that (inches)."""
+    whole, wanted = text.get_text(), width * text.figure.dpi
+    share = wanted / max(wanted, text.get_window_extent().width)
+    for kept in range(int(len(whole) * share), 1, -1):
+        if text.get_window_extent().width <= wanted:
+            return
+        text.set_text(f"{whole[: kept - kept // 2]}…{whole[len(whole) - kept // 2 :]}")
 
 
 def draw_box(axes: Any, box: tuple[float, float, float, float], colour: str) -> None:

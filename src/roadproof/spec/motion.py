@@ -32,6 +32,8 @@ from roadproof.world.vehicle import Vehicle
 MOTION = "motion"
 SOURCE = "what is assumed"
 _HEAD = re.compile(r"\s*assuming\s+(motion\b[^:]*):", re.ASCII)
+_ASSUMING = re.compile(r"\s*assuming\s+(?=\w|:)", re.ASCII)
+_COMPARISON = re.compile(r"[<>=]")
 _START = Position(1, 1)
 MOST_AXIOMS = 500
 
@@ -85,18 +87,42 @@ def statement(said: Sequence[str], claim: str) -> str:
     return f"assuming {', '.join(said)}: {claim}" if said else claim
 
 
-def split(written: str) -> tuple[tuple[str, ...], str]:
-    """What a claim says that it assumes, and the rest; its places in lines and columns stay."""
+def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
+    """What a claim says that it assumes, and the rest; its places in lines and columns stay.
+
+    Raises ``TextError`` for a word that nothing is assumed by.
+    """
     found = _HEAD.match(written)
     if found is None:
+        _refuse_other_words(written, source)
         return (), written
+    place = found.start(1)
+    for limit in found[1].split(","):
+        if place > found.start(1) and _COMPARISON.search(limit) is None:
+            raise _unknown_word(written, place + len(limit) - len(limit.lstrip()), "is no limit", source)
+        place += len(limit) + 1
     blank = "".join(c if c == "\n" else " " for c in found[0])
     return tuple(" ".join(x.split()) for x in found[1].split(",")), blank + written[found.end() :]
 
 
+def _refuse_other_words(written: str, source: str) -> None:
+    begun = _ASSUMING.match(written)
+    if begun is not None:
+        raise _unknown_word(written, begun.end(), "cannot be assumed", source)
+
+
+def _unknown_word(written: str, place: int, what: str, source: str) -> TextError:
+    """What is said of a word that stands where something known is assumed."""
+    before, word = written[:place], re.match(r"\w*", written[place:])
+    position = Position(before.count("\n") + 1, place - before.rfind("\n"))
+    told = f"'{word[0]}' {what}" if word and word[0] else "nothing is assumed here"
+    hint = f"Known: {MOTION}, and after it limits with commas, such as {MOTION}, a_lon(SV) <= 3 m/s^2: CLAIM."
+    return TextError(told, position, hint).locate(source, written)
+
+
 def read_under(specification: Specification, written: str, source: str = "claim") -> Under:
     """A claim with what it says that it assumes. Raises ``InputError``."""
-    said, claim = split(written)
+    said, claim = split(written, source)
     return under(specification, read_claim(specification, claim, source), said)
 
 

@@ -11,7 +11,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
 
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.gaps import GapKinds, gap_kinds
 from roadproof.analysis.classify.classes import Class, Classes, Group, Plan
+from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.spec.bind import bind
@@ -26,6 +29,7 @@ from roadproof.spec.scenarios import (
     disturbance,
     endangered,
     name_of,
+    number_in,
     safe,
     sector,
     vehicles_of,
@@ -82,6 +86,14 @@ class Asked:
     bound: dict[tuple[Road, tuple[str, ...], tuple[str, ...], str], dict[Key, Formula]] = field(
         default_factory=dict
     )
+
+    @cached_property
+    def gaps(self) -> GapKinds | None:
+        """The classes of gaps between two vehicles; None where these scenarios do not make any."""
+        try:
+            return gap_kinds(Basis(self.specification, values=self.values), self.numbers)
+        except UsageError:
+            return None
 
     @cached_property
     def roles(self) -> tuple[tuple[str, ...], ...]:
@@ -150,6 +162,13 @@ class Asked:
             for number in self.numbers
             if set(self._vehicles[number]) <= {*vehicles}
         }
+
+    def query_of(self, name: str) -> Query:
+        """A scenario or a class by name, as a formula."""
+        number = number_in(name)
+        if number is None:
+            return self.class_query(name)
+        return applied(self.specification, Scenario(number, self.specification.set_name))
 
     def class_query(self, name: str) -> Query:
         """The class of that name: which rows hold and which do not, and in which sectors."""

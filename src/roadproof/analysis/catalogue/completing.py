@@ -1,58 +1,108 @@
 """Drives for what a catalogue does not test: each is looked for, judged, and described as a test."""
 
-from collections.abc import Sequence
-from contextlib import closing
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Asked
-from roadproof.analysis.catalogue.showing import Freedom, shown_by
+from roadproof.analysis.catalogue.far import FACTORS, far_from, nearest
+from roadproof.analysis.catalogue.gaps import PREFIX
+from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, begins_of
 from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.text import with_classes, write_classes
+from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.placing import judged_as
 from roadproof.effort import Late
+from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
 from roadproof.hands import Jobs
 from roadproof.searching.ask import answer
+from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, applied, name_of, number_in
 from roadproof.study import pool
 from roadproof.study.pool import Progress
 
+Begins: TypeAlias = Mapping[str, float]
+
 
 @dataclass(frozen=True)
 class Completion:
-    """A drive that shows ``target``, or the proof that nothing does, or the reason why there is neither."""
+    """A drive that shows ``target``, or the proof that nothing does, or the reason why there is neither.
+
+    ``name``: what the drive is called; ``apart``: how far it begins from the nearest test that shows the same
+    (``far.distance``), where drives far apart were asked for.
+    """
 
     target: str
     drive: Judged | None = None
     empty: Certificate | None = None
     reason: str = ""
+    name: str = ""
+    apart: float | None = None
+
+
+@dataclass(frozen=True)
+class Known:
+    """What is known before drives are looked for.
+
+    By target, ``tests``: how many show it, and ``begins``: how each concrete one of these begins; ``gaps``:
+    what was found for classes of gaps.
+    """
+
+    begins: Mapping[str, Sequence[Begins]] = field(default_factory=dict)
+    tests: Mapping[str, int] = field(default_factory=dict)
+    gaps: Mapping[str, ClassAnswer] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Further:
+    """So many drives more for a target, far from tests that begin at ``points``."""
+
+    target: str
+    first: int
+    count: int
+    points: tuple[Begins, ...]
+
+
+_Job: TypeAlias = tuple[Class, ...] | int | _Further
 
 
 @dataclass(frozen=True)
 class _Completing:
-    """Jobs for other processes: classes in which the same happens, or one scenario."""
+    """Jobs for other processes: classes in which the same happens, one scenario, or drives far apart."""
 
     basis: Basis
     classes: Basis
     asked: Asked
 
-    def settled(self, job: tuple[Class, ...] | int) -> list[Completion]:
-        if isinstance(job, int):
-            return [self._scenario(job)]
-        return [self._of_class(x) for x in find_examples(self.classes, job)]
+    def settled(self, job: _Job) -> list[Completion]:
+        match job:
+            case int():
+                return [self._scenario(job)]
+            case _Further():
+                return self._further(job)
+            case _:
+                return [self._of_class(x) for x in find_examples(self.classes, job)]
 
     def _of_class(self, found: Example) -> Completion:
-        """Its drive as one of the formula that makes up the class, which needs no definition of classes."""
+        name = found.one.name
         if found.drive is None:
-            return Completion(found.one.name, reason=found.reason)
+            return Completion(name, reason=found.reason)
+        judged = self._as_target(found.drive.file, name)
+        return Completion(name, judged, reason="" if judged else "the judge rejects its drive")
+
+    def _as_target(self, file: DriveFile, target: str) -> Judged | None:
+        """A drive as one of the formula of a target, which needs no definition of classes."""
         home = self.basis.specification
-        here = replace(found.drive.file, set_name=home.set_name)
-        judged = judged_as(here, self.asked.class_query(found.one.name), home.library)
-        return Completion(found.one.name, judged, reason="" if judged else "the judge rejects its drive")
+        here = replace(file, set_name=home.set_name)
+        return judged_as(here, self.asked.query_of(target), home.library)
 
     def _scenario(self, number: int) -> Completion:
         home = self.basis.specification
@@ -66,32 +116,71 @@ class _Completing:
         proof = None if outcome.impossibility is None else outcome.impossibility.certificate
         return Completion(name, next(iter(outcome.drives), None), proof, outcome.told(()))
 
+    def _further(self, job: _Further) -> list[Completion]:
+        """Drives one after the other, each far from those before it; as many as are found."""
+        points, found = [*job.points], list[Completion]()
+        for k in range(job.first, job.first + job.count):
+            drive = self._far(job.target, points)
+            if drive is None:
+                least = f"{float(FACTORS[-1]):g}"
+                told = f"no drive was found that begins {least} or more from all others"
+                return [*found, Completion(job.target, reason=told, name=f"{job.target}-{k}")]
+            begins = begins_of(drive.file)
+            apart = nearest(begins, points)
+            found.append(Completion(job.target, drive, name=f"{job.target}-{k}", apart=apart))
+            points.append(begins)
+        return found
+
+    def _far(self, target: str, points: Sequence[Begins]) -> Judged | None:
+        for factor in FACTORS if points else FACTORS[-1:]:
+            more = far_from(points, factor, self.classes.specification)
+            file = self._found(target, more)
+            judged = None if file is None else self._as_target(file, target)
+            if judged is not None:
+                return judged
+        return None
+
+    def _found(self, target: str, more: Query | None) -> DriveFile | None:
+        if number_in(target) is None:
+            assert self.asked.classes is not None
+            one = next(x for x in self.asked.classes.all() if x.name == target)
+            [example] = find_examples(self.classes, [one], (), more)
+            return None if example.drive is None else example.drive.file
+        query = with_parts(self.asked.query_of(target), [] if more is None else [more])
+        outcome = answer(self.basis.search(query))
+        return outcome.drives[0].file if outcome.drives else None
+
 
 def complete(
     basis: Basis,
     asked: Asked,
     missing: Sequence[str],
+    known: Known | None = None,
+    spread: int = 1,
     hands: Jobs = None,
     progress: Progress | None = None,
-) -> dict[str, Completion]:
-    """By name, a drive for each class and each scenario among ``missing``.
+) -> list[Completion]:
+    """A drive for each class, each scenario and each class of gaps among ``missing``, each with a name.
 
-    Scenarios that a drive for a class shows are not looked for again.
+    Scenarios and gaps that a drive for another target shows are not looked for again. With ``spread``, each
+    class has so many tests in the end, or each scenario where there are no classes; drives are like
+    ``basis.objective``.
     """
-    found: dict[str, Completion] = {}
-    jobs = _of_classes(asked, missing)
+    known = known or Known()
     working = _Completing(basis, replace(basis, specification=specification_of(asked), sets=()), asked)
-    with closing(pool.work(working.settled, jobs, hands, _lost, progress, "drives")) as done:
-        for _, made in done:
-            found |= {x.target: x for x in made}
-    shown = {
-        shown.what for x in found.values() if x.drive for shown in shown_by(x.drive.file, asked, Freedom())
-    }
-    numbers = [n for name in missing if name not in shown and (n := number_in(name)) is not None]
-    with closing(pool.work(working.settled, numbers, hands, _lost, progress, "drives")) as done:
-        for _, made in done:
-            found |= {x.target: x for x in made}
-    return found
+    found: list[Completion] = []
+
+    def ask(jobs: Sequence[_Job]) -> None:
+        done = pool.work(working.settled, jobs, hands, _lost, progress, "drives")
+        found.extend(x for made in pool.in_order(done) for x in made)
+
+    ask(_of_classes(asked, missing))
+    shown = {x for one in found if one.drive for x in _shown(one.drive, asked)}
+    ask([n for name in missing if name not in shown and (n := number_in(name)) is not None])
+    found += _of_gaps(basis, asked, [x for x in missing if x.startswith(PREFIX)], known)
+    if spread > 1:
+        ask(_further(asked, found, known, spread))
+    return [replace(x, name=x.name or x.target) for x in found]
 
 
 def specification_of(asked: Asked) -> Specification:
@@ -109,6 +198,57 @@ def _of_classes(asked: Asked, missing: Sequence[str]) -> list[tuple[Class, ...]]
     return [x for x in groups if x]
 
 
-def _lost(job: tuple[Class, ...] | int, reason: str) -> list[Completion]:
-    names = [name_of(job)] if isinstance(job, int) else [x.name for x in job]
-    return [Completion(name, reason=reason) for name in names]
+def _shown(drive: Judged, asked: Asked) -> set[str]:
+    return {x.what for x in all_shown_by(drive.file, asked, Freedom())}
+
+
+def _of_gaps(basis: Basis, asked: Asked, missing: Sequence[str], known: Known) -> list[Completion]:
+    """The drives that were found when it was asked which classes are empty; one may be for several."""
+    found: list[Completion] = []
+    shown: set[str] = set()
+    for name in missing:
+        if name in shown:
+            continue
+        drive = known.gaps[name].gaps[0].drive
+        if basis.objective != "smooth":
+            drive = _reshaped(basis, drive, name, asked) or drive
+        shown |= _shown(drive, asked)
+        reason = "" if name in shown else "its drive is no gap when it is looked at as a test"
+        found.append(Completion(name, drive if name in shown else None, reason=reason))
+    return found
+
+
+def _reshaped(basis: Basis, drive: Judged, name: str, asked: Asked) -> Judged | None:
+    """Another drive of the same gap, as the basis wants them."""
+    query = read_claim(basis.specification, drive.file.formula)
+    try:
+        outcome = answer(basis.search(query, drive.file.road))
+    except UsageError:  # a grid that is too fine, a comparison too steep
+        return None
+    return next((x for x in outcome.drives if name in _shown(x, asked)), None)
+
+
+def _further(asked: Asked, found: Sequence[Completion], known: Known, spread: int) -> list[_Further]:
+    """What is asked for until each class has so many tests; or each scenario, where there are no classes."""
+    if asked.classes is None:
+        names = [name_of(number) for number in asked.numbers]
+    else:
+        names = [one.name for one in asked.classes.all()]
+    jobs = []
+    for name in names:
+        made = [x.drive for x in found if x.drive is not None and name in _shown(x.drive, asked)]
+        points = (*known.begins.get(name, ()), *(begins_of(x.file) for x in made))
+        tests = known.tests.get(name, 0) + len(made)
+        if 0 < tests < spread:
+            jobs.append(_Further(name, tests + 1, spread - tests, points))
+    return jobs
+
+
+def _lost(job: _Job, reason: str) -> list[Completion]:
+    match job:
+        case int():
+            return [Completion(name_of(job), reason=reason)]
+        case _Further():
+            return [Completion(job.target, reason=reason, name=f"{job.target}-{job.first}")]
+        case _:
+            return [Completion(x.name, reason=reason) for x in job]

@@ -15,12 +15,14 @@ class Concrete:
 
     ``place``: a drive file, samples, a scenario of CommonRoad, or vehicles of a recording such as
     ``01_tracks.csv:12,15``. ``claims``: the scenarios and classes that it is meant to show, by definition.
+    ``copy_of``: the id of the test of which it is the same in another format, if any.
     """
 
     id: str
     place: str
     title: str = ""
     claims: tuple[str, ...] = ()
+    copy_of: str = ""
 
 
 @dataclass(frozen=True)

@@ -7,77 +7,34 @@ not excluded, a drive of the test is looked for that shows it.
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeAlias, get_args
+from functools import cached_property
+from typing import Any, TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.analysis.catalogue.showing import Freedom, shown_by
+from roadproof.analysis.catalogue.fact import Fact, Relation, read_fact, record_of
+from roadproof.analysis.catalogue.gaps import GapKinds
+from roadproof.analysis.catalogue.ranges import Reach, reached
+from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, shown_by
+from roadproof.analysis.coverage import pieces
+from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.placing import judged_as
 from roadproof.effort import Late
 from roadproof.errors import InputError
 from roadproof.evidence.answers.catalogue import SCHEMA
-from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.judge.exact import judge
 from roadproof.searching.ask import Outcome, Search, answer
 from roadproof.searching.question import SearchOptions, Setting
 from roadproof.spec.bind import bind
-from roadproof.spec.compose import both, implication, negation
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.compose import both
 from roadproof.spec.query import Query
+from roadproof.spec.scenarios import Scenario, applied, name_of
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
-
-Relation: TypeAlias = Literal["implies", "excludes", "shows", "runs", "empty", "open"]
-"""Of a test to a scenario or test: proved, proved, shown by a drive. Of a test alone: a drive, or a proof
-that there is none. ``open``: nothing of this was found."""
-_VERDICTS: Mapping[Relation, Verdict] = {
-    "implies": Verdict.PROVED,
-    "excludes": Verdict.PROVED,
-    "shows": Verdict.WITNESSED,
-    "runs": Verdict.WITNESSED,
-    "empty": Verdict.IMPOSSIBLE,
-    "open": Verdict.UNKNOWN,
-}
-
-
-@dataclass(frozen=True)
-class Fact:
-    """What a test is to ``other``: a scenario, class or test by name, or "" for the test alone.
-
-    ``premise`` is the formula of the test, ``conclusion`` that of the other. ``also``: of a drive, all names
-    that it shows.
-    """
-
-    test: str
-    other: str
-    relation: Relation
-    premise: Query
-    conclusion: Query | None = None
-    reason: str = ""
-    certificate: Certificate | None = None
-    drive: Judged | None = None
-    also: tuple[str, ...] = ()
-
-    @property
-    def verdict(self) -> Verdict:
-        return _VERDICTS[self.relation]
-
-    @property
-    def query(self) -> Query:
-        """What the evidence is about."""
-        if self.conclusion is None:
-            return self.premise
-        match self.relation:
-            case "implies":
-                return implication(self.premise, self.conclusion)
-            case "excludes":
-                return implication(self.premise, negation(self.conclusion))
-            case _:
-                return both(self.premise, self.conclusion)
 
 
 @dataclass(frozen=True)
@@ -89,31 +46,68 @@ class Pair:
     drive: Judged
 
 
-Piece: TypeAlias = Abstract | Pair
+@dataclass(frozen=True)
+class GapPiece:
+    """A part of the survey of gaps."""
+
+    piece: pieces.Piece
+
+
+Piece: TypeAlias = Abstract | Pair | GapPiece | Reach
 Facts: TypeAlias = tuple[Fact, ...]
+
+
+@dataclass(frozen=True)
+class AboutGaps:
+    """An answer of the survey of gaps."""
+
+    answer: pieces.Kept
+
+
+Kept: TypeAlias = Facts | AboutGaps
+GAPS = "gaps-"
+"""How the names of answers to the survey of gaps begin."""
 Names: TypeAlias = tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Meanings:
-    """The question for all that is known of abstract tests, as a ``study.frame.Study``."""
+    """The question for all that is known of abstract tests, as a ``study.frame.Study``.
+
+    ``beside``: what is asked in further sets. ``gaps``: classes of gaps of which it is asked which are empty,
+    but for those that tests have ``shown``. ``reaches``: how far drives can go that show what tests show.
+    """
 
     basis: Basis
     entries: tuple[Abstract, ...]
     asked: Asked
+    beside: tuple[Asked, ...] = ()
+    gaps: GapKinds | None = None
+    shown: frozenset[str] = frozenset()
+    reaches: tuple[Reach, ...] = ()
 
     @property
     def question(self) -> Question:
+        """What is asked about gaps is kept by itself, and whether it is asked changes nothing else."""
         said = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
-        tests = {x.id: repr((x.query.text, x.road, sorted(x.vehicles.items()))) for x in self.entries}
-        return Question(SCHEMA, said | self.basis.said(), tests, self.basis.library)
+        more = {x.id: repr((x.query.text, x.road, sorted(x.vehicles.items()))) for x in self.entries}
+        more |= {f"set {x.specification.set_name}": "" for x in self.beside}
+        return Question(SCHEMA, said | self.basis.said(), more, self.basis.library)
 
-    def pieces(self, known: Mapping[str, Facts]) -> Sequence[Piece]:
-        """Each test; when all are known, pairs of them: what a drive does not share is not implied."""
-        left = [entry for entry in self.entries if _name(entry.id) not in known]
+    @cached_property
+    def survey(self) -> Coverage | None:
+        """The question for the classes of gaps."""
+        return None if self.gaps is None else self.gaps.study()
+
+    def pieces(self, known: Mapping[str, Kept]) -> Sequence[Piece]:
+        """Each test and what is asked about gaps; when all are known, pairs of tests: what a drive does not
+        share is not implied."""
+        left: list[Piece] = [entry for entry in self.entries if _name(entry.id) not in known]
+        left += [reach for reach in self.reaches if _name(reach.target, reach.term) not in known]
+        left += self._about_gaps(known)
         if left:
             return left
-        drives = {entry.id: _drive(known[_name(entry.id)]) for entry in self.entries}
+        drives = {entry.id: _drive(facts_in(known[_name(entry.id)])) for entry in self.entries}
         return [
             Pair(one, other, drive)
             for one in self.entries
@@ -124,12 +118,29 @@ class Meanings:
             and _name(one.id, other.id) not in known
         ]
 
-    def settle(self, piece: Piece) -> dict[str, Facts]:
+    def _about_gaps(self, known: Mapping[str, Kept]) -> Iterator[GapPiece]:
+        """The pieces of the survey, without the classes that tests show."""
+        if self.survey is None or self.gaps is None:
+            return
+        names = {None if part is None else part.key: name for name, part in self.gaps.parts.items()}
+        for piece in self.survey.pieces(gap_answers(known)):
+            if isinstance(piece, pieces.Component):
+                parts = self.survey.groups[piece.name].parts
+                if all(names[None if part is None else part.key] in self.shown for part in parts):
+                    continue
+            yield GapPiece(piece)
+
+    def settle(self, piece: Piece) -> dict[str, Kept]:
         match piece:
+            case GapPiece(inside):
+                assert self.survey is not None
+                return {GAPS + name: AboutGaps(x) for name, x in self.survey.settle(inside).items()}
             case Pair(one, other, drive):
                 return {_name(one.id, other.id): self._implied(one, other, drive)}
             case Abstract():
                 return {_name(piece.id): self._of_test(piece)}
+            case Reach(target, term):
+                return {_name(target, term): reached(self.basis, piece)}
 
     def _of_test(self, entry: Abstract) -> Facts:
         outcome = self._search(entry, entry.query, explain=True)
@@ -140,10 +151,21 @@ class Meanings:
         alone = Fact(entry.id, "", "runs", entry.query, drive=drive, also=shown)
         scenarios = self.asked.scenarios_of(entry.query.vehicles)
         found = [self._of_scenario(entry, name, query, drive, shown) for name, query in scenarios.items()]
+        found += [fact for asked in self.beside for fact in self._in_set(entry, asked, drive)]
         for name in (x for x in shown if x in self.asked.named.values()):
             implied = self._proved(entry, name, "implies", self.asked.class_query(name))
             found += [] if implied is None else [implied]
         return (alone, *found)
+
+    def _in_set(self, entry: Abstract, asked: Asked, drive: Judged) -> Iterator[Fact]:
+        """The scenarios of another set that a test implies, among those that its drive shows."""
+        shown = {x.what for x in shown_by(drive.file, asked, Freedom())}
+        set_name = asked.specification.set_name
+        for number in asked.numbers:
+            if name_of(number) in shown:
+                query = applied(self.basis.specification, Scenario(number, set_name))
+                implied = self._proved(entry, f"{name_of(number)}@{set_name}", "implies", query)
+                yield from [] if implied is None else [implied]
 
     def _without_drive(self, entry: Abstract, outcome: Outcome) -> Fact:
         if outcome.impossibility is None:
@@ -187,49 +209,53 @@ class Meanings:
         return answer(Search(self.basis.specification, query, setting, options))
 
     def _shown(self, drive: Judged) -> tuple[str, ...]:
-        return tuple(sorted({x.what for x in shown_by(drive.file, self.asked, Freedom())}))
+        return tuple(sorted({x.what for x in all_shown_by(drive.file, self.asked, Freedom())}))
 
-    def doubt(self, piece: Piece, reason: str) -> dict[str, Facts]:
+    def doubt(self, piece: Piece, reason: str) -> dict[str, Kept]:
         match piece:
+            case GapPiece(inside):
+                assert self.survey is not None
+                return {GAPS + name: AboutGaps(x) for name, x in self.survey.doubt(inside, reason).items()}
             case Pair(one, other):
                 return {_name(one.id, other.id): ()}
             case Abstract():
                 return {_name(piece.id): (Fact(piece.id, "", "open", piece.query, reason=reason),)}
+            case Reach(target, term, query):
+                return {_name(target, term): (Fact("", target, "open", query, reason=reason, term=term),)}
 
-    def is_sure(self, answer: Facts) -> bool:
+    def is_sure(self, answer: Kept) -> bool:
+        if isinstance(answer, AboutGaps):
+            return self.survey is not None and self.survey.is_sure(answer.answer)
         return all(fact.relation != "open" for fact in answer)
 
-    def record(self, name: str, answer: Facts, shelf: Shelf) -> dict[str, Any]:
-        return {"name": name, "facts": [_record(fact, f"{name}-{k}", shelf) for k, fact in enumerate(answer)]}
+    def record(self, name: str, answer: Kept, shelf: Shelf) -> dict[str, Any]:
+        if isinstance(answer, AboutGaps):
+            assert self.survey is not None
+            said = self.survey.record(name.removeprefix(GAPS), answer.answer, shelf)
+            return {"name": name, "facts": [], "gaps": said}
+        facts = [record_of(fact, f"{name}-{k}", shelf) for k, fact in enumerate(answer)]
+        return {"name": name, "facts": facts, "gaps": None}
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Facts]:
-        return record["name"], tuple(self._recall(said, shelf) for said in record["facts"])
-
-    def _recall(self, said: Mapping[str, Any], shelf: Shelf) -> Fact:
-        relation = said["relation"]
-        if relation not in get_args(Relation):
-            raise InputError(f"relation={relation!r} is none of {', '.join(get_args(Relation))}")
-        premise = read_claim(self.basis.specification, said["premise"])
-        conclusion = said["conclusion"] and read_claim(self.basis.specification, said["conclusion"])
-        certificate, drive = shelf.read_certificate(said["certificate"]), shelf.read_drive(said["drive"])
-        told = said["test"], said["other"], relation, premise, conclusion or None, said["reason"]
-        return Fact(*told, certificate, drive, tuple(said["also"]))
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
+        if record.get("gaps") is None:
+            return record["name"], tuple(
+                read_fact(said, self.basis.specification, shelf) for said in record["facts"]
+            )
+        kinds = self.gaps or self.asked.gaps
+        if kinds is None:
+            raise InputError("there are no classes of gaps here")
+        name, answer = kinds.study().recall(record["gaps"], shelf)
+        return GAPS + name, AboutGaps(answer)
 
 
-def _record(fact: Fact, name: str, shelf: Shelf) -> dict[str, Any]:
-    return {
-        "test": fact.test,
-        "other": fact.other,
-        "relation": fact.relation,
-        "premise": fact.premise.text,
-        "conclusion": None if fact.conclusion is None else fact.conclusion.text,
-        "formula": fact.query.text,
-        "verdict": str(fact.verdict),
-        "reason": fact.reason,
-        "certificate": shelf.certificate(f"proofs/{name}.json", fact.certificate),
-        "drive": shelf.drive(f"drives/{name}.json", fact.drive),
-        "also": list(fact.also),
-    }
+def facts_in(answer: Kept) -> Facts:
+    """What an answer says about tests."""
+    return () if isinstance(answer, AboutGaps) else answer
+
+
+def gap_answers(known: Mapping[str, Kept]) -> dict[str, pieces.Kept]:
+    """What is known of gaps, by the names of the survey."""
+    return {n.removeprefix(GAPS): x.answer for n, x in known.items() if isinstance(x, AboutGaps)}
 
 
 def _name(one: str, other: str = "") -> str:

@@ -2,7 +2,8 @@
 
 Each ``[[test]]`` of a ``catalogue.toml`` has an ``id``, and either a ``file`` (a concrete test; beside the
 TOML, or vehicles of a recording as ``01_tracks.csv:12,15``) or a ``formula`` (an abstract one). ``claims``
-are numbers of scenarios and names of classes that the test is meant to show.
+are numbers of scenarios and names of classes that the test is meant to show; ``copy_of`` is the id of a test
+of which the file is the same drive in another format.
 """
 
 import re
@@ -19,12 +20,13 @@ from roadproof.formats.source import TRACK_FILES, first_line
 from roadproof.spec.compose import always, both
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
+from roadproof.spec.motion import split
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import claimed
 from roadproof.world.models import load_road, load_vehicle, read_toml
 
 FILE_NAME = "catalogue.toml"
-_FIELDS = ("id", "title", "file", "formula", "claims", "road", "vehicles", "at_start", "always")
+_FIELDS = ("id", "title", "file", "copy_of", "formula", "claims", "road", "vehicles", "at_start", "always")
 _OF_FORMULAS = ("road", "vehicles", "at_start", "always")
 _LOOK = 400  # bytes of a file that tell what it is
 _RANGE = re.compile(r"\s*(.+?)\s*\.\.\s*(.+?)\s*")
@@ -155,7 +157,10 @@ def _entry(path: Path, test: Mapping[str, Any], where: str, specification: Speci
         for name in _OF_FORMULAS:
             if name in test:
                 raise InputError(f"{where}, id={own_id}: {name} is for tests with a formula")
-        return Concrete(own_id, str(path.parent / _text(test, "file", where)), title, claims)
+        original = _text(test, "copy_of", where) if "copy_of" in test else ""
+        return Concrete(own_id, str(path.parent / _text(test, "file", where)), title, claims, original)
+    if "copy_of" in test:
+        raise InputError(f"{where}, id={own_id}: copy_of is for tests with a file")
     query = both(*_parts(test, where, specification))
     road = None if "road" not in test else load_road(_beside(path, _text(test, "road", where)))
     models = _table(test, "vehicles", where)
@@ -165,7 +170,11 @@ def _entry(path: Path, test: Mapping[str, Any], where: str, specification: Speci
 
 def _parts(test: Mapping[str, Any], where: str, specification: Specification) -> Iterator[Query]:
     """The formula, and each of its ranges as a formula."""
-    yield read_claim(specification, _text(test, "formula", where), f"{where}, formula")
+    said, claim = split(_text(test, "formula", where), f"{where}, formula")
+    if said:
+        told = f"assuming {', '.join(said)}"
+        raise InputError(f"{where}, formula: leave '{told}:' out; the drives of a test are motions as it is")
+    yield read_claim(specification, claim, f"{where}, formula")
     for field, put in (("at_start", both), ("always", always)):
         for term, told in _table(test, field, where).items():
             read = _RANGE.fullmatch(told)

@@ -21,7 +21,7 @@ from roadproof.judge.truth import START, Cut, TruthSet
 from roadproof.logic import formula as f
 from roadproof.monitoring.compiled import compile
 from roadproof.signals import SignalName
-from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, name_of
+from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of
 
 MOST_VEHICLES = 8
 """In a scenario of CommonRoad of which no vehicles are named."""
@@ -43,7 +43,7 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Shown:
-    """A scenario, a class or ``ENDANGERED`` that holds from the instant ``at`` (s) on, first of all there.
+    """A scenario, a class, ``ENDANGERED``, ``GAP`` or a class of gaps, from the instant ``at`` (s) on first.
 
     ``vehicles`` are called what the test calls them, in the order of the scenario's roles.
     """
@@ -93,11 +93,14 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
     claims = entry.claims
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
-    states = {name: (m.s, m.d, m.v_lon) for name, m in file.drive.vehicles.items()}
-    begins = _begins({name: tuple(map(float, state)) for name, state in states.items()})
     others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
+    return ConcreteAnswer(entry, claims, all_shown_by(file, asked, freedom), begins_of(file), True, others)
+
+
+def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
+    """As ``shown_by``, gaps too."""
     shown = shown_by(file, asked, freedom)
-    return ConcreteAnswer(entry, claims, (*shown, *_gap(file, asked, shown)), begins, True, others)
+    return (*shown, *_gap(file, asked, shown))
 
 
 def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Shown]:
@@ -106,7 +109,8 @@ def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Sh
     if danger is not None and {x.what for x in shown} == {ENDANGERED}:
         wider = {x.what for x in shown_by(file, asked, Freedom(roles=True, lanes=True))}
         if wider == {ENDANGERED}:
-            yield replace(danger, what=GAP)
+            kinds = () if asked.gaps is None else asked.gaps.of_drive(file, endangered(danger.vehicles))
+            yield from (replace(danger, what=what) for what in (GAP, *kinds))
 
 
 def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
@@ -162,6 +166,7 @@ def _what(asked: Asked, roles: tuple[str, ...], true: frozenset[Key]) -> Iterato
 def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswer:
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
     begins: dict[str, float] = {}
+    endangered_in: dict[Shown, OneTrace] = {}
     for trace, told in _traces(entry, freedom):
         names = tuple(trace.lanes)
         free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
@@ -170,8 +175,17 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
                 for what, at in _monitored(trace, asked, roles, vehicles, lane):
                     called = tuple(told.get(name, name) for name in vehicles)
                     shown.setdefault((what, called, lane), Shown(what, called, lane, at))
+        dangers = [x for x in shown.values() if x.what == ENDANGERED]
+        if dangers and tuple(trace.lanes) == PAIR:
+            endangered_in.setdefault(min(dangers, key=lambda x: x.at), trace)
         begins = begins or _begins(_states(trace))
-    return ConcreteAnswer(entry, entry.claims, _sorted(shown.values()), begins)
+    gaps = [
+        gap
+        for danger, trace in endangered_in.items()
+        if {x.what for x in shown.values()} == {ENDANGERED}
+        for gap in _gap_in_samples(trace, asked, danger)
+    ]
+    return ConcreteAnswer(entry, entry.claims, (*_sorted(shown.values()), *gaps), begins)
 
 
 def _monitored(
@@ -187,6 +201,19 @@ def _monitored(
         true = frozenset(key for key, truth in truths.items() if truth[sample])
         for what in _what(asked, roles, true):
             yield what, float(sample * trace.batch.dt)
+
+
+def first_trace(entry: Concrete, freedom: Freedom) -> OneTrace | None:
+    """The first trace of a test that is samples. Raises ``InputError``."""
+    return next((trace for trace, _ in _traces(entry, freedom)), None)
+
+
+def _gap_in_samples(trace: OneTrace, asked: Asked, danger: Shown) -> Iterator[Shown]:
+    """The danger of SV and POV as a gap, where no scenario covers it, whatever comes after the trace."""
+    sample = round(danger.at / float(trace.batch.dt))
+    kinds = () if asked.gaps is None else asked.gaps.of_trace(trace, sample)
+    if kinds:
+        yield from (replace(danger, what=what) for what in (GAP, *kinds))
 
 
 def _traces(entry: Concrete, freedom: Freedom) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
@@ -221,6 +248,12 @@ def _all_of(recording: Recording, place: str) -> Iterator[tuple[OneTrace, Mappin
 def _states(trace: OneTrace) -> dict[str, tuple[float, ...]]:
     signals = trace.batch.signals
     return {n: tuple(float(signals[x, n][0, 0]) for x in _STATE) for n in trace.lanes}
+
+
+def begins_of(file: DriveFile) -> dict[str, float]:
+    """How a drive begins, numbers by name."""
+    states = {name: (m.s, m.d, m.v_lon) for name, m in file.drive.vehicles.items()}
+    return _begins({name: tuple(map(float, state)) for name, state in states.items()})
 
 
 # --- both ----------------------------------------------------------------------------------------

@@ -1,14 +1,18 @@
 """What a catalogue tests and what it misses, which tests are not what they claim, and which say the same."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from roadproof.analysis.catalogue.asked import NOWHERE, Asked
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.analysis.catalogue.meaning import Fact, Facts
+from roadproof.analysis.catalogue.fact import Fact
+from roadproof.analysis.catalogue.gaps import PREFIX
+from roadproof.analysis.catalogue.meaning import Kept, facts_in
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
+from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.spec.scenarios import name_of
 from roadproof.spec.words import called
+from roadproof.verdict import Verdict
 
 
 @dataclass(frozen=True)
@@ -36,12 +40,34 @@ class Remark:
 
 
 @dataclass(frozen=True)
+class TestedGaps:
+    """Classes of gaps: the ``targets`` that are not ``empty``, which is proved, in order.
+
+    ``asked``: whether gaps are to be tested too, so that it was asked which are empty; ``open``: the names of
+    those of which neither a drive nor a proof was found, with the reason. Without it there are the classes
+    that tests show, and ``total`` of all.
+    """
+
+    asked: bool = False
+    targets: tuple[Target, ...] = ()
+    empty: tuple[Target, ...] = ()
+    open: Mapping[str, str] = field(default_factory=dict)
+    total: int = 0
+
+    @property
+    def missing(self) -> tuple[Target, ...]:
+        """Those that are asked for, that there are, and that no test shows."""
+        return tuple(x for x in self.targets if self.asked and not x.tested and x.name not in self.open)
+
+
+@dataclass(frozen=True)
 class Tested:
     """The targets in order, and what is remarked: ``faults`` of tests that are not what they claim or show
     nothing, ``doubts``, tests that are ``alike``, and ``contradictions`` between what was proved and seen.
     """
 
     targets: tuple[Target, ...]
+    gaps: TestedGaps
     faults: tuple[Remark, ...]
     doubts: tuple[Remark, ...]
     alike: tuple[Remark, ...]
@@ -49,8 +75,13 @@ class Tested:
 
     @property
     def missing(self) -> tuple[Target, ...]:
-        """The targets that no test shows."""
-        return tuple(x for x in self.targets if not x.tested)
+        """What is to be tested, and no test shows."""
+        return (*(x for x in self.targets if not x.tested), *self.gaps.missing)
+
+    @property
+    def all_targets(self) -> tuple[Target, ...]:
+        """Scenarios, classes, and classes of gaps."""
+        return (*self.targets, *self.gaps.targets)
 
 
 def tested(
@@ -60,18 +91,61 @@ def tested(
     facts: Sequence[Fact],
     words: Mapping[str, str],
     near: float,
+    surveyed: Mapping[str, ClassAnswer | None] | None,
 ) -> Tested:
     """All of it. ``words``: each target by name, in words, in order; ``near``: how far tests that say the
-    same may begin apart, in m and m/s.
+    same may begin apart, in m and m/s; ``surveyed``: what is known of each class of gaps by name, None of
+    those that tests show, where gaps are to be tested too.
     """
     sectors = sectors_of(asked)
+    gaps = _gaps(asked, concrete, facts, surveyed)
+    known = {*words, *(x.name for x in (*gaps.targets, *gaps.empty))}
     return Tested(
         tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
-        (*_unreadable(concrete), *_of_concrete(concrete, words), *_of_abstract(abstract, facts)),
-        tuple(_doubts(abstract, facts)),
+        gaps,
+        (*_unreadable(concrete), *_of_concrete(concrete, known, gaps.asked), *_of_abstract(abstract, facts)),
+        (*_doubts(abstract, facts), *_open_gaps(gaps)),
         (*_same(concrete, near), *_implied(abstract, facts)),
-        tuple(_contradictions(concrete, facts)),
+        (*_contradictions(concrete, facts), *_shown_though_empty(gaps)),
     )
+
+
+def _gaps(
+    asked: Asked,
+    concrete: Sequence[ConcreteAnswer],
+    facts: Sequence[Fact],
+    surveyed: Mapping[str, ClassAnswer | None] | None,
+) -> TestedGaps:
+    """The classes of gaps; those that are shown or claimed where it is not asked for all."""
+    wanted = {x for answer in concrete for x in (*answer.names, *answer.claims) if x.startswith(PREFIX)}
+    wanted |= {x for fact in facts for x in fact.also if x.startswith(PREFIX)}
+    if asked.gaps is None or not (wanted or surveyed is not None):
+        return TestedGaps()
+    words = asked.gaps.words
+    made = {name: _target(name, told, "", concrete, facts) for name, told in words.items()}
+    if surveyed is None:
+        shown = tuple(x for x in made.values() if x.name in wanted)
+        return TestedGaps(targets=shown, total=len(made))
+    verdicts = {name: answer.verdict for name, answer in surveyed.items() if answer is not None}
+    empty = tuple(x for x in made.values() if verdicts.get(x.name) is Verdict.IMPOSSIBLE)
+    still_open = {
+        name: answer.reason
+        for name, answer in surveyed.items()
+        if answer is not None and answer.verdict is Verdict.UNKNOWN and not made[name].tested
+    }
+    left = tuple(x for x in made.values() if x not in empty)
+    return TestedGaps(True, left, empty, still_open, len(made))
+
+
+def _open_gaps(gaps: TestedGaps) -> Iterator[Remark]:
+    for name, reason in gaps.open.items():
+        yield Remark((name,), f"whether there is such a gap is in doubt: {reason}")
+
+
+def _shown_though_empty(gaps: TestedGaps) -> Iterator[Remark]:
+    for target in gaps.empty:
+        for test in (*target.tested, *target.possible):
+            yield Remark((test,), f"shows {target.name}, though that is proved to be empty")
 
 
 def targets_of(asked: Asked) -> dict[str, str]:
@@ -122,24 +196,32 @@ def _unreadable(concrete: Sequence[ConcreteAnswer]) -> Iterator[Remark]:
     yield from (Remark((x.entry.id,), f"cannot be read: {x.fault}") for x in concrete if x.fault)
 
 
-def _of_concrete(concrete: Sequence[ConcreteAnswer], words: Mapping[str, str]) -> Iterator[Remark]:
+def _of_concrete(concrete: Sequence[ConcreteAnswer], known: Collection[str], gaps: bool) -> Iterator[Remark]:
+    """Tests that do not show what they claim, or nothing at all; ``gaps``: whether a gap is something.
+
+    A copy whose format cannot say enough claims nothing.
+    """
     for x in concrete:
         if x.fault:
             continue
         shown = sorted(x.names - {ENDANGERED, GAP, NOWHERE})
         for claim in x.claims:
-            if claim not in words:
+            if claim not in known:
                 yield Remark((x.entry.id,), f"claims {claim}, {_NO_TARGET}")
             elif claim not in x.names:
                 told = f"claims {claim}, and shows {', '.join(shown) or 'no scenario'}"
                 yield Remark((x.entry.id,), told + _with_other_values(x))
-        if not shown and not x.claims:
+        if not any(gaps or not name.startswith(PREFIX) for name in shown) and not (
+            x.claims or x.entry.copy_of
+        ):
             yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}")
 
 
 def _of_danger(answer: ConcreteAnswer) -> str:
     if GAP in answer.names:
-        return ", though danger comes: a gap, which no scenario covers for any lane and in any roles"
+        kinds = [x for x in sorted(answer.names) if x.startswith(PREFIX)]
+        told = ", though danger comes: a gap, which no scenario covers for any lane and in any roles"
+        return f"{told} ({', '.join(kinds)})" if kinds else told
     return ", though danger comes" if ENDANGERED in answer.names else ""
 
 
@@ -180,10 +262,13 @@ def _says_something(known: Mapping[str, Fact]) -> bool:
 
 
 def _doubts(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
-    """Tests that may never be run, and claims neither shown nor excluded; other scenarios are no matter."""
+    """Tests that may never be run, claims neither shown nor excluded, and ends of ranges; other scenarios
+    are no matter."""
     claims = {entry.id: entry.claims for entry in abstract}
     for fact in facts:
-        if fact.relation == "open" and (not fact.other or fact.other in claims[fact.test]):
+        if fact.relation == "open" and not fact.test:
+            yield Remark((fact.other,), f"how far its drives go is in doubt: {fact.reason}")
+        elif fact.relation == "open" and (not fact.other or fact.other in claims[fact.test]):
             what = f"whether it can show {fact.other}" if fact.other else "whether it can be run"
             yield Remark((fact.test,), f"{what} is in doubt: {fact.reason}")
 
@@ -202,10 +287,11 @@ _SAME = 1e-6  # m, m/s: samples are rounded
 
 
 def _same(concrete: Sequence[ConcreteAnswer], near: float) -> Iterator[Remark]:
-    """Tests that show the same and begin nearly as the first of them does."""
+    """Tests that show the same and begin nearly as the first of them does; copies are not told."""
+    ids = {x.entry.id for x in concrete}
     groups: dict[tuple[frozenset[str], tuple[str, ...]], list[list[ConcreteAnswer]]] = {}
     for x in concrete:
-        if x.fault:
+        if x.fault or x.entry.copy_of in ids:
             continue
         known = groups.setdefault((x.names, tuple(x.begins)), [])
         alike = next((those for those in known if _apart(those[0], x) <= near), None)
@@ -234,6 +320,6 @@ def _implied(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Re
             yield Remark((one, other), "have the same drives: that is proved")
 
 
-def all_facts(answers: Mapping[str, Facts]) -> tuple[Fact, ...]:
+def all_facts(answers: Mapping[str, Kept]) -> tuple[Fact, ...]:
     """What is known of all abstract tests."""
-    return tuple(fact for facts in answers.values() for fact in facts)
+    return tuple(fact for answer in answers.values() for fact in facts_in(answer))

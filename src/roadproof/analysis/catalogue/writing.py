@@ -1,19 +1,37 @@
 """A ``catalogue.toml`` for drives that complete a catalogue."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 
-def catalogue_text(targets: Mapping[str, str]) -> str:
-    """An entry for the drive of each target, NAME.json, by name, with its words as the title."""
-    entries = [
-        f"[[test]]\nid = {_quoted(name)}\ntitle = {_quoted(words)}\nfile = {_quoted(f'{name}.json')}\n"
-        f"claims = [{_quoted(name)}]\n"
-        for name, words in targets.items()
-    ]
-    return "\n".join(entries)
+@dataclass(frozen=True)
+class Listed:
+    """An entry: a concrete test in ``file``; ``copy_of``: the test of which it is the same drive, if any."""
+
+    id: str
+    title: str
+    file: str
+    claims: tuple[str, ...]
+    copy_of: str = ""
 
 
-def _quoted(text: str) -> str:
-    """A basic string of TOML, which is one of JSON."""
-    return json.dumps(text, ensure_ascii=False)
+def catalogue_text(entries: Iterable[Listed]) -> str:
+    """The entries as TOML."""
+    return "\n".join(map(_entry, entries))
+
+
+def _entry(entry: Listed) -> str:
+    said: dict[str, str | list[str]] = {
+        "id": entry.id,
+        "title": entry.title,
+        "file": entry.file,
+        "claims": [*entry.claims],
+    }
+    said |= {"copy_of": entry.copy_of} if entry.copy_of else {}
+    return "[[test]]\n" + "".join(f"{field} = {_written(value)}\n" for field, value in said.items())
+
+
+def _written(value: str | list[str]) -> str:
+    """A basic string of TOML, or an array of some, which are written as in JSON."""
+    return json.dumps(value, ensure_ascii=False)

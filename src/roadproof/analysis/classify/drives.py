@@ -8,6 +8,7 @@ from typing import get_args
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import Class
+from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.placing import placed, placed_on, zones_of
 from roadproof.effort import Late
 from roadproof.evidence.judged import Judged
@@ -35,18 +36,21 @@ class Example:
     drive: Judged | None = None
 
 
-def find_examples(basis: Basis, classes: Sequence[Class], known: Sequence[Judged] = ()) -> list[Example]:
+def find_examples(
+    basis: Basis, classes: Sequence[Class], known: Sequence[Judged] = (), more: Query | None = None
+) -> list[Example]:
     """Examples of classes in which the same happens in different places; ``basis`` is about their set.
 
-    ``known``: drives of others of these classes.
+    ``known``: drives of others of these classes; ``more``: what is to hold beside.
     """
-    searching = _Searching(basis, known)
+    searching = _Searching(basis, known, more)
     return [searching.example(one) for one in classes]
 
 
 class _Searching:
-    def __init__(self, basis: Basis, known: Sequence[Judged]) -> None:
+    def __init__(self, basis: Basis, known: Sequence[Judged], more: Query | None) -> None:
         self.basis = basis
+        self.more = [] if more is None else [more]
         self.found = list(known)
         self.failures = 0
 
@@ -58,7 +62,7 @@ class _Searching:
             return Example(one, Verdict.UNKNOWN, str(late))
 
     def _find(self, one: Class) -> Example:
-        query = one.query(self.basis.specification)
+        query = with_parts(one.query(self.basis.specification), self.more)
         for judged in self.found:
             here = self._elsewhere(judged, query)
             if here is not None:

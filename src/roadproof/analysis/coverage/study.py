@@ -4,10 +4,10 @@ Claims of coverage come first. Where they are proved, only the definitions are l
 else the simple drives are looked through, and gaps among them are what the classes begin with.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeGuard
 
 from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
 from roadproof.analysis.coverage.claims import Covered, claims_of, prove_claim
@@ -15,6 +15,7 @@ from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap, find_among_simple
 from roadproof.analysis.coverage.needed import Need, find_need, parent_of, replaced_by
 from roadproof.analysis.coverage.occurring import GapTraffic, with_counts
+from roadproof.analysis.coverage.parts import Part
 from roadproof.analysis.coverage.pieces import (
     Chunk,
     Component,
@@ -203,6 +204,16 @@ class Coverage:
             classes = [with_counts(x, traffic) for x in classes]
         return Surveyed(claims, tuple(classes), tuple(sorted(needs, key=lambda x: x.definition)), traffic)
 
+    def classes_in(self, answers: Mapping[str, Kept]) -> Callable[[Part | None], ClassAnswer | None]:
+        """What is known of the class of a part; all are empty where it is proved that there is no gap."""
+        known = {x.part and x.part.key: x for a in answers.values() if _is_classes(a) for x in a}
+        none = is_covered(self._proved(answers))
+
+        def find(part: Part | None) -> ClassAnswer | None:
+            return ClassAnswer(part, Verdict.IMPOSSIBLE) if none else known.get(part and part.key)
+
+        return find
+
     def _shown(self, answers: Mapping[str, Kept]) -> list[str]:
         """The names of the groups that have answers, in order; none is shown where no gap can be."""
         return [] if is_covered(self._proved(answers)) else list(self.groups)
@@ -231,6 +242,10 @@ class Coverage:
             "needs": [records[name_of(NeededDefinition(x.definition))]["need"] for x in surveyed.needs],
             "traffic": None if surveyed.traffic is None else surveyed.traffic.as_data(),
         }
+
+
+def _is_classes(answer: Kept) -> TypeGuard[tuple[ClassAnswer, ...]]:
+    return isinstance(answer, tuple)
 
 
 def _concerning(group: GapGroup, found: Sequence[FoundGap]) -> tuple[FoundGap, ...]:

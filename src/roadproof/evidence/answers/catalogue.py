@@ -6,22 +6,27 @@ folder: the question has to be asked again to know it.
 
 from collections.abc import Iterator, Sequence
 
+from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of, shows_of_claim
 from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields
+from roadproof.evidence.strict import Fields, rational
+from roadproof.logic.formula import Compare, Formula
+from roadproof.logic.terms import constant_value
 from roadproof.spec.compose import both, implication, negation
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.scenarios import Scenario, applied, number_in
 
 SCHEMA = "roadproof/catalogue/1"
 _FACT = ("test", "other", "relation", "premise", "conclusion", "formula", "verdict", "reason")
-_FACT_MORE = ("certificate", "drive", "also")
+_FACT_MORE = ("certificate", "drive", "also", "term", "sense", "at")
+_GAPS = ("asked", "classes_in_all", "targets", "empty", "open", "claims", "classes")
 _VERDICTS = {
     "implies": "PROVED",
     "excludes": "PROVED",
     "shows": "WITNESSED",
     "runs": "WITNESSED",
     "empty": "IMPOSSIBLE",
+    "reaches": "WITNESSED",
     "open": "UNKNOWN",
 }
 
@@ -40,15 +45,35 @@ def read(facts: Sequence[object], background: Background, where: str) -> Iterato
         yield Entry(
             common,
             line.where,
-            (test, other, relation),
+            (test, other, relation, line.text("term"), line.text("sense")),
             verdict,
             f"{test} {relation} {other}".strip(),
             shows,
             claim,
             one_of(line, shows),
-            unchecked=("that the premise is the formula of the test",),
+            unchecked=_unchecked(relation),
             fault=_fault(line, common, relation, other, claim),
         )
+
+
+def _bounds(line: Fields, common: Common, conclusion: Formula) -> bool:
+    """Whether a formula says that the term of a line is at its value, or beyond, as its sense is."""
+    term, value = line.text("term"), rational(line.get("at"), f"{line.where}, at")
+    sign = {"least": "<=", "greatest": ">="}.get(line.text("sense"), "=")
+    unit = "m/s" if term.startswith("v") else "m"
+    bare = common.formula(f"{term} {sign} 0 {unit}")
+    return (
+        isinstance(conclusion, Compare)
+        and isinstance(bare, Compare)
+        and (conclusion.left, conclusion.op) == (bare.left, bare.op)
+        and constant_value(conclusion.right) == value
+    )
+
+
+def _unchecked(relation: str) -> tuple[str, ...]:
+    if relation == "reaches":
+        return ("that the premise is the formula of a class", "that no drive goes farther")
+    return ("that the premise is the formula of the test",)
 
 
 def _fault(line: Fields, common: Common, relation: str, other: str, claim: str) -> str:
@@ -61,11 +86,15 @@ def _fault(line: Fields, common: Common, relation: str, other: str, claim: str) 
         expected = premise
     else:
         conclusion = read_claim(common.specification, line.text("conclusion"))
-        number = number_in(other)
+        name, _, set_name = other.partition("@")
+        number = number_in(name)
         if number is not None:
-            named = applied(common.specification, Scenario(number, common.set_name))
-            if named.formula != conclusion.formula:
-                return f"{line.where}: its conclusion is not {other}"
+            named = applied(common.specification, Scenario(number, set_name or common.set_name))
+            about, said = ("premise", premise) if relation == "reaches" else ("conclusion", conclusion)
+            if named.formula != said.formula:
+                return f"{line.where}: its {about} is not {other}"
+        if relation == "reaches" and not _bounds(line, common, conclusion.formula):
+            return f"{line.where}: its conclusion is not that its term is at its value or beyond"
         match relation:
             case "implies":
                 expected = implication(premise, conclusion)
@@ -78,14 +107,34 @@ def _fault(line: Fields, common: Common, relation: str, other: str, claim: str) 
     return ""
 
 
+def read_gaps(claims: Sequence[object], classes: Sequence[object], background: Background) -> Iterator[Entry]:
+    """What is said of classes of gaps, as an index of ``coverage`` says it. Raises ``InputError``."""
+    yield from coverage.read_claims(background.home, claims)
+    yield from coverage.read_classes(background.home, classes)
+
+
+def _read_index(data: Fields, background: Background) -> Iterator[Entry]:
+    yield from read(data.items("facts"), background, data.where)
+    gaps = Fields(data.mapping("gaps"), f"{data.where}, gaps", _GAPS)
+    yield from read_gaps(gaps.items("claims"), gaps.items("classes"), background)
+
+
+def _read_record(record: Fields, background: Background) -> Iterator[Entry]:
+    yield from read(record.items("facts"), background, record.where)
+    if record.has("gaps"):
+        said = Fields(record.mapping("gaps"), f"{record.where}, gaps", ("claim", "group", "classes"))
+        claims = [said.get("claim")] if said.has("claim") else []
+        yield from read_gaps(claims, said.items("classes") if said.has("classes") else [], background)
+
+
 READER = Reader(
     schema=SCHEMA,
     said=("set", "options", "parameters", "scenarios", "specs"),
     index=(
         *("view", "seconds", "facts", "tests", "targets", "not_tested", "faults", "doubts", "alike"),
-        *("contradictions", "notes"),
+        *("contradictions", "notes", "gaps", "figures", "ranges"),
     ),
-    read_index=lambda data, background: read(data.items("facts"), background, data.where),
-    record=("name", "facts"),
-    read_record=lambda record, background: read(record.items("facts"), background, record.where),
+    read_index=_read_index,
+    record=("name", "facts", "gaps"),
+    read_record=_read_record,
 )

@@ -1,0 +1,140 @@
+"""Gaps of the scenarios that tests are asked about, in the classes of ``coverage``, which have names here.
+
+A gap is a drive from safety into danger on which none of the scenarios between two vehicles holds, for any
+lane and in either role. Its classes say why: each scenario fails for one part alone, or for several.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.coverage.classes import GapClasses, GapSurvey
+from roadproof.analysis.coverage.parts import Part
+from roadproof.analysis.coverage.study import Coverage
+from roadproof.errors import UsageError
+from roadproof.evaluation.one_trace import OneTrace
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.monitoring.compiled import compile
+from roadproof.spec.bind import bind
+from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import (
+    PAIR,
+    TEMPLATE,
+    Scenario,
+    follows_template,
+    likes_of,
+    name_of,
+    number_in,
+    vehicles_of,
+)
+from roadproof.spec.words import called
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_road
+
+PREFIX = "gap_"
+NO_SINGLE = f"{PREFIX}no_single_condition"
+ROADS = ("main-2", "main-3")
+EFFORT = 10.0
+"""Most units of work for a search for one gap; the simple drives are looked through before."""
+
+
+@dataclass(frozen=True)
+class GapKinds:
+    """The classes of gaps of the scenarios ``numbers``."""
+
+    basis: Basis
+    numbers: tuple[int, ...]
+
+    @cached_property
+    def classes(self) -> GapClasses:
+        """What the judge is asked."""
+        return GapClasses(self._basis)
+
+    @cached_property
+    def _basis(self) -> Basis:
+        """About these scenarios alone."""
+        home = self.basis.specification
+        kept = {name: x for name, x in home.definitions.items() if number_in(name) in {None, *self.numbers}}
+        effort = self.basis.effort
+        return replace(
+            self.basis,
+            specification=Specification(home.library, home.set_name, home.options, kept),
+            sets=(),
+            effort=effort.of(min(effort.units, EFFORT)),
+        )
+
+    @cached_property
+    def parts(self) -> Mapping[str, Part | None]:
+        """By the name of a class, the part that is to blame; None for that of gaps with no single one."""
+        found: dict[str, Part | None] = {}
+        for group in self.classes.groups():
+            for k, part in enumerate(group.parts):
+                found[NO_SINGLE if part is None else _name(part, k)] = part
+        return found
+
+    @cached_property
+    def words(self) -> Mapping[str, str]:
+        """What a gap of each class is, by name."""
+        scenarios = called(self.basis.specification, self.numbers)
+        found = {}
+        for name, part in self.parts.items():
+            if part is None:
+                found[name] = "danger outside all scenarios, and no single condition is to blame"
+            else:
+                what = part.condition or f"{part.component} ({part.description})"
+                found[name] = f"as {part.scenario} {scenarios[part.scenario].title}, but not {what}"
+        return found
+
+    def study(self) -> Coverage:
+        """For each class a drive or a proof that it is empty, as a study."""
+        return Coverage(GapSurvey(self._basis, roads=tuple(map(load_road, ROADS))))
+
+    def of_drive(self, file: DriveFile, pair: Sequence[str]) -> tuple[str, ...]:
+        """The classes of a gap between the two vehicles ``pair`` of a drive."""
+        motions = {role: file.drive.vehicles[name] for role, name in zip(PAIR, pair, strict=True)}
+        keys = {*self.classes.of(replace(file, drive=Drive(motions)))}
+        return tuple(name for name, part in self.parts.items() if self.classes.has(part, keys))
+
+    def of_trace(self, trace: OneTrace, sample: int) -> tuple[str, ...]:
+        """The classes of samples of SV and POV, whatever comes after them; none where that may be no gap."""
+        numbers = self.classes.numbers_on(trace.road)
+        missed = bind(self.classes.missed(numbers).formula, trace.road, {}, self.classes.values)
+        asked = {"": missed, **self.classes.bind(trace.road)}
+        answers = compile(asked).evaluate(trace.batch, "truncated", at="all").answers
+        if not answers[""].true[sample, 0]:
+            return ()
+        keys = {key for key, answer in answers.items() if key and answer.true[sample, 0]}
+        none = all(answers[key].false[sample, 0] for key in self.classes.finest)
+        return tuple(n for n, part in self.parts.items() if (none if part is None else part.key in keys))
+
+
+def _name(part: Part, place: int) -> str:
+    return f"{PREFIX}{part.component}_{place}" if part.condition else f"{PREFIX}{part.component}"
+
+
+def gap_kinds(basis: Basis, numbers: Sequence[int]) -> GapKinds:
+    """The classes of gaps of these scenarios. Raises ``UsageError`` where they cannot be sorted into any."""
+    fault = next(_faults(basis.specification, numbers), "")
+    if fault:
+        raise UsageError(f"classes of gaps: {fault}")
+    return GapKinds(basis, tuple(numbers))
+
+
+def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
+    two = [n for n in numbers if len(vehicles_of(home, Scenario(n, home.set_name))) == len(PAIR)]
+    if not two:
+        yield "none of the scenarios is between two vehicles"
+    for number in two:
+        if not follows_template(home, number):
+            yield f"{name_of(number)} does not follow the template {TEMPLATE}; leave it out with --among"
+            return
+    kinds = GapKinds(Basis(home), tuple(numbers))
+    likes = likes_of(home)
+    rows = {tuple(sorted({likes[n] for n in sector})) for sector in kinds.classes.sectors}
+    if len(rows) > 1:
+        listed = ", ".join(map(str, two))
+        yield (
+            f"scenarios {listed} do not have the same disturbances in each road sector; name whole rows of "
+            "the table, such as 1-8, 9-16 or 1-24"
+        )

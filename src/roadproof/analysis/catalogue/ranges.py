@@ -1,0 +1,139 @@
+"""How drives that show a target can begin, and how tests of it begin: what part of the range nobody tests.
+
+How far a number can go is what drives show that were looked for, within limits; nothing is claimed of what
+lies beyond them, nor of values between tests, which are taken as covered.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import get_args
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.fact import Fact
+from roadproof.analysis.catalogue.showing import ConcreteAnswer
+from roadproof.analysis.explore.extreme import Sought, find_extreme
+from roadproof.analysis.explore.measure import Sense, read_measure
+from roadproof.analysis.placing import judged_as
+from roadproof.effort import Late
+from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.judged import Judged
+from roadproof.spec.compose import both
+from roadproof.spec.query import Query
+
+EFFORT = 6.0
+"""Most units of work for one search."""
+_PRECISION = {"s": Fraction(2), "d": Fraction(1, 4), "v": Fraction(1)}  # m, m, m/s
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How far can ``term`` go at the start of drives of ``query``, which show ``target``?
+
+    ``known``: drives of tests that do.
+    """
+
+    target: str
+    term: str
+    query: Query
+    known: tuple[Judged, ...] = ()
+
+
+@dataclass(frozen=True)
+class Span:
+    """Of one number at the start of drives that show ``target``: where tests are, and how far drives go.
+
+    Low and high, in m or m/s. ``beyond``: what is known of lower and of higher values.
+    """
+
+    target: str
+    term: str
+    tested: tuple[float, float]
+    reached: tuple[float, float]
+    beyond: tuple[str, str]
+
+    @property
+    def untested(self) -> tuple[tuple[float, float], ...]:
+        """The parts of the range that no test is in or between."""
+        (low, high), (least, greatest) = self.tested, self.reached
+        parts = ((least, low), (high, greatest))
+        return tuple(part for part in parts if part[0] < part[1])
+
+    @property
+    def share(self) -> float:
+        """How much of the range that is."""
+        width = self.reached[1] - self.reached[0]
+        return sum(high - low for low, high in self.untested) / width if width else 0.0
+
+
+def reached(basis: Basis, reach: Reach) -> tuple[Fact, ...]:
+    """A drive at each end of the range, or why there is none."""
+    return tuple(_end(basis, reach, sense) for sense in get_args(Sense))
+
+
+def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
+    effort = basis.effort.of(min(basis.effort.units, EFFORT))
+    search = basis.search(reach.query, effort=effort)
+    measure = read_measure(basis.specification, sense, reach.term, given=reach.query.claim.given)
+    told = f"the {sense} {reach.term}"
+    still_open = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
+    try:
+        found = find_extreme(Sought(search, measure, _PRECISION[reach.term[0]], seeds=reach.known))
+    except Late as late:
+        return replace(still_open, reason=f"{told}: {late}")
+    beyond = "" if found.missed is None else found.missed.reason
+    if found.best is None:
+        return replace(still_open, reason=f"{told}: {beyond}")
+    [value] = found.best.at
+    bound = both(*measure.bound(search, value))
+    made = replace(still_open, relation="reaches", conclusion=bound, reason=beyond, at=value)
+    return replace(made, drive=found.best.drive)
+
+
+def spans_of(targets: Mapping[str, Mapping[str, tuple[float, float]]], facts: Sequence[Fact]) -> list[Span]:
+    """The ranges of targets whose both ends are known; ``targets``: by name and number where tests are."""
+    ends: dict[tuple[str, str], dict[str, Fact]] = {}
+    for fact in facts:
+        if fact.relation == "reaches":
+            ends.setdefault((fact.other, fact.term), {})[fact.sense] = fact
+    return [
+        _span(name, term, tested, ends[name, term]["least"], ends[name, term]["greatest"])
+        for name, covered in targets.items()
+        for term, tested in covered.items()
+        if len(ends.get((name, term), {})) == 2
+    ]
+
+
+def _span(target: str, term: str, tested: tuple[float, float], low: Fact, high: Fact) -> Span:
+    """With the values of tests, which may go farther than the drives that were looked for."""
+    reached = min(float(low.at or 0), tested[0]), max(float(high.at or 0), tested[1])
+    return Span(target, term, tested, reached, (low.reason, high.reason))
+
+
+def reaches_of(
+    asked: Asked, targets: Mapping[str, Mapping[str, tuple[float, float]]], concrete: Sequence[ConcreteAnswer]
+) -> Iterator[Reach]:
+    """What is to be asked of targets that tests show: each number of how these begin."""
+    for name, covered in targets.items():
+        query = asked.query_of(name)
+        known = tuple(_known(asked, name, query, covered, concrete)) if covered else ()
+        yield from (Reach(name, term, query, known) for term in covered)
+
+
+def _known(
+    asked: Asked,
+    name: str,
+    query: Query,
+    covered: Mapping[str, tuple[float, float]],
+    concrete: Sequence[ConcreteAnswer],
+) -> Iterator[Judged]:
+    """The drives among tests that are at the ends of where tests are."""
+    home = asked.specification
+    for x in concrete:
+        at_end = any(x.begins.get(term) in ends for term, ends in covered.items())
+        if x.dense and name in x.names and at_end:
+            here = replace(load_drive(Path(x.entry.place)), set_name=home.set_name)
+            judged = judged_as(here, query, home.library)
+            yield from () if judged is None else (judged,)

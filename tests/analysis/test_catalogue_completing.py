@@ -1,0 +1,312 @@
+"""Catalogues made complete: gaps by class, drives far apart, copies for other tools; ranges nobody tests."""
+
+import json
+import shutil
+import tomllib
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+import roadproof as rp
+from cli.test_schemas import validator
+from roadproof.analysis.catalogue import far, gaps, ranges, tested
+from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.fact import Fact
+from roadproof.analysis.catalogue.gaps import NO_SINGLE
+from roadproof.analysis.catalogue.ranges import Reach
+from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
+from roadproof.analysis.coverage import claims, found, settling, study
+from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.analysis.coverage.classes import near_miss
+from roadproof.api import cataloguing
+from roadproof.api.cataloguing import Catalogued, catalogue
+from roadproof.cli.main import main
+from roadproof.errors import RoadproofError, UsageError
+from roadproof.evidence.drive_file import load_drive
+from roadproof.judge.exact import judge
+from roadproof.report import catalogue_drives
+from roadproof.report.catalogue_drives import Drawn, draw_tests
+from roadproof.report.figures import make_page, shorten
+from roadproof.spec.bind import bind
+from roadproof.verdict import Verdict
+
+HOME = rp.load()
+DRIVES = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives"
+CUT_IN, BRAKING, SEVEN = (DRIVES / f"{name}.json" for name in ("cut-in", "braking", "seven"))
+
+
+def asked_about(*numbers: int) -> Asked:
+    return Asked(HOME.specification, numbers, None, HOME.all_values())
+
+
+# --- gaps ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def asked() -> Asked:
+    return asked_about(1)
+
+
+@pytest.mark.parametrize("path", [BRAKING, SEVEN, CUT_IN], ids=lambda path: path.stem)
+def test_classes_of_a_gap_are_those_of_the_judge_one_by_one(path: Path, asked: Asked) -> None:
+    """Each part that can be left out so that its scenario holds, asked by itself."""
+    assert asked.gaps is not None
+    file, expected = load_drive(path), set()
+    for name, part in asked.gaps.parts.items():
+        if (
+            part is not None
+            and judge(bind(near_miss(part).formula, file.road, {}, asked.values), file.drive).holds
+        ):
+            expected.add(name)
+    names = show(Concrete("x", str(path)), asked, Freedom()).names
+    alone = {NO_SINGLE} if not expected else set()
+    shown = {name for name in names if name.startswith(gaps.PREFIX)}
+    assert shown == (expected | alone if GAP in names else set())
+    missed = bind(asked.gaps.classes.missed((1,)).formula, file.road, {}, asked.values)
+    assert (GAP in names) == judge(missed, file.drive).holds
+
+
+def test_scenarios_that_are_no_rows_have_no_classes_of_gaps() -> None:
+    assert asked_about(1, 4, 12).gaps is None
+    with pytest.raises(UsageError, match="name whole rows"):
+        catalogue(BRAKING, among="1,4,12", classes=False, gaps=True)
+    with pytest.raises(UsageError, match="--no-classes"):
+        catalogue(BRAKING, among="1,4,12")
+
+
+@pytest.fixture(scope="module")
+def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Catalogued, Path]]:
+    """A cut-in, asked about scenario 4 and its gaps, with few drives to look through and little work."""
+    simple, folder = found.simple_drives, tmp_path_factory.mktemp("gaps")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(found, "simple_drives", lambda road, car: islice(simple(road, car), 0, None, 60))
+        patch.setattr(gaps, "ROADS", ("main-2",))
+        patch.setattr(study, "CHUNKS", 1)
+        patch.setattr(claims, "PROOF", 1.0)
+        patch.setattr(settling, "LONG_PROOF", 2.0)
+        report = folder / "report"
+        made = catalogue(CUT_IN, among="4", classes=False, gaps=True, effort=0.2, jobs=1, out=report)
+        made.add_files(False)
+        yield made, folder
+
+
+def test_each_class_of_gaps_is_tested_missing_empty_or_in_doubt(surveyed: tuple[Catalogued, Path]) -> None:
+    made, folder = surveyed
+    told = made.tested.gaps
+    assert [x.name for x in told.targets if x.tested] == ["gap_behaviourPOV_4", NO_SINGLE]
+    assert [x.name for x in told.empty] == ["gap_initialCondition_4_2"]
+    assert [*told.open] == ["gap_behaviourSV_4", "gap_behaviourPOV_4_2"]
+    missing = ("gap_initialCondition_4", "gap_initialCondition_4_1", "gap_behaviourPOV_4_1")
+    assert made.missing == ("scenario_4", *missing)
+    assert made.verdicts["gap_initialCondition_4_2"] is Verdict.IMPOSSIBLE
+    assert made.verdicts["gap_behaviourSV_4"] is Verdict.UNKNOWN
+    assert made.exit_code == 20
+    assert "classes of gaps: 2 of 7 are tested\nclasses of gaps that are proved empty: 1" in str(made)
+    assert "base,classes of gaps,,2,7" in (folder / "report" / "figures.csv").read_text("utf-8")
+    assert main(["check", str(folder / "report"), "--jobs", "1"]) == 0
+    index = json.loads((folder / "report" / "index.json").read_text("utf-8"))
+    validator("catalogue.json").validate(index)
+    for kept in (folder / "report" / "answers").glob("*.json"):
+        validator("answer.json").validate(json.loads(kept.read_text("utf-8")))
+    assert made.plot().png.startswith(b"\x89PNG")
+
+
+def test_gaps_that_nobody_tests_are_made_and_found_again(surveyed: tuple[Catalogued, Path]) -> None:
+    made, folder = surveyed
+    completed = made.complete(folder / "more", jobs=1)
+    drives = {x.name for x in completed.completions if x.drive}
+    assert drives <= {*made.missing}
+    again = catalogue(CUT_IN, folder / "more", among="4", classes=False, jobs=1)
+    assert again.missing == ()
+    shown = {x.name for x in again.tested.gaps.targets if x.tested}
+    assert shown >= {x for x in made.missing if x.startswith(gaps.PREFIX)}
+    assert not [x for x in again.tested.faults if "cut-in" not in x.tests]
+    assert main(["check", str(folder / "more"), "--jobs", "1"]) == 0
+
+
+@pytest.mark.parametrize("field", ["verdict", "claim", "drive"])
+def test_forged_classes_of_gaps_are_refused(
+    field: str, surveyed: tuple[Catalogued, Path], tmp_path: Path
+) -> None:
+    report = tmp_path / "report"
+    shutil.copytree(surveyed[1] / "report", report)
+    shutil.rmtree(report / "answers")
+    (report / "question.json").unlink()
+    index = json.loads((report / "index.json").read_text("utf-8"))
+    empty = next(x for x in index["gaps"]["classes"] if x["verdict"] == "IMPOSSIBLE")
+    witnessed = [x for x in index["gaps"]["classes"] if x["gaps"]]
+    match field:
+        case "verdict":
+            witnessed[0].update(verdict="IMPOSSIBLE", gaps=[])
+        case "claim":
+            empty["claim"] = "false"
+        case _:
+            witnessed[0]["gaps"][0]["drive"] = witnessed[-1]["gaps"][0]["drive"]
+            witnessed[0]["gaps"][0]["formula"] = "false"
+    (report / "index.json").write_text(json.dumps(index), "utf-8")
+    assert main(["check", str(report), "--jobs", "1"]) in (3, 10)
+
+
+def test_a_gap_that_is_proved_empty_and_shown_is_a_contradiction(asked: Asked) -> None:
+    answer = show(Concrete("x", str(BRAKING)), asked, Freedom())
+    assert asked.gaps is not None
+    name = next(x for x in sorted(answer.names) if x.startswith(gaps.PREFIX))
+    empty = {name: ClassAnswer(asked.gaps.parts[name], Verdict.IMPOSSIBLE)}
+    made = tested.tested(asked, [answer], [], [], tested.targets_of(asked), 0.5, empty)
+    assert [x.told for x in made.contradictions] == [f"shows {name}, though that is proved to be empty"]
+
+
+# --- figures, drives far apart, copies -----------------------------------------------------------
+
+
+def test_figures_by_spec_set() -> None:
+    """A leader that slows down and is still faster is decelerating in ext only; each set has its own."""
+    made = catalogue(BRAKING, among="1,4", using=rp.load("base", "ext"), classes=False, jobs=1)
+    counted = {x.set_name: (x.kind, x.tested, x.total) for x in made.figures}
+    assert counted == {"base": ("scenarios", 1, 2), "ext": ("scenarios", 1, 2)}
+    assert "set ext, scenarios: 1 of 2 are tested" in str(made)
+    for other, (answer,) in zip(made.study.beside, made.beside, strict=True):
+        assert answer.names == show(Concrete("braking", str(BRAKING)), other, Freedom()).names
+
+
+def test_drives_far_apart_with_copies_for_other_tools(tmp_path: Path) -> None:
+    more = tmp_path / "more"
+    made = catalogue(BRAKING, among="4", classes=False, jobs=1)
+    formats = ["csv,commonroad", "highd", "openscenario", "opendrive"]
+    completed = made.complete(more, "mild", spread=2, formats=formats, jobs=1)
+    (one,) = completed.completions
+    assert (one.name, one.target) == ("scenario_4-2", "scenario_4")
+    assert one.apart is not None
+    assert one.apart >= float(far.FACTORS[-1])
+    entries = tomllib.loads((more / "catalogue.toml").read_text("utf-8"))["test"]
+    copies = {"as commonroad", "as csv", "as highd", "as openscenario"}
+    assert {x["id"].removeprefix("scenario_4-2").strip() for x in entries} == {"", *copies}
+    assert all(x["title"].endswith("mild, far from the others") for x in entries)
+    again = catalogue(BRAKING, more, among="4", classes=False, jobs=1)
+    assert (again.missing, again.tested.faults, again.tested.alike, again.exit_code) == ((), (), (), 0)
+    assert [x.tested for x in again.tested.targets] == [("braking", *(x["id"] for x in entries))]
+    assert str(again.complete(more, spread=2, jobs=1)) == "nothing was missing"
+
+
+def test_what_is_written_before_is_kept(tmp_path: Path) -> None:
+    made = catalogue(BRAKING, among="1,4", classes=False, jobs=1)
+    made.complete(tmp_path, jobs=1)
+    (tmp_path / "scenario_1.json").write_text("{}", "utf-8")
+    made.complete(tmp_path, jobs=1)
+    entries = tomllib.loads((tmp_path / "catalogue.toml").read_text("utf-8"))["test"]
+    assert [x["id"] for x in entries] == ["scenario_1", "scenario_1-2"]
+    assert (tmp_path / "scenario_1.json").read_text("utf-8") == "{}"
+
+
+def test_distance_is_that_of_the_number_that_differs_most() -> None:
+    one = {"v_lon(SV)": 20.0, "s(POV) - s(SV)": 30.0, "d(POV) - d(SV)": 0.0}
+    assert far.distance(one, one) == 0
+    assert far.distance(one, {**one, "v_lon(SV)": 28.0, "s(POV) - s(SV)": 45.0}) == 2
+    query = far.far_from([one], Fraction(2), HOME.specification)
+    assert query is not None
+    assert query.text.startswith("v_lon(SV) - 28*1 m/s >= 0 m/s or 12*1 m/s - v_lon(SV) >= 0 m/s or ")
+
+
+# --- ranges ---------------------------------------------------------------------------------------
+
+
+def test_the_part_of_a_range_that_nobody_tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ranges, "_PRECISION", {"s": Fraction(20)})
+    reaches = cataloguing.reaches_of
+
+    def along(*given: object) -> list[Reach]:
+        return [x for x in reaches(*given) if x.term == "s(POV) - s(SV)"]  # type: ignore[arg-type]
+
+    monkeypatch.setattr(cataloguing, "reaches_of", along)
+    report = tmp_path / "report"
+    made = catalogue(BRAKING, among="4", classes=False, explore=True, jobs=1, out=report)
+    (span,) = made.spans
+    (low, high), (least, greatest) = span.tested, span.reached
+    assert (low, high) == pytest.approx((62.18, 62.18), abs=0.1)
+    assert least < low == high < greatest <= 80
+    assert (span.untested, span.share) == (((least, low), (high, greatest)), pytest.approx(1))
+    assert len(made.evidence) == 2
+    assert "scenario_4\n    s(POV) - s(SV): " in str(made)
+    assert main(["check", str(report), "--jobs", "1"]) == 0
+    index = json.loads((report / "index.json").read_text("utf-8"))
+    validator("catalogue.json").validate(index)
+    index["facts"][0]["at"] = str(Fraction(index["facts"][0]["at"]) - 1)
+    (report / "index.json").write_text(json.dumps(index), "utf-8")
+    shutil.rmtree(report / "answers")
+    (report / "question.json").unlink()
+    assert main(["check", str(report), "--jobs", "1"]) == 10
+
+
+def test_a_range_that_is_not_known_is_a_doubt() -> None:
+    asked = asked_about(4)
+    still_open = Fact(
+        "", "scenario_4", "open", asked.query_of("scenario_4"), reason="cut off", term="v_lon(SV)"
+    )
+    made = tested.tested(asked, [], [], [still_open], tested.targets_of(asked), 0.5, None)
+    assert [(x.tests, x.told) for x in made.doubts] == [
+        (("scenario_4",), "how far its drives go is in doubt: cut off")
+    ]
+    assert ranges.spans_of({"scenario_4": {"v_lon(SV)": (1, 2)}}, [still_open]) == []
+
+
+# --- pictures -------------------------------------------------------------------------------------
+
+
+def test_all_tests_are_drawn_on_pages_and_titles_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(catalogue_drives, "MOST_ON_A_PAGE", 2)
+    courses = cataloguing.courses_of(Concrete("x", str(CUT_IN)))
+    assert courses is not None
+    assert cataloguing.courses_of(Concrete("x", str(DRIVES / "torn.json"))) is None
+    pages = list(draw_tests([Drawn("W" * 60, "1 cut-in", courses)] * 3))
+    assert [page["png"][:4] for page in pages] == [b"\x89PNG"] * 2
+    text = make_page(4, 4).text(0, 0, "W" * 60, fontsize=6.5)
+    shorten(text, 1.9)
+    assert text.get_window_extent().width <= 1.9 * text.figure.dpi
+    assert text.get_text().startswith("WWWWWWW")
+    assert "…" in text.get_text()
+
+
+# --- mistakes -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("test", "told"),
+    [
+        ("formula='assuming speed: true'", "test 1, formula, line 1, column 10: 'speed' cannot be assumed"),
+        ("formula='assuming motion, foo: true'", "column 18: 'foo' is no limit"),
+        ("formula='assuming motion: true'", "leave 'assuming motion:' out"),
+        ("formula='true'\ncopy_of='y'", "copy_of is for tests with a file"),
+        ("file='a.json'\ncopy_of=3", "copy_of=3; write a text"),
+    ],
+)
+def test_mistakes_in_entries(test: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "catalogue.toml").write_text(f"[[test]]\nid='x'\n{test}\n", "utf-8")
+    with pytest.raises(RoadproofError) as error:
+        catalogue(tmp_path, classes=False)
+    assert told in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--spread", "2"], "--spread is for drives that are made: add --complete DIR"),
+        (["--objective", "mild"], "--objective is for drives that are made"),
+        (["--complete", "more", "--format", "gpx"], "there is no format 'gpx'"),
+        (["--complete", "more", "--spread", "0"], "--spread"),
+    ],
+)
+def test_mistakes_in_options(options: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["catalogue", str(BRAKING), *options]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_motorcycle_is_one_for_commonroad(tmp_path: Path) -> None:
+    drive = rp.witness(4, vehicles={"POV": "motorcycle"}, jobs=1).drives[0]
+    (path,) = rp.export(drive, "commonroad", tmp_path).files
+    assert path.read_text("utf-8").count("<type>motorcycle</type>") == 1
+    (pair,) = [catalogue(path, among="4", classes=False, jobs=1).concrete]
+    assert {"scenario_4", ENDANGERED} <= pair[0].names
