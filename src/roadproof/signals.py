@@ -15,6 +15,12 @@ SizeName: TypeAlias = Literal["length", "width", "kind"]
 Kind: TypeAlias = Literal["car", "truck", "bus", "motorcycle", "other"]
 
 
+class OwnName(str):
+    """The name of a signal that a specification declares, told apart from those of the list."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True)
 class About:
     """What is known of a signal, in ``unit``.

@@ -44,7 +44,7 @@ OPTIONAL = {
     "answer.json": {"stem", "road", "counterexample", "assuming"},
     "classify.json": {"doubts"},
     "coverage.json": {"in_traffic", "trace"},
-    "drive.json": {"lanes", "overlaps_allowed", "natural"},
+    "drive.json": {"lanes", "overlaps_allowed", "natural", "kind", "signals"},
     "explore.json": {"stem"},
     "index.json": {"roadproof", "library", "options", "specs", "counterexample", "road", "assuming"},
     "monitor.json": {"exact"},

@@ -169,7 +169,7 @@ def test_what_is_wrong_is_said(change: Callable[[str], str], told: str, tmp_path
 
 def the_reference_point_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:
     made = openscenario.Box
-    monkeypatch.setattr(openscenario, "Box", lambda kind, length, width, _: made(kind, length, width, (0, 0)))
+    monkeypatch.setattr(openscenario, "Box", lambda *told: made(*told[:4], (0, 0)))
 
 
 def the_corner_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:

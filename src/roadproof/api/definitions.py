@@ -41,14 +41,16 @@ class Definitions:
     def __getattr__(self, name: str) -> Callable[..., Phrase]:
         if name.startswith("_") or name in Definitions.__dataclass_fields__:
             raise AttributeError(name)
-        if name not in self.specification.definitions:
-            raise AttributeError(unknown("definition", name, self.specification.definitions))
+        definitions, signals = self.specification.definitions, self.library.signals
+        if name not in definitions and name not in signals:
+            raise AttributeError(unknown("definition", name, (*definitions, *signals)))
 
         def apply(*arguments: Term) -> Phrase:
             return call(name, *arguments)
 
         apply.__name__ = name
-        apply.__doc__ = self.specification.describe(self.specification.definitions[name])
+        known = definitions.get(name)
+        apply.__doc__ = signals[name].doc if known is None else self.specification.describe(known)
         return apply
 
     def __repr__(self) -> str:
@@ -58,7 +60,7 @@ class Definitions:
         return f"<definitions {' '.join([', '.join(self.sets), *chosen])}>"
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self.specification.definitions]
+        return [*super().__dir__(), *self.specification.definitions, *self.library.signals]
 
     @property
     def alone(self) -> Specification:

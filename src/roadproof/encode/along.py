@@ -11,11 +11,10 @@ from typing import assert_never
 
 from roadproof.encode.circuit import Leaf, nodes
 from roadproof.encode.inequalities import Quantity, inequalities_of, sizes_of
-from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.unroll import Grid
 from roadproof.logic.formula import Compare, Formula, subformulas
-from roadproof.signals import SignalName
+from roadproof.signals import OwnName, SignalName
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Range, Vehicle
 

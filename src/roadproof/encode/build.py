@@ -9,12 +9,13 @@ from typing import TypeAlias, assert_never
 from roadproof.encode.circuit import Circuit, Leaf, all_of, replace_leaves
 from roadproof.encode.inequalities import Quantity, inequalities_of, sizes_of
 from roadproof.encode.motion import Layout, Motions, encode_motions
-from roadproof.encode.own import OwnName, own_columns
+from roadproof.encode.own import own_columns
 from roadproof.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.encode.polynomial import Inequality, Polynomial, affine, variable
 from roadproof.encode.problem import ColumnInequality, Problem, Row, row_of
 from roadproof.encode.unroll import At, Grid, unroll
 from roadproof.logic.formula import Compare, Formula
+from roadproof.signals import OwnName
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Range, Vehicle
 

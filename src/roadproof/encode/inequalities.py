@@ -10,13 +10,12 @@ from itertools import product
 from typing import TypeAlias, assert_never
 
 from roadproof.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
-from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Inequality, Polynomial, constant, variable
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare
 from roadproof.logic.own import code_of
 from roadproof.logic.terms import Term
-from roadproof.signals import SIZES
+from roadproof.signals import SIZES, OwnName
 from roadproof.world.vehicle import Vehicle
 
 # A vehicle and one of its signals, such as ("SV", "v_lon"); "" and an own signal of no vehicle.

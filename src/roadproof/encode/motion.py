@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import assert_never
 
-from roadproof.encode.own import OwnColumns, OwnName, index_of
+from roadproof.encode.own import OwnColumns, index_of
 from roadproof.encode.polynomial import Polynomial, affine, constant, variable
 from roadproof.encode.problem import Column, Row, Unknown, row_of
 from roadproof.encode.unroll import Grid
-from roadproof.signals import STARTING, SignalName
+from roadproof.signals import STARTING, OwnName, SignalName
 from roadproof.world.vehicle import Range, Vehicle
 
 # A position and the speed that it grows by.

@@ -14,12 +14,6 @@ WIDEST = Fraction(1000)
 """Where a signal has no bound, values are looked for up to this, or twice the largest number beside it."""
 
 
-class OwnName(str):
-    """The name of an own signal, told apart from those of the list of signals."""
-
-    __slots__ = ()
-
-
 @dataclass(frozen=True)
 class OwnColumns:
     """An own signal, and between which values it is looked for (SI)."""

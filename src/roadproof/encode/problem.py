@@ -6,9 +6,8 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.encode.circuit import Circuit, Leaf, all_of, nodes
-from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Inequality, Polynomial
-from roadproof.signals import SignalName
+from roadproof.signals import OwnName, SignalName
 
 # An inequality over column numbers.
 ColumnInequality: TypeAlias = Inequality[int]

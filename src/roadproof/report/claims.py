@@ -104,6 +104,10 @@ def _show_drive(judged: Judged) -> list[str]:
         end = state_at(motion, last)
         moved = f", moves to d={_short(end.d)} m" if abs(end.d - motion.d) > 1 else ""
         lines.append(f"    {name} {start}, {_short(motion.v_lon)} -> {_short(end.v_lon)} m/s{moved}")
+    for (signal, vehicle), course in judged.file.drive.own.items():
+        values = ", ".join(f"{_short(value)} from {_short(since)} s" for since, value in course[:4])
+        more = ", …" if len(course) > 4 else ""
+        lines.append(f"    {signal}{f'({vehicle})' if vehicle else ''} is {values}{more}")
     return lines
 
 

@@ -32,16 +32,18 @@ def refuse_unknown(formula: Formula, vehicle: str, model: Vehicle) -> None:
         )
 
 
-def _parts(formula: Formula) -> Iterator[Formula]:
-    """What ``formula`` joins by and, through the names of definitions."""
+def _parts(formula: Formula, positive: bool = True) -> Iterator[Formula]:
+    """What ``formula`` (else its negation) joins by and, through the names of definitions."""
     match formula:
-        case f.And(parts):
+        case f.And(parts) | f.Or(parts) if isinstance(formula, f.And) == positive:
             for part in parts:
-                yield from _parts(part)
+                yield from _parts(part, positive)
+        case f.Not(body):
+            yield from _parts(body, not positive)
         case f.Named(_, _, body):
-            yield from _parts(body)
+            yield from _parts(body, positive)
         case _:
-            yield formula
+            yield formula if positive else f.negation(formula)
 
 
 def _is_about_kind(part: Formula, vehicle: str) -> bool:

@@ -5,13 +5,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from roadproof.encode.build import NONE, ground
 from roadproof.encode.circuit import evaluate, implicant
 from roadproof.encode.motion import Layout
-from roadproof.encode.own import OwnName
 from roadproof.encode.polynomial import Polynomial
 from roadproof.encode.problem import Column, ColumnInequality, Problem
 from roadproof.encode.unroll import unroll_at
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.searching.question import Objective
-from roadproof.signals import SignalName
+from roadproof.signals import OwnName, SignalName
 from roadproof.solve.bounds import Affine, Bound, TooNonlinearError, value_of
 from roadproof.solve.milp import box_of
 from roadproof.solve.smooth import Square, minimise, narrow, near

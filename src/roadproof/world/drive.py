@@ -72,3 +72,10 @@ class Drive:
                 raise ValueError(f"the values of {name} {vehicle}: their times must ascend from 0")
             if vehicle and vehicle not in self.vehicles:
                 raise ValueError(f"{name} is said of {vehicle}, which the drive does not have")
+
+    def cast(self, roles: Mapping[str, str]) -> "Drive":
+        """The drive with other names: for each new one the vehicle that has it, with its own signals."""
+        own = {(name, ""): course for (name, vehicle), course in self.own.items() if not vehicle}
+        for new, old in roles.items():
+            own |= {(name, new): course for (name, vehicle), course in self.own.items() if vehicle == old}
+        return Drive({new: self.vehicles[old] for new, old in roles.items()}, own)

@@ -11,6 +11,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
 from roadproof.judge.replay import first_breach, first_overlap
 from roadproof.logic.formula import transform
+from roadproof.logic.own import own_of
 from roadproof.spec.bind import bind
 from roadproof.spec.scenarios import PAIR, danger_comes
 from roadproof.world.models import load_vehicle
@@ -51,6 +52,8 @@ def find_among_simple(
     gap = bind(classes.missed(classes.numbers_on(road)).formula, road, {}, classes.values)
     gap = transform(gap, lambda part: part)
     best: dict[tuple[str, tuple[str, ...]], FoundGap] = {}
+    if own_of([begins, gap]):
+        return []  # simple drives say nothing of own signals
     for drive in islice(simple_drives(road, car), start, None, step):
         if not judge(begins, drive).holds or not judge(gap, drive).holds:
             continue

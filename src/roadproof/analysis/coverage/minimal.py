@@ -10,7 +10,7 @@ from roadproof.judge.replay import first_breach, first_overlap
 from roadproof.spec.bind import bind, values_with
 from roadproof.spec.library import Library
 from roadproof.spec.query import Query
-from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.drive import Motion, Piece
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import starts_of
 from roadproof.world.road import Road
@@ -30,7 +30,7 @@ def simplest(file: DriveFile, query: Query, library: Library) -> DriveFile:
     formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
 
     def good(name: str, motion: Motion) -> bool:
-        drive = Drive({**current, name: motion})
+        drive = replace(file.drive, vehicles={**current, name: motion})
         if not _stays(motion, file.road) or first_breach(drive, dict.fromkeys(current, limits), None):
             return False
         apart = file.overlaps_allowed or first_overlap(drive, file.horizon) is None
@@ -45,7 +45,8 @@ def simplest(file: DriveFile, query: Query, library: Library) -> DriveFile:
                 before = current[name]
                 current[name] = _kept(before, shorter(before, place), name, good)
                 place += len(current[name].pieces) == len(before.pieces)
-    return replace(file, drive=Drive({name: _merged(motion) for name, motion in current.items()}))
+    simple = {name: _merged(motion) for name, motion in current.items()}
+    return replace(file, drive=replace(file.drive, vehicles=simple))
 
 
 def _kept(motion: Motion, change: Motion, name: str, good: Callable[[str, Motion], bool]) -> Motion:

@@ -23,7 +23,6 @@ from roadproof.spec.compose import both, conjuncts, either, eventually, implicat
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import LANE, PAIR, Scenario, applied, danger
 from roadproof.verdict import Verdict
-from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 
 # Units of work for a proof before any search, and after it.
@@ -190,8 +189,7 @@ class Settling:
         """The sector, the roles and the lane in which the scenario of ``part`` is missed by it alone."""
         if part is None:
             return None, replace(file, lanes={})
-        motions = file.drive.vehicles
-        turned = Drive({one: motions[other] for one, other in zip(PAIR, PAIR[::-1], strict=True)})
+        turned = file.drive.cast(dict(zip(PAIR, PAIR[::-1], strict=True)))
         for counterpart, _ in self.classes.counterparts(part):
             for drive, lane in product((file.drive, turned), file.road.lanes):
                 lanes = {LANE: lane}

@@ -127,4 +127,4 @@ def _motion(
         a_lon = sum((a for low, high, a in longitudinal if low <= begin < high), ZERO)
         a_lat = sum((a for low, high, a in lateral if low <= begin < high), ZERO)
         pieces.append(Piece(None if end is None else end - begin, a_lon, a_lat))
-    return Motion(vehicle.length, vehicle.width, s, d, speed, ZERO, tuple(pieces))
+    return Motion(vehicle.length, vehicle.width, s, d, speed, ZERO, tuple(pieces), vehicle.kind)

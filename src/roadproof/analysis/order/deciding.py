@@ -112,8 +112,8 @@ def _refuted_by(basis: Basis, files: Iterable[DriveFile], above: Query, below: Q
     for file in files:
         names = tuple(file.drive.vehicles)
         for roles in permutations(names) if wanted <= set(names) else ():
-            motions = {role: file.drive.vehicles[name] for name, role in zip(names, roles, strict=True)}
-            shown = placed(replace(file, drive=Drive(motions)), against, basis.library)
+            cast = file.drive.cast(dict(zip(roles, names, strict=True)))
+            shown = placed(replace(file, drive=cast), against, basis.library)
             if shown is not None:
                 return shown
     return None
@@ -234,12 +234,14 @@ class _Deciding:
     def _recast(self, file: DriveFile, kind: Kind, mine: Cast, others: Sequence[Cast]) -> DriveFile:
         """The drive with the vehicles of a cast; those that it does not have are far behind all others."""
         own = vehicles_of(self.specification, kind.node)
-        motions = {new: file.drive.vehicles[old] for new, old in zip(mine.vehicles, own, strict=True)}
+        roles = dict(zip(mine.vehicles, own, strict=True))
+        motions = dict(file.drive.cast(roles).vehicles)
         wanted = {v for x in (mine, *others) for v in x.vehicles}
         for name in sorted(wanted - set(motions)):
-            slowest = min(motions.values(), key=lambda motion: motion.s)
-            motions[name] = replace(slowest, s=slowest.s - FAR)
-        return replace(file, drive=Drive(motions))
+            slowest = min(motions, key=lambda known: motions[known].s)
+            motions[name] = replace(motions[slowest], s=motions[slowest].s - FAR)
+            roles[name] = roles[slowest]
+        return replace(file, drive=Drive(motions, file.drive.cast(roles).own))
 
     def _holds(self, file: DriveFile, query: Query) -> bool:
         formula = bind(query.formula, file.road, file.lanes, {**self.values, **file.values})
