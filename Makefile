@@ -20,11 +20,19 @@ lint: $(READY)
 unit: $(READY)
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs
 
+# Proofs, drives, a matrix, an evaluated recording, and one page about all of it; at most 3 minutes.
+DEMO := out/demo
 demo: $(READY)
 	$(BIN)/roadproof show 4
-	rm -rf out/proofs
-	$(BIN)/roadproof prove --out out/proofs
-	$(BIN)/roadproof check out/proofs
+	rm -rf $(DEMO)
+	$(BIN)/roadproof prove --out $(DEMO)/proofs
+	$(BIN)/roadproof witness --all --no-pictures --out $(DEMO)/drives
+	$(BIN)/roadproof overlap --among 1-8 --no-pictures --out $(DEMO)/overlap
+	$(BIN)/roadproof simulate --recordings 1 --seconds 60 --seed 7 --out $(DEMO)/recordings
+	$(BIN)/roadproof evaluate $(DEMO)/recordings --no-pictures --out $(DEMO)/evaluation
+	$(BIN)/roadproof report $(DEMO)/proofs $(DEMO)/drives $(DEMO)/overlap $(DEMO)/evaluation \
+		--title 'roadproof: 162 claims, 24 drives, a matrix and a recording' --out $(DEMO)/demo.html
+	@echo "Open $(CURDIR)/$(DEMO)/demo.html in a browser; it needs no network."
 
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)

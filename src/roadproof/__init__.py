@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from roadproof.api.covering import coverage as coverage
     from roadproof.api.definitions import Definitions as Definitions
     from roadproof.api.definitions import load as load
+    from roadproof.api.diagnosing import Proofreader as Proofreader
+    from roadproof.api.diagnosing import diagnose as diagnose
     from roadproof.api.drives import witness as witness
     from roadproof.api.exploring import explore as explore
     from roadproof.api.exporting import export as export
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
     from roadproof.api.phrases import zone as zone
     from roadproof.api.proofs import prove as prove
     from roadproof.api.recordings import evaluate as evaluate
+    from roadproof.api.reporting import page as page
     from roadproof.api.roads import roads as roads
     from roadproof.api.simulating import simulate as simulate
     from roadproof.api.studies import order as order
@@ -58,10 +61,13 @@ if TYPE_CHECKING:
     from roadproof.errors import RoadproofError as RoadproofError
     from roadproof.errors import SharedError as SharedError
     from roadproof.errors import TextError as TextError
+    from roadproof.errors import TextErrors as TextErrors
     from roadproof.errors import UsageError as UsageError
     from roadproof.hands import Cluster as Cluster
     from roadproof.hands import Hands as Hands
     from roadproof.hands import Shard as Shard
+    from roadproof.stages import Cancelled as Cancelled
+    from roadproof.stages import Stage as Stage
     from roadproof.verdict import Verdict as Verdict
 
     __version__: str
@@ -70,12 +76,17 @@ _PHRASES = (
     *("SV", "POV", "POV1", "POV2", "L", "F", "G", "U", "lanes", "lanelets", "zone", "adjacent_lanes"),
     *("some", "every", "vehicle", "lane", "parameter", "call"),
 )
-_ERRORS = ("RoadproofError", "InputError", "UsageError", "TextError", "MissingSolverError", "SharedError")
+_ERRORS = (
+    *("RoadproofError", "InputError", "UsageError", "TextError", "TextErrors", "MissingSolverError"),
+    "SharedError",
+)
 _HOMES = {
     "load": "api.definitions",
     "Definitions": "api.definitions",
     "prove": "api.proofs",
     "witness": "api.drives",
+    "diagnose": "api.diagnosing",
+    "Proofreader": "api.diagnosing",
     "compare": "api.comparing",
     "overlap": "api.studies",
     "order": "api.studies",
@@ -92,8 +103,11 @@ _HOMES = {
     "convert": "api.converting",
     "simulate": "api.simulating",
     "export": "api.exporting",
+    "page": "api.reporting",
     "check": "api.checking",
     "Verdict": "verdict",
+    "Stage": "stages",
+    "Cancelled": "stages",
     **dict.fromkeys(_PHRASES, "api.phrases"),
     **dict.fromkeys(_ERRORS, "errors"),
     **dict.fromkeys(("Hands", "Shard", "Cluster"), "hands"),

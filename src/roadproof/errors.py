@@ -4,7 +4,8 @@ A message says what was asked, ``name=value``, the rule, and what to do instead.
 Anything that is not a ``RoadproofError`` is our own fault and exits with 70.
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 
@@ -46,10 +47,12 @@ class SharedError(RoadproofError):
 
 @dataclass(frozen=True)
 class Position:
-    """A place in a text; line and column count from 1."""
+    """A place in a text; line and column count from 1. The end, where it is known, is just behind it."""
 
     line: int
     column: int
+    end_line: int = field(default=0, compare=False, repr=False)
+    end_column: int = field(default=0, compare=False, repr=False)
 
 
 class TextError(InputError):
@@ -62,6 +65,7 @@ class TextError(InputError):
         self.hint = hint
         self.source = ""
         self.text = ""
+        self.errors: tuple[TextError, ...] = (self,)
 
     def locate(self, source: str, text: str) -> "TextError":
         """Add where the text came from, unless a nearer reader has already said so."""
@@ -80,6 +84,41 @@ class TextError(InputError):
         if self.hint:
             lines.append(self.hint)
         return f"{where}: " + "\n".join(lines)
+
+
+MOST_SHOWN = 50
+
+
+class TextErrors(TextError):
+    """Several mistakes in texts of ours, in ``errors``; the first of them is what a reader of one sees."""
+
+    def __init__(self, errors: Sequence[TextError]) -> None:
+        first = errors[0]
+        super().__init__(first.message, first.position, first.hint)
+        self.source, self.text = first.source, first.text
+        self.errors = tuple(errors)
+
+    def __reduce__(self) -> tuple[type["TextErrors"], tuple[tuple[TextError, ...]]]:
+        return TextErrors, (self.errors,)
+
+    def __str__(self) -> str:
+        shown = [str(error) for error in self.errors[:MOST_SHOWN]]
+        more = len(self.errors) - len(shown)
+        return "\n".join([*shown, *([f"and {more} more mistakes"] if more else [])])
+
+
+def once_each(errors: Iterable[TextError]) -> list[TextError]:
+    """The first error at each place: what several others use is told once."""
+    first: dict[tuple[str, Position | None], TextError] = {}
+    for error in errors:
+        first.setdefault((error.source, error.position), error)
+    return list(first.values())
+
+
+def raise_all(errors: Sequence[TextError]) -> None:
+    """Raise what went wrong, if anything did: one error as it is, several as ``TextErrors``."""
+    if errors:
+        raise errors[0] if len(errors) == 1 else TextErrors(errors)
 
 
 def _excerpt(line: str, column: int, width: int = 100) -> list[str]:

@@ -9,12 +9,14 @@ import time
 from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import wait
 from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.hands import Hands
 from roadproof.parent import die_with
+from roadproof.stages import Stage, is_heard, listening, pass_on
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
@@ -80,6 +82,9 @@ def _try_once(
                     died[place] = worker.cause_of_death()
                     team.remove(worker)
                     continue
+                if isinstance(answer, Stage):
+                    pass_on(answer)
+                    continue
                 if not well:
                     raise answer
                 worker.place = None
@@ -116,7 +121,7 @@ class _Worker:
         self.place: int | None = None
         self.connection, other = context.Pipe()
         self.process = context.Process(  # type: ignore[attr-defined]
-            target=_serve, args=(other, function, os.getpid()), daemon=True
+            target=_serve, args=(other, function, os.getpid(), is_heard()), daemon=True
         )
         try:
             self.process.start()
@@ -160,7 +165,7 @@ def _end_soon(ignored: Any) -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.01)
 
 
-def _serve(connection: Any, function: Callable[[Any], object], parent: int) -> None:
+def _serve(connection: Any, function: Callable[[Any], object], parent: int, heard: bool) -> None:
     """What a worker does all its life. Ctrl-C is its parent's business, which z3 would take as its own."""
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
     sys.unraisablehook = _end_soon
@@ -174,7 +179,8 @@ def _serve(connection: Any, function: Callable[[Any], object], parent: int) -> N
         except (EOFError, OSError):
             return
         try:
-            reply: tuple[bool, object] = True, function(job)
+            with listening(partial(_send_stage, connection) if heard else _nobody):
+                reply: tuple[bool, object] = True, function(job)
         except Exception as error:
             reply = False, error
         try:
@@ -183,6 +189,14 @@ def _serve(connection: Any, function: Callable[[Any], object], parent: int) -> N
             return
         except Exception as error:  # what cannot be pickled
             connection.send((False, RuntimeError(f"{type(error).__name__}: {error}; of {reply[1]!r:.200}")))
+
+
+def _send_stage(connection: Any, stage: Stage) -> None:
+    connection.send((True, stage))
+
+
+def _nobody(stage: Stage) -> None:
+    """Nobody listens; the listener of the process that this one is a copy of is no longer there."""
 
 
 _ends_here = False

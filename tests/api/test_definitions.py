@@ -108,8 +108,6 @@ def test_one_set_where_one_is_asked_about() -> None:
 
 def test_values_that_would_be_passed_over_are_refused() -> None:
     mine = rp.load(params={"minDanger": 1})
-    with pytest.raises(rp.UsageError, match="about all values of minDanger: ask without params"):
-        rp.prove("danger(SV,POV)", using=mine)
     with pytest.raises(rp.UsageError, match="minDanger is given a value and varied: leave one out"):
         rp.explore(4, vary={"minDanger": (0, 3)}, using=mine)
     with pytest.raises(rp.UsageError, match="evaluate takes several values of it; use min_danger"):

@@ -19,6 +19,7 @@ from roadproof.proving.prover import Result
 from roadproof.searching.settle import Settled, in_doubt, settle, settle_bounded
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
+from roadproof.stages import about
 from roadproof.study.shelf import Question, Shelf, specification_names
 from roadproof.verdict import Verdict
 
@@ -125,6 +126,10 @@ class Claims:
 
     def settle(self, piece: Task) -> dict[str, Answered]:
         """One claim settled: in dense time, or within bounds."""
+        with about(piece.name if piece.title else " ".join(piece.claim.split())):
+            return self._settle(piece)
+
+    def _settle(self, piece: Task) -> dict[str, Answered]:
         specification = self.specification_of(piece)
         query = read_claim(specification, piece.claim)
         if self.within is not None:

@@ -1,6 +1,6 @@
 """Two formulas side by side."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -16,12 +16,15 @@ from roadproof.files import make_folder, write_json, write_whole
 from roadproof.report.compare import as_text as compare_text
 from roadproof.report.drive import draw_drive
 from roadproof.searching.ask import Search
-from roadproof.searching.compare import Comparison
+from roadproof.searching.compare import DIRECTIONS, Comparison, Direction
 from roadproof.searching.compare import compare as compare_queries
 from roadproof.searching.question import Engine, SearchOptions
+from roadproof.solve.milp import prepare
 from roadproof.spec.compose import taken_from
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.values import Number
+from roadproof.stages import Listener, listening
+from roadproof.study.pool import count_workers
 from roadproof.study.shelf import keep_specifications, specification_names
 from roadproof.verdict import ExitCode, Verdict
 
@@ -103,10 +106,16 @@ def compare(
     solver: str = "highs",
     effort: float = 60.0,
     timeout: float | None = None,
+    jobs: int | None = None,
+    each: Callable[[str, Direction], object] | None = None,
+    stage: Listener | None = None,
 ) -> Compared:
     """Which of two formulas implies the other.
 
-    Where ``using`` has two spec sets, the second formula is of the second one. Drives that tell the two
+    Both directions are asked at once where there are two cores, or as many ``jobs`` as are said, each with
+    this ``effort`` and ``timeout``; ``each`` is told of a direction ("first implies second" or the reverse)
+    when its answer is there, and ``stage`` of each stage that begins (``stages.Stage``): what they raise ends
+    all. Where ``using`` has two spec sets, the second formula is of the second one. Drives that tell the two
     apart are looked for as by ``witness``. Raises as that does.
     """
     one_of("engine", engine, Engine)
@@ -122,5 +131,10 @@ def compare(
         place,
         SearchOptions(engine=engine, solver=solver, effort=work_of(effort, timeout)),
     )
-    found = compare_queries(search, taken_from(home.specification, query, other), other)
+    processes = count_workers(DIRECTIONS, jobs)
+    if processes > 1:
+        prepare()
+    against = taken_from(home.specification, query, other)
+    with listening(stage):
+        found = compare_queries(search, against, other, processes, each)
     return Compared(home.specification, found)

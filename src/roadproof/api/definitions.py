@@ -9,8 +9,9 @@ from typing import TypeAlias
 from roadproof.api.phrases import Phrase, Term, call
 from roadproof.errors import InputError, UsageError
 from roadproof.spec.bind import values_with
+from roadproof.spec.diagnose import checked_library
 from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Source, Specification, load_library, unknown
+from roadproof.spec.library import Library, Source, Specification, unknown
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import read_numbers, read_query
 from roadproof.spec.values import Number, exact
@@ -124,7 +125,7 @@ def load(
     chosen = sets or ("base",)
     if len(set(chosen)) < len(chosen):
         raise UsageError(f"load({', '.join(map(repr, chosen))}): name different spec sets")
-    library = load_library(_source(k, spec) for k, spec in enumerate(specs, 1))
+    library = checked_library(_source(k, spec) for k, spec in enumerate(specs, 1))
     for name in chosen:
         library.select(name, options)
     given = values_of(library, params or {})

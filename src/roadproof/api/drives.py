@@ -27,6 +27,7 @@ from roadproof.searching.question import Engine, Objective, SearchOptions
 from roadproof.spec.library import Library
 from roadproof.spec.values import Number
 from roadproof.spec.words import words_of
+from roadproof.stages import Listener, listening
 from roadproof.study import pool
 from roadproof.study.frame import put_away
 from roadproof.study.pool import Progress, Say
@@ -165,13 +166,15 @@ def witness(
     jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
+    stage: Listener | None = None,
 ) -> Witnesses:
     """Find a drive for each of some scenarios or formulas, in each spec set; without any, for all scenarios.
 
     Where, with whom and for how long: see ``setting``. ``count`` clearly different drives are looked for.
     ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``effort``: units
     of work for a search, each about a second of a solver; ``timeout``: seconds after which the clock ends it.
-    ``out``: a folder in which drives are kept as they come, with samples and ``pictures``.
+    ``out``: a folder in which drives are kept as they come, with samples and ``pictures``. ``stage`` is told
+    of each stage that begins (``stages.Stage``), and ends all by raising.
     Raises ``TextError``, ``InputError``, ``UsageError``, ``MissingSolverError``.
 
     >>> witness(4, jobs=1).verdict
@@ -185,7 +188,8 @@ def witness(
     place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
     search_options = SearchOptions(objective, engine, solver, work_of(effort, timeout))
     searches = list(searches_of(home, what, place, search_options, count))
-    return witness_all(searches, out, pictures, jobs, progress, say)
+    with listening(stage):
+        return witness_all(searches, out, pictures, jobs, progress, say)
 
 
 def witness_all(

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
@@ -19,9 +20,12 @@ from roadproof.files import hold_if_any
 from roadproof.hands import Jobs
 from roadproof.proving.properties import OWN, Task, choose, template_properties
 from roadproof.report import claims as claims_text
-from roadproof.spec.motion import MOTION, Under, limits_of, split, under
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+from roadproof.spec.motion import MOTION, Under, at_values, is_moving, limits_of, split
 from roadproof.spec.scenarios import are_numbers, read_numbers
 from roadproof.spec.values import Number
+from roadproof.stages import Listener, listening
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict, exit_code
 from roadproof.world.vehicle import Vehicle
@@ -129,6 +133,7 @@ def prove(
     expect: _Expected = "PROVED",
     assume: Literal["motion"] | None = None,
     vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    declared: bool = False,
     engine: _Engine = "dense",
     road: RoadLike | None = None,
     horizon: Number = 6,
@@ -140,8 +145,12 @@ def prove(
     jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
+    stage: Listener | None = None,
 ) -> Proofs:
     """Prove or refute claims for all time, on all roads, for all parameter values within their bounds.
+
+    Values that ``using`` was loaded with are put in, and where ``declared`` the declared ones of all other
+    parameters; the answer then holds at these values, and says so.
 
     A claim is a formula, a property of the list such as "P1", or scenarios such as 4 or "1-8", of which all
     that the list says is settled; without one all of the list is. With ``engine`` "smt" or "milp" a claim is
@@ -151,7 +160,7 @@ def prove(
     ``expect``: the verdict that is expected of your own claims; ``drive``: whether one is looked for that
     refutes. ``effort``: units of work for a claim, each about a second of a solver; ``timeout``: seconds
     after which the clock ends it. ``out``: a folder in which answers are kept as they come. ``using``: one
-    spec set, without values of parameters, as a claim is about all of them.
+    spec set. ``stage`` is told of each stage that begins (``stages.Stage``), and ends all by raising.
     Raises ``TextError``, ``UsageError``, ``InputError``.
 
     >>> prove("danger(SV,POV) -> danger(SV,POV)", jobs=1).verdict
@@ -160,24 +169,26 @@ def prove(
     one_of("engine", engine, _Engine)
     one_of("expect", expect, _Expected)
     home = using or load()
-    if home.values:
-        raise UsageError(f"a claim is about all values of {', '.join(home.values)}: ask without params")
-    said = assuming(assume, vehicles)
+    said = assuming(assume, vehicles, values_put_in(home, declared) if engine == "dense" else {})
     asked = claims_of(home, what, using.alone.set_name if using else None, Verdict(expect), said)
     asked = replace(asked, effort=work_of(effort, timeout), seek_drive=drive)
     if engine != "dense":
         if not asked.are_own:
             raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
         asked = within_limits(asked, home, engine, road, horizon, dt)
-    return Proofs.asked(asked, out, jobs, progress, say)
+    with listening(stage):
+        return Proofs.asked(asked, out, jobs, progress, say)
 
 
 @dataclass(frozen=True)
 class Assuming:
-    """What claims are asked under: whether vehicles move, and models by name whose limits they keep."""
+    """What claims are asked under: whether vehicles move, within the limits of models by name, and values of
+    parameters (SI).
+    """
 
     motion: bool = False
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
+    values: Mapping[str, Fraction] = field(default_factory=dict)
 
     def of(self, home: Definitions, claim: Under) -> Under:
         """``claim`` under this as well. Raises ``InputError``, ``UsageError``."""
@@ -188,17 +199,33 @@ class Assuming:
                 raise UsageError(f"vehicle {name}: the claim speaks of {known}")
         models = {x: self.vehicles.get(x, self.vehicles.get("")) for x in query.vehicles}
         limits = [x for name, y in models.items() if y is not None for x in limits_of(query, name, y)]
-        said = claim.said or (MOTION,) * self.motion
-        return under(home.specification, query, (*said, *limits))
+        said = claim.said if is_moving(claim.said) else ((MOTION,) * self.motion + claim.said)
+        return at_values(home.specification, Under(query, (*said, *limits)), self.values)
+
+    def of_list(self, specification: Specification, task: Task) -> Task:
+        """A claim of the list at these values, too."""
+        if not self.values:
+            return task
+        claim = Under(read_claim(specification, task.claim))
+        return replace(task, assuming=at_values(specification, claim, self.values).said)
 
 
-def assuming(assume: str | None, vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None) -> Assuming:
+def values_put_in(home: Definitions, declared: bool) -> dict[str, Fraction]:
+    """At which values proofs are asked: those that were given; where ``declared`` one of each parameter."""
+    return home.all_values() if declared else dict(home.values)
+
+
+def assuming(
+    assume: str | None,
+    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    values: Mapping[str, Fraction] | None = None,
+) -> Assuming:
     """What is assumed, in the words of Python. Raises ``UsageError``, ``InputError``."""
     if assume not in (None, MOTION):
         raise UsageError(f"assume={assume!r}: write {MOTION!r}")
     if vehicles and assume is None:
         raise UsageError("limits of vehicles are assumed with motion only: ask with assume motion")
-    return Assuming(assume is not None, models_of(vehicles))
+    return Assuming(assume is not None, models_of(vehicles), values or {})
 
 
 def claims_of(
@@ -227,11 +254,15 @@ def claims_of(
         raise UsageError("ask for properties or for claims of your own, not for both at once")
     if not own and assumed.motion:
         raise UsageError("motion is assumed of claims of your own: the list is about all traces")
-    tasks = _own(home, own, expected) or choose(template_properties(), named, set_name, sorted(numbers))
+    listed = [x for x in template_properties() if not (assumed.values and x.of_all_values)]
+    tasks = _own(home, own, expected) or choose(listed, named, set_name, sorted(numbers))
     if not tasks:
         words = ", ".join(map(str, what))
         raise UsageError(f"no claim of {words} is stated for set={set_name or 'any'}: ask for others")
-    return Claims(tuple(tasks), {x.set_name: home.specification.in_set(x.set_name) for x in tasks})
+    specifications = {x.set_name: home.specification.in_set(x.set_name) for x in tasks}
+    if not own:
+        tasks = [assumed.of_list(specifications[x.set_name], x) for x in tasks]
+    return Claims(tuple(tasks), specifications)
 
 
 def _read(home: Definitions, what: What | Under) -> Under:
@@ -264,6 +295,9 @@ def within_limits(
     from roadproof.searching.question import SearchOptions
 
     if any(task.assuming for task in asked.tasks):
-        raise UsageError(f"engine={engine!r} is about drives anyway: assume nothing, or ask engine='dense'")
-    place = replace(setting(home, road, horizon=horizon, dt=dt), values={})
+        raise UsageError(
+            f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "
+            "engine='dense'"
+        )
+    place = replace(setting(home, road, horizon=horizon, dt=dt), values=dict(home.values))
     return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))

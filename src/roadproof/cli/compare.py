@@ -1,12 +1,20 @@
 """``roadproof compare``: two scenarios or formulas, and which implies which."""
 
 import argparse
+import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from roadproof.cli.basis import read_definitions
-from roadproof.cli.options import add_json_option, add_quiet_option, chosen_sets, write_json
+from roadproof.cli.numbers import add_working_options
+from roadproof.cli.options import add_json_option, chosen_sets, write_json
+from roadproof.cli.progress import clear, note, tell_stage
 from roadproof.cli.search_options import add_search_options, how_asked, where_asked
 from roadproof.errors import UsageError
+from roadproof.stages import listening
+
+if TYPE_CHECKING:
+    from roadproof.searching.compare import Direction
 
 SUMMARY = "compare two formulas: equivalent, stronger, weaker or incomparable"
 
@@ -23,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("first", metavar="F1", help="a scenario's number, or a formula")
     parser.add_argument("second", metavar="F2", help="another; in the second --set where two are given")
     add_search_options(parser)
-    add_quiet_option(parser)
+    add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and drive files")
     add_json_option(parser)
 
@@ -35,7 +43,22 @@ def run(args: argparse.Namespace) -> int:
     if len(sets) > 2:
         raise UsageError(f"--set is given {len(sets)} times: two formulas have at most two spec sets")
     home = read_definitions(args, sets)
-    found = compare(args.first, args.second, home, **where_asked(args), **how_asked(args))
+    begun = time.monotonic()
+
+    def show(name: str, direction: "Direction") -> None:
+        note(f"{name}: {direction.verdict} (after {time.monotonic() - begun:.1f} s)")
+
+    with listening(tell_stage):
+        found = compare(
+            args.first,
+            args.second,
+            home,
+            **where_asked(args),
+            **how_asked(args),
+            jobs=args.jobs,
+            each=show,
+        )
+    clear()
     if args.out is not None:
         found.save(args.out)
     if args.json:

@@ -24,7 +24,20 @@ from roadproof.verdict import ExitCode
 _PACKAGE = "roadproof.cli"
 # What --help shows first; other sub-commands follow by name.
 _FIRST = (
-    *("list", "show", "prove", "check", "witness", "compare", "monitor", "evaluate", "simulate", "export"),
+    *(
+        "list",
+        "show",
+        "studio",
+        "prove",
+        "check",
+        "witness",
+        "compare",
+        "monitor",
+        "evaluate",
+        "simulate",
+        "export",
+        "report",
+    ),
     *("overlap", "order", "redundancy", "coverage", "classify", "explore", "catalogue"),
 )
 

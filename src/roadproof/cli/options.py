@@ -99,10 +99,10 @@ def chosen_sets(args: argparse.Namespace, usual: str = "base") -> list[str]:
 
 
 def load_library_of(args: argparse.Namespace) -> "Library":
-    """The bundled library with the files of ``--spec`` on top. Raises ``InputError``."""
-    from roadproof.spec.library import load_library
+    """The bundled library with the files of ``--spec`` on top. Raises ``InputError``, all mistakes in it."""
+    from roadproof.spec.diagnose import checked_library
 
-    return load_library(args.specs)
+    return checked_library(args.specs)
 
 
 def select_specification(args: argparse.Namespace) -> "Specification":

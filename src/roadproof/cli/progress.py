@@ -8,6 +8,10 @@ import contextlib
 import os
 import sys
 import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from roadproof.stages import Stage
 
 QUIET = "ROADPROOF_QUIET"
 _BE_QUIET = "quiet"
@@ -72,6 +76,11 @@ class Counter:
             self.begun, self.known = time.monotonic(), done
         left = time_left(time.monotonic() - self.begun, done - self.known, total - self.known)
         tell(f"{done} of {total} {what}{left}", last=done == total)
+
+
+def tell_stage(stage: "Stage") -> None:
+    """What the run is at."""
+    tell(str(stage))
 
 
 def clear() -> None:

@@ -7,11 +7,18 @@ from typing import TYPE_CHECKING
 
 from roadproof.cli.basis import in_order, read_definitions
 from roadproof.cli.numbers import add_effort_options, add_working_options, read_effort
-from roadproof.cli.options import add_json_option, add_specification_options, read_seconds, write_json
-from roadproof.cli.progress import Counter, clear, warn
+from roadproof.cli.options import (
+    add_json_option,
+    add_parameter_option,
+    add_specification_options,
+    read_seconds,
+    write_json,
+)
+from roadproof.cli.progress import Counter, clear, tell_stage, warn
 from roadproof.cli.search_options import named
 from roadproof.cli.streams import print_at_once
 from roadproof.errors import UsageError
+from roadproof.stages import listening
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -28,6 +35,8 @@ examples:
   roadproof prove 'scenario_4(SV,POV,L) -> scenario_4@ext(SV,POV,L)'
   roadproof prove 'given A, B: vehicle: danger(A,B) -> danger(B,A)' --out proofs
   roadproof prove --claims mine.txt --json -          one claim a paragraph
+  roadproof prove 'danger(SV,POV) -> G[0, 0.6 s] rssViolation(SV,POV)' --param minDanger=0.6
+  roadproof prove 1-8 --declared --out declared       at the declared values of all parameters
   roadproof prove --assume motion 'G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)'
   roadproof prove 'dangerArises(SV,POV) -> F aheadOf(SV,POV)' --engine smt --horizon 3 --dt 3/5
 
@@ -35,7 +44,8 @@ A claim is about all traces, all roads, all vehicle sizes and all parameter valu
 bounds. PROVED comes with a certificate, which `roadproof check` accepts; REFUTED with a counterexample: a
 drive, or a trace that may jump. With --assume motion a claim is about all motions: places and speeds are
 continuous, speeds the rates of places, lanes are left through their edge; then only a drive refutes. A claim
-may say so itself: 'assuming motion: CLAIM'.
+may say so itself: 'assuming motion: CLAIM'. With --param or --declared a claim is about these values of
+parameters alone, as in 'at minDanger = 0.6 s: CLAIM'; its verdict and its certificate say so.
 With --engine smt or milp a claim is about drives on one road, up to a horizon: PROVED-BOUNDED says which.
 A folder of --out grows: what it has evidence for is not asked again, also where a run was broken off.
 """
@@ -48,6 +58,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--claims", dest="file", type=Path, metavar="FILE", help="claims from a file")
     add_specification_options(parser, None)
+    add_parameter_option(parser)
+    parser.add_argument(
+        "--declared",
+        action="store_true",
+        help="at the declared values of all other parameters, and not for all values",
+    )
     parser.add_argument(
         "--expect",
         choices=[str(Verdict.PROVED), str(Verdict.REFUTED)],
@@ -104,7 +120,8 @@ def run(args: argparse.Namespace) -> int:
     each = None
     if args.json != "-" and (asked.are_own or args.verbose):
         each = in_order(map(name_of, asked.tasks), show)
-    found = Proofs.asked(asked, args.out, args.jobs, Counter(), warn, each)
+    with listening(tell_stage if len(asked.tasks) == 1 else None):
+        found = Proofs.asked(asked, args.out, args.jobs, Counter(), warn, each)
     if args.json != "-" and not asked.are_own:
         print(found)
     if args.json:
@@ -113,7 +130,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _asked(args: argparse.Namespace) -> "Claims":
-    from roadproof.api.proofs import assuming, claims_of, within_limits
+    from roadproof.api.proofs import assuming, claims_of, values_put_in, within_limits
     from roadproof.proving.properties import read_claims
     from roadproof.spec.motion import read_under
 
@@ -122,7 +139,8 @@ def _asked(args: argparse.Namespace) -> "Claims":
     if args.file is not None and not (written or args.claims):
         raise UsageError(f"{args.file} holds no claim: write one a paragraph")
     what = [*args.claims, *(read_under(home.specification, claim) for claim in written)]
-    said = assuming(args.assume, dict(named(args.vehicles, "")))
+    values = values_put_in(home, args.declared) if args.engine == "dense" else {}
+    said = assuming(args.assume, dict(named(args.vehicles, "")), values)
     asked = claims_of(home, what, args.set_name, Verdict(args.expect), said)
     asked = replace(asked, effort=read_effort(args), seek_drive=not args.no_drive)
     if args.engine == "dense":

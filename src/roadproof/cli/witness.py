@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 from roadproof.cli.basis import in_order, read_definitions
 from roadproof.cli.numbers import add_sharing_options, add_working_options, read_effort, read_hands, whole
 from roadproof.cli.options import add_json_option, chosen_sets, write_json
-from roadproof.cli.progress import Counter, clear, warn
+from roadproof.cli.progress import Counter, clear, tell_stage, warn
 from roadproof.cli.search_options import add_search_options, where_asked
 from roadproof.cli.streams import print_at_once
 from roadproof.cli.what import add_what_arguments, some_or_all
+from roadproof.stages import listening
 
 if TYPE_CHECKING:
     from roadproof.searching.ask import Outcome
@@ -73,7 +74,8 @@ def run(args: argparse.Namespace) -> int:
         print_at_once(line + told, args.out is not None)
 
     each = in_order(tuple(named), show) if plain else None
-    found = witness_all(searches, args.out, pictures, read_hands(args), Counter(), warn, each)
+    with listening(tell_stage if len(named) == 1 else None):
+        found = witness_all(searches, args.out, pictures, read_hands(args), Counter(), warn, each)
     if args.out is not None and not written and plain:
         print(f"nothing is written to {args.out}, as there is no drive")
     if args.json:

@@ -19,10 +19,11 @@ from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.strict import Fields, read_assuming, read_json, text
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.pins import pins
+from roadproof.logic.rewrite import parameters_of, with_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification, unknown
-from roadproof.spec.motion import NOTHING, SCHEMAS, Assumed, Axiom, assumption
+from roadproof.spec.motion import NOTHING, SCHEMAS, Assumed, Axiom, assumption, value_texts, values_said
 from roadproof.spec.query import Query
 
 SCHEMA = "roadproof/certificate/1"
@@ -31,7 +32,11 @@ VIEW = "dense"
 
 @dataclass(frozen=True)
 class Certificate:
-    """A proof as data; ``queries`` are (title, SMT-LIB script), each to be answered unsat."""
+    """A proof as data; ``queries`` are (title, SMT-LIB script), each to be answered unsat.
+
+    ``pinned``: values of parameters that the claim's own premise demands, as words (``minDanger = 0.6 s``);
+    they are put in before anything is asked (``logic.pins``).
+    """
 
     property: str
     scenario: int | None
@@ -44,6 +49,7 @@ class Certificate:
     lemmas: tuple[Lemma, ...]
     queries: tuple[tuple[str, str], ...]
     assumed: Assumed = NOTHING
+    pinned: tuple[str, ...] = ()
 
 
 def certify(
@@ -55,15 +61,17 @@ def certify(
     label: str = "",
     scenario: int | None = None,
     assumed: Assumed = NOTHING,
+    pinned: tuple[str, ...] = (),
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof.
 
-    Raises ``InputError`` where the text of a query that was put together reads as another formula.
+    Raises ``InputError`` where the text of a query that was put together reads as another formula, and where
+    the claim does not pin what is ``pinned``.
     """
     if not query.written and read_claim(specification, query.text).formula != query.formula:
         raise InputError(f"the claim's text does not mean what was proved: {query.text}")
     atoms = Atoms()
-    abstracted = goal_of(specification, query, assumed, atoms)
+    abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
     bounds = specification.library.bounds
     ground = derive_query(abstracted, atoms, instances, names, lemmas, bounds, query.lanes)
     queries = [("claim", ground)]
@@ -83,16 +91,34 @@ def certify(
         lemmas,
         tuple(queries),
         assumed,
+        pinned,
     )
 
 
-def goal_of(specification: Specification, query: Query, assumed: Assumed, atoms: Atoms) -> Formula:
-    """What is proved, abstracted: the claim, under what it assumes, made anew from words.
+def goal_of(
+    specification: Specification,
+    query: Query,
+    assumed: Assumed,
+    atoms: Atoms,
+    pinned: Sequence[str],
+) -> tuple[Formula, Formula]:
+    """What is proved, abstracted: what is assumed, made anew from words, and the claim that it implies.
 
-    Raises ``InputError`` for what nobody may assume.
+    Values of parameters that are assumed, and those that are ``pinned``, are put in. Raises ``InputError``
+    for what nobody may assume, and for values that the claim does not pin.
     """
-    claim = atoms.abstract(query.formula)
-    return f.implication(atoms.abstract(assumption(specification, query, assumed)), claim)
+    here = values_said(specification, assumed.said)
+    premised = pins(with_values(query.formula, here))
+    demanded = values_said(specification, pinned)
+    for name, value in demanded.items():
+        if premised.get(name) != value:
+            raise InputError(f"{name}={value}: no premise of the claim demands that value")
+    if tuple(pinned) != value_texts(specification, demanded):
+        raise InputError(f"what is pinned is written otherwise than it is read: {', '.join(pinned)[:200]}")
+    values = {**here, **demanded}
+    claim = atoms.abstract(with_values(query.formula, values))
+    premise = with_values(assumption(specification, query, assumed), values)
+    return atoms.abstract(premise), claim
 
 
 def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> str | None:
@@ -125,6 +151,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
             certificate.property,
             certificate.scenario,
             certificate.assumed,
+            certificate.pinned,
         )
     except RoadproofError as error:
         return Acceptance.REJECTED, f"the query cannot be derived: {error}"
@@ -179,6 +206,7 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
         "scenario": certificate.scenario,
         "claim": certificate.claim,
         **_assumed_data(certificate.assumed),
+        **({"pinned": list(certificate.pinned)} if certificate.pinned else {}),
         "set": certificate.set_name,
         "options": dict(certificate.options),
         "view": VIEW,
@@ -209,7 +237,7 @@ def read_certificate(path: Path) -> Certificate:
 
 _FIELDS = (
     *("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions"),
-    *("formulas", "times", "instances", "lemmas", "queries", "assuming", "axioms"),
+    *("formulas", "times", "instances", "lemmas", "queries", "assuming", "axioms", "pinned"),
 )
 
 
@@ -240,6 +268,7 @@ def read_certificate_data(content: object, where: str) -> Certificate:
         tuple(_lemma(entry, f"{where}, lemmas") for entry in data.items("lemmas")),
         tuple(_query(entry, f"{where}, queries") for entry in data.items("queries")),
         _assumed(data),
+        data.texts("pinned") if "pinned" in data.content else (),
     )
 
 
@@ -261,11 +290,11 @@ def _axiom(content: object, where: str) -> Axiom:
     return Axiom(schema, tuple(arguments.values()))
 
 
-def _rows(data: Fields, field: str) -> list[list[Any]]:
-    rows = data.items(field)
+def _rows(data: Fields, what: str) -> list[list[Any]]:
+    rows = data.items(what)
     for row in rows:
         if not isinstance(row, list) or len(row) not in (4, 5):
-            raise InputError(f"{data.where}, {field}: {str(row)[:60]!r} is no entry of 4 or 5 parts")
+            raise InputError(f"{data.where}, {what}: {str(row)[:60]!r} is no entry of 4 or 5 parts")
     return rows
 
 

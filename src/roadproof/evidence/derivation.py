@@ -127,18 +127,19 @@ def derive_query(
     )
 
 
-def met_names(
+def met_sites(
     claim: Formula,
     atoms: Atoms,
     instances: Mapping[Site, Sequence[str]],
     names: Mapping[Site, str],
     bounds: Mapping[str, str],
     lanes: Collection[str],
-) -> dict[Site, str]:
-    """The entries of ``names`` whose quantifier is met when only ``instances`` are made."""
+) -> tuple[dict[Site, tuple[str, ...]], dict[Site, str]]:
+    """The entries of ``instances``, and of ``names``, whose quantifier is met when only these are made."""
     derivation = _start(claim, atoms, instances, names, bounds, lanes)
     derivation.truth(claim, False, ZERO)
-    return {site: name for site, name in names.items() if site in derivation.named}
+    met = {site: tuple(texts) for site, texts in instances.items() if site in derivation.instanced}
+    return met, {site: name for site, name in names.items() if site in derivation.named}
 
 
 def _start(

@@ -204,7 +204,8 @@ def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
         without = () if entry.verdict == "UNKNOWN" else ("there is no evidence for it",)
         return replace(said, kind=NO_EVIDENCE, unchecked=without)
     if entry.file is None:
-        outcome, reason = judge_trace(entry.trace, entry.common.specification, entry.claim or "", entry.where)
+        claimed = entry.common.specification, entry.claim or "", entry.where, entry.assuming
+        outcome, reason = judge_trace(entry.trace, *claimed)
         return replace(
             said, outcome=outcome, reason=reason, checked=() if reason else ("judged on its trace",)
         )

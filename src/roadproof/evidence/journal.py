@@ -152,5 +152,6 @@ def _fault_of(entry: Entry, folder: Path) -> str:
     if fault or entry.shows == "nothing":
         return fault
     if entry.file is None:
-        return judge_trace(entry.trace, entry.common.specification, entry.claim or "", entry.where)[1]
+        claimed = entry.common.specification, entry.claim or "", entry.where, entry.assuming
+        return judge_trace(entry.trace, *claimed)[1]
     return mismatch(entry, read_evidence(folder / entry.file))

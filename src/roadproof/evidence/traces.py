@@ -1,5 +1,6 @@
 """Traces inside an index, read strictly and judged again: counterexamples where no drive was found."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from roadproof.errors import InputError, RoadproofError
@@ -10,6 +11,7 @@ from roadproof.evidence.strict import Fields, rational
 from roadproof.spec.bind import values_with
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
+from roadproof.spec.motion import under_limits
 
 _BETWEEN: dict[str, Held] = {
     "the state of the instant before": "before",
@@ -19,11 +21,11 @@ MOST_INSTANTS = 1000
 
 
 def judge_trace(
-    content: object, specification: Specification, claim: str, where: str
+    content: object, specification: Specification, claim: str, where: str, said: Sequence[str] = ()
 ) -> tuple[Acceptance, str]:
-    """Whether a trace refutes a claim, judged; and why where it does not."""
+    """Whether a trace refutes a claim under what is ``said``, judged; and why where it does not."""
     try:
-        query = read_claim(specification, claim)
+        query = under_limits(specification, read_claim(specification, claim), said)
         trace = read_trace(content, where)
         values_with(specification.library, trace.parameters)
         fault = fault_of(trace, query.formula, specification.library.bounds)

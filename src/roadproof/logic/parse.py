@@ -224,11 +224,12 @@ def _short(token: str) -> str:
 
 
 def _at(meta: Meta) -> Position:
-    return Position(getattr(meta, "line", 1), getattr(meta, "column", 1))
+    begin = getattr(meta, "line", 1), getattr(meta, "column", 1)
+    return Position(*begin, getattr(meta, "end_line", 0) or 0, getattr(meta, "end_column", 0) or 0)
 
 
 def _token_at(token: Token) -> Position:
-    return Position(token.line or 1, token.column or 1)
+    return Position(token.line or 1, token.column or 1, token.end_line or 0, token.end_column or 0)
 
 
 def _rational(token: Token) -> Fraction:

@@ -51,6 +51,8 @@ def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
 
 def with_values(formula: Formula, values: Mapping[str, Fraction]) -> Formula:
     """``formula`` with the named parameters replaced by numbers; others stay symbolic."""
+    if not values:
+        return formula
 
     def leaf(old: Leaf) -> Term:
         if isinstance(old, Parameter) and old.name in values:

@@ -23,7 +23,8 @@ _INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
 class Task:
     """One claim in one set, with the verdict that is expected; ``scenario`` None: of no single one.
 
-    ``assuming``: what the claim is asked under, in words.
+    ``assuming``: what the claim is asked under, in words. ``of_all_values``: the verdict is expected for all
+    values of parameters together, and may be another at some.
     """
 
     id: str
@@ -34,6 +35,7 @@ class Task:
     claim: str
     expected: Verdict
     assuming: tuple[str, ...] = ()
+    of_all_values: bool = False
 
     @property
     def name(self) -> str:
@@ -41,14 +43,18 @@ class Task:
         if self.id == OWN:
             return name_of_claim(self.claim, self.set_name, self.assuming)
         middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
-        return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}"
+        under = f"-at-{digest(statement(self.assuming, ''))}" if self.assuming else ""
+        return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}{under}"
 
 
 def name_of_claim(claim: str, set_name: str, assuming: Sequence[str] = ()) -> str:
     """A name for a claim in a set, under what is assumed, fit for a file: ``claim-3f0a9c71-base``."""
-    asked = statement(assuming, " ".join(claim.split()))
-    digest = hashlib.sha256(asked.encode()).hexdigest()
-    return f"{OWN}-{digest[:8]}-{set_name}"
+    return f"{OWN}-{digest(statement(assuming, ' '.join(claim.split())))}-{set_name}"
+
+
+def digest(asked: str) -> str:
+    """Eight hexadecimal digits that stand for a text."""
+    return hashlib.sha256(asked.encode()).hexdigest()[:8]
 
 
 def template_properties() -> list[Task]:
@@ -82,6 +88,7 @@ def _tasks(entry: dict[str, str | list[str]]) -> list[Task]:
             set_name,
             _at(str(entry["claim"]), scenario),
             Verdict(str(entry.get("expected", Verdict.PROVED))),
+            of_all_values=entry.get("values") == "all",
         )
         for set_name in entry["sets"]
         for scenario in scenarios

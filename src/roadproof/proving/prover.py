@@ -10,20 +10,23 @@ from roadproof.effort import Effort, Meter
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, goal_of
-from roadproof.evidence.derivation import Lemma, Site, derive_query, met_names, prefix_form
+from roadproof.evidence.derivation import Lemma, Site, derive_query, met_sites, prefix_form
 from roadproof.evidence.refutation import Countermodel
 from roadproof.evidence.times import ZERO
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.pins import pins
+from roadproof.logic.rewrite import with_values
 from roadproof.proving.countermodel import realise
 from roadproof.proving.roster import Roster, roster_for
 from roadproof.proving.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.proving.states import StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
-from roadproof.spec.library import Specification
-from roadproof.spec.motion import NOTHING, Assumed, Axiom, assumption, axiom_formula
+from roadproof.spec.library import Specification, is_within
+from roadproof.spec.motion import NOTHING, Assumed, Axiom, axiom_formula, is_moving, value_texts, values_said
 from roadproof.spec.query import Query
+from roadproof.stages import begin
 from roadproof.verdict import Verdict
 
 # Ways to look, in turns: (ask for few instants, units of work). The last is given what is left.
@@ -73,20 +76,24 @@ def prove(
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
 
     Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
-    above zero, roads, and signals as functions of time. A proof counts only once its certificate, derived
-    apart, has been answered unsat. Where something is ``assumed`` nothing is refuted: a trace that has it at
-    finitely many instants need be no motion. Raises ``Late`` where the clock cuts it off, ``InputError`` for
-    what nobody may assume.
+    above zero, roads, and signals as functions of time; a value that is ``assumed``, or that the claim's own
+    premise demands, is put in first. A proof counts only once its certificate, derived apart, has been
+    answered unsat. Where motion is ``assumed`` nothing is refuted: a trace that has it at finitely many
+    instants need be no motion. Raises ``Late`` where the clock cuts it off, ``InputError`` for what nobody
+    may assume.
     """
     begun = time.monotonic()
     meter = (effort or Effort()).meter()
     atoms = Atoms()
-    claim = atoms.abstract(query.formula)
-    premise = atoms.abstract(assumption(specification, query, assumed))
-    defaults = default_values(specification.library)
+    here = values_said(specification, assumed.said)
+    demanded = _demanded(specification, query, here)
+    pinned = value_texts(specification, demanded)
+    premise, claim = goal_of(specification, query, assumed, atoms, pinned)
+    values = {**here, **demanded}
+    defaults = {**default_values(specification.library), **values}
     bounds = specification.library.bounds
     states = StateChecker(atoms, bounds, defaults)
-    attempt = _Attempt(query, atoms, bounds, defaults, states, meter, bool(assumed.said))
+    attempt = _Attempt(query, atoms, bounds, defaults, states, meter, is_moving(assumed.said))
 
     def result(
         verdict: Verdict,
@@ -106,14 +113,14 @@ def prove(
         if isinstance(found, GaveUp):
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
-    needed = _needed(specification, query, assumed.axioms, proofs)
+    needed = _needed(specification, query, assumed.axioms, values, proofs)
     if len(needed) < len(assumed.axioms):
         fewer = Assumed(assumed.said, needed)
         again = prove(specification, query, meter.effort(), label, scenario, fewer)
         if again.holds:
             return replace(again, seconds=time.monotonic() - begun, work=meter.spent + again.work)
     try:
-        certificate = _certificate(specification, query, assumed, proofs, names, label, scenario)
+        certificate = _certificate(specification, query, assumed, pinned, proofs, names, label, scenario)
     except InputError as error:
         return result(Verdict.UNKNOWN, f"a proof was found, but no certificate can be made of it: {error}")
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
@@ -128,6 +135,15 @@ def prove(
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
     return result(Verdict.PROVED, "", certificate)
+
+
+def _demanded(
+    specification: Specification, query: Query, here: Mapping[str, Fraction]
+) -> dict[str, Fraction]:
+    """The values that the claim's own premise demands, as far as parameters may have them."""
+    library = specification.library
+    found = pins(with_values(query.formula, here))
+    return {name: x for name, x in found.items() if is_within(library.bounds[name], x)}
 
 
 def conjuncts(formula: Formula) -> Iterator[Formula]:
@@ -164,6 +180,7 @@ class _Attempt:
         turns = TURNS[-1:] if f.is_state(goal) else TURNS
         roster = None if self.moving else roster_for(goal, self.query.lanes)
         for number, (wishful, units) in enumerate(turns, 1):
+            begin("prove", f"turn {number} of {len(turns)}")
             if roster is not None and number == len(turns[:2]):
                 few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
                 if isinstance(few, Countermodel):
@@ -198,10 +215,8 @@ class _Attempt:
         proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
         if not isinstance(proof, Proof):
             return False
-        met = met_names(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
-        query = derive_query(
-            goal, self.atoms, proof.instances, met, proof.lemmas, self.bounds, self.query.lanes
-        )
+        met = met_sites(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
+        query = derive_query(goal, self.atoms, *met, proof.lemmas, self.bounds, self.query.lanes)
         return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
 
     def _search(
@@ -216,6 +231,7 @@ def _certificate(
     specification: Specification,
     query: Query,
     assumed: Assumed,
+    pinned: tuple[str, ...],
     proofs: list[Proof],
     names: dict[Site, str],
     label: str,
@@ -231,18 +247,23 @@ def _certificate(
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
     atoms = Atoms()
-    abstracted = goal_of(specification, query, assumed, atoms)
-    met = met_names(abstracted, atoms, instances, names, specification.library.bounds, query.lanes)
+    abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
+    met = met_sites(abstracted, atoms, instances, names, specification.library.bounds, query.lanes)
     made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-    return certify(specification, query, instances, met, made, label, scenario, assumed)
+    return certify(specification, query, *met, made, label, scenario, assumed, pinned)
 
 
 def _needed(
-    specification: Specification, query: Query, axioms: Sequence[Axiom], proofs: Sequence[Proof]
+    specification: Specification,
+    query: Query,
+    axioms: Sequence[Axiom],
+    values: Mapping[str, Fraction],
+    proofs: Sequence[Proof],
 ) -> tuple[Axiom, ...]:
     """Those of ``axioms`` of which a proof has instances: each is a universal that holds at time 0."""
     sites = {site for proof in proofs for site in proof.instances}
     atoms = Atoms()
-    atoms.abstract(query.formula)
-    formulas = {x: atoms.abstract(axiom_formula(specification, query, x)) for x in axioms}
+    atoms.abstract(with_values(query.formula, values))
+    made = {x: with_values(axiom_formula(specification, query, x), values) for x in axioms}
+    formulas = {x: atoms.abstract(formula) for x, formula in made.items()}
     return tuple(x for x in axioms if Site(prefix_form(formulas[x]), True, str(ZERO)) in sites)

@@ -5,10 +5,11 @@ from fractions import Fraction
 from itertools import groupby
 
 from roadproof.analysis.claims import Answered, Claims
+from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel
 from roadproof.spec.library import Specification
-from roadproof.spec.motion import Assumed, statement
+from roadproof.spec.motion import Assumed, is_moving, statement
 from roadproof.spec.scenarios import LANE
 from roadproof.spec.words import called_by, legend
 from roadproof.world.motion import state_at
@@ -21,7 +22,8 @@ def line(answered: Answered) -> str:
     scenario = "" if task.scenario is None else f" {task.scenario}"
     mark = "" if answered.verdict is answered.expected else f", expected {answered.expected}"
     seconds = answered.settled.result.seconds
-    return f"{task.id}{scenario} {task.set_name}: {verdict(answered)}{mark} ({seconds:.2f} s)"
+    at = f" at {', '.join(task.assuming)}" if task.assuming else ""
+    return f"{task.id}{scenario} {task.set_name}{at}: {verdict(answered)}{mark} ({seconds:.2f} s)"
 
 
 def verdict(answered: Answered) -> str:
@@ -31,7 +33,10 @@ def verdict(answered: Answered) -> str:
 
 
 def table(answered: Sequence[Answered], specification: Specification) -> str:
-    """A line for each property and set; below it what was not as expected, and what scenarios are called."""
+    """A line for each property and set; below it what was not as expected.
+
+    At the end at which values claims were settled, and what scenarios are called.
+    """
     rows: list[str] = []
     for (name, title, set_name), group in groupby(
         answered, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
@@ -46,6 +51,8 @@ def table(answered: Sequence[Answered], specification: Specification) -> str:
             f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
         )
         rows += [f"      {line(s)} {s.settled.result.reason}" for s in found if s.verdict is not s.expected]
+    values = sorted({value for s in answered for value in s.task.assuming})
+    rows += [f"each at those of {', '.join(values)} that it speaks of"] if values else []
     words = called_by(specification, (s.task.claim for s in answered))
     rows += [f"  {line}" for line in legend(words)]
     return "\n".join(rows)
@@ -73,7 +80,7 @@ def details(answered: Answered, asked: Claims) -> str:
         lines.append(
             f"  certificate: {count} instance{'s' if count != 1 else ''}, "
             f"{len(certificate.lemmas)} lemma{'s' if len(certificate.lemmas) != 1 else ''}"
-            + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
+            + _values_of(certificate)
         )
         lines += _show_axioms(certificate.assumed)
     if settled.drive is not None:
@@ -83,9 +90,15 @@ def details(answered: Answered, asked: Claims) -> str:
     return "\n".join(lines)
 
 
+def _values_of(certificate: Certificate) -> str:
+    """The values of parameters that its premise demands, and that it holds for all others."""
+    pinned = f", at {', '.join(certificate.pinned)}" if certificate.pinned else ""
+    return pinned + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
+
+
 def _show_axioms(assumed: Assumed) -> list[str]:
     """What the proof uses of motion, by its schemas."""
-    if not assumed.said:
+    if not is_moving(assumed.said):
         return []
     if not assumed.axioms:
         return ["  it holds without any of that: nothing known of motion was needed"]

@@ -20,7 +20,7 @@ from roadproof.spec.bind import bind, values_with
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import SUBJECT, danger, too_near_ahead, too_near_left
-from roadproof.world.motion import state_at
+from roadproof.world.motion import state_at, states_at
 from roadproof.world.road import Road, Zone
 
 Span: TypeAlias = tuple[float, float]
@@ -169,9 +169,9 @@ class _Gap:
 def _gaps(file: DriveFile, direction: Direction, low: str, high: str) -> list[_Gap]:
     """From the front of one vehicle to the rear of another, or from a left to a right side."""
     lower, higher = file.drive.vehicles[low], file.drive.vehicles[high]
+    times = times_of(file)
     found = []
-    for time in times_of(file):
-        a, b = state_at(lower, time), state_at(higher, time)
+    for a, b in zip(states_at(lower, times), states_at(higher, times), strict=True):
         if direction == "along":
             order, size = b.s - a.s, higher.length
         else:

@@ -18,6 +18,7 @@ from roadproof.searching.search import Attempt, find_witness
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
+from roadproof.stages import about, begin
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 
@@ -90,6 +91,17 @@ def undecided(search: Search, reason: str, seconds: float = 0.0) -> Outcome:
 
 def ask(search: Search) -> Outcome:
     """Search. Raises ``InputError``, ``UsageError``, ``MissingSolverError``, ``Late``."""
+    with about(_called(search)):
+        return _ask(search)
+
+
+def _called(search: Search) -> str:
+    number = search.scenario
+    what = search.query.text if number is None else f"scenario {number}"
+    return f"{what} {search.specification.set_name}"
+
+
+def _ask(search: Search) -> Outcome:
     begun = time.perf_counter()
     library = search.specification.library
     question = pose(library, search.query, search.setting)
@@ -100,6 +112,7 @@ def ask(search: Search) -> Outcome:
     if first.found is None:
         effort = search.search_options.effort
         most = effort.of(max(1.0, min(10.0, effort.units)))
+        begin("explain", "is there a proof that there is none")
         impossibility = show_impossible(search.specification, search.query, most)
     return Outcome(
         search.scenario,

@@ -1,19 +1,25 @@
 """Two formulas side by side: which implies which, by a proof or a drive in each direction."""
 
+from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from roadproof.effort import Late
+from roadproof.effort import Effort, Late
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.judged import Judged
+from roadproof.hands import Hands
 from roadproof.proving.prover import prove
 from roadproof.searching.ask import Search, ask
 from roadproof.spec.compose import both, implication, negation
 from roadproof.spec.query import Query
+from roadproof.stages import about
 from roadproof.verdict import Verdict
+from roadproof.workers import Lost, answers_of, is_worker
 
 Relation: TypeAlias = Literal["equivalent", "stronger", "weaker", "incomparable", "unknown"]
 
+DIRECTIONS = ("first implies second", "second implies first")
 PROOF = 5.0  # units of work for a proof before a drive is looked for
 
 
@@ -55,7 +61,7 @@ class Comparison:
     @property
     def directions(self) -> dict[str, Direction]:
         """Both directions, each with a name."""
-        return {"first implies second": self.forward, "second implies first": self.backward}
+        return dict(zip(DIRECTIONS, (self.forward, self.backward), strict=True))
 
     def as_data(self) -> dict[str, Any]:
         """As plain data, without its heading."""
@@ -68,17 +74,61 @@ class Comparison:
         }
 
 
-def compare(search: Search, other: Query, set_name: str | None = None) -> Comparison:
+def compare(
+    search: Search,
+    other: Query,
+    set_name: str | None = None,
+    jobs: int = 1,
+    each: Callable[[str, Direction], object] | None = None,
+) -> Comparison:
     """Compare the formula of a search with another, both read with the search's specification.
 
     ``set_name``: the spec set of the other, where that is another one (``compose.taken_from``). Drives
-    that tell them apart are looked for in the search's setting. Raises as ``ask`` does.
+    that tell them apart are looked for in the search's setting. With two ``jobs`` both directions are asked
+    at once, each in a process of its own and with its own work and clock; ``each`` is told of a direction
+    when its answer is there. Raises as ``ask`` does.
     """
-    forward = _imply(search, search.query, other)
-    backward = _imply(search, other, search.query)
+    found: dict[str, Direction] = {}
+    for name, direction in answers(search, other, jobs):
+        found[name] = direction
+        if each is not None:
+            each(name, direction)
+    forward, backward = (found[name] for name in DIRECTIONS)
     mine = search.specification.set_name
     relation = _relation(forward, backward)
     return Comparison(search.query, other, relation, forward, backward, (mine, set_name or mine))
+
+
+def answers(search: Search, other: Query, jobs: int = 1) -> Iterator[tuple[str, Direction]]:
+    """The answers to both directions by name, as they come. The iterator is to be used up or closed."""
+    questions = [
+        _Question(name, search, *pair)
+        for name, pair in zip(DIRECTIONS, [(search.query, other), (other, search.query)], strict=True)
+    ]
+    if jobs < 2 or is_worker():
+        yield from ((x.name, _imply(x)) for x in questions)
+        return
+    with closing(answers_of(_imply, questions, Hands(jobs))) as found:
+        for place, answer in found:
+            question = questions[place]
+            yield question.name, question.doubt(answer.reason) if isinstance(answer, Lost) else answer
+
+
+@dataclass(frozen=True)
+class _Question:
+    """Does ``one`` imply ``other``?"""
+
+    name: str
+    search: Search
+    one: Query
+    other: Query
+
+    @property
+    def claim(self) -> Query:
+        return implication(self.one, self.other)
+
+    def doubt(self, reason: str) -> Direction:
+        return Direction(self.claim, Verdict.UNKNOWN, reason)
 
 
 def _relation(forward: Direction, backward: Direction) -> Relation:
@@ -95,22 +145,25 @@ def _relation(forward: Direction, backward: Direction) -> Relation:
             return "unknown"
 
 
-def _imply(search: Search, one: Query, other: Query) -> Direction:
+def _imply(question: _Question) -> Direction:
     """Which of the two is so; UNKNOWN where the clock cuts the search off."""
-    claim = implication(one, other)
+    against = both(question.one, negation(question.other))
     try:
-        return _decide(replace(search, query=both(one, negation(other)), count=1), claim)
+        with about(question.name):
+            return _decide(replace(question.search, query=against, count=1), question.claim)
     except Late as late:
-        return Direction(claim, Verdict.UNKNOWN, str(late))
+        return question.doubt(str(late))
 
 
 def _decide(against: Search, claim: Query) -> Direction:
     """Ask for a proof first, which takes a moment where there is one, then for a drive against the claim."""
     effort = against.search_options.effort
+    meter = effort.meter()
     proof = prove(against.specification, claim, effort.of(min(PROOF, effort.units)))
     if proof.holds and proof.certificate is not None:
         return Direction(claim, Verdict.PROVED, proof.reason, certificate=proof.certificate)
-    found = ask(against)
+    left = Effort(effort.units, meter.seconds_left())
+    found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
     if found.drives:
         return Direction(claim, Verdict.REFUTED, drive=found.drives[0])
     if found.impossibility is not None:

@@ -1,6 +1,6 @@
 """On which grid a formula is looked at: the coarsest whose steps divide its durations."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 from math import ceil, gcd
 
@@ -38,13 +38,27 @@ def fitting_grid(horizon: Fraction, formula: Formula, values: Mapping[str, Fract
     would have too many steps.
     """
     step = Fraction(0)
-    for duration in durations(formula, values):
+    found = durations(formula, values)
+    for duration in found:
         step = common_step(step, duration)
     dt = coarsest(step)
     with_horizon = coarsest(common_step(step, horizon))
-    if with_horizon >= dt / 4:
-        return make_grid(horizon, with_horizon)
-    return make_grid(ceil(horizon / dt) * dt, dt)
+    if with_horizon < dt / 4:
+        horizon, with_horizon = ceil(horizon / dt) * dt, dt
+    if horizon / with_horizon > MOST_STEPS:
+        raise UsageError(
+            f"horizon={horizon} s is {horizon / with_horizon} steps of dt={with_horizon} s, the coarsest of "
+            f"which all durations of the formula are multiples ({_some(found)}); at most {MOST_STEPS} are "
+            "allowed: give parameters and windows durations that are multiples of a longer time, or choose a "
+            "shorter horizon"
+        )
+    return make_grid(horizon, with_horizon)
+
+
+def _some(found: Collection[Fraction]) -> str:
+    """Some durations in seconds, the shortest first."""
+    shown = [f"{x} s" for x in sorted(x for x in found if x)]
+    return ", ".join(shown[:6]) + (", …" if len(shown) > 6 else "")
 
 
 def coarsest(step: Fraction, most: Fraction = COARSEST) -> Fraction:

@@ -2,8 +2,9 @@
 
 from roadproof.effort import Effort
 from roadproof.evidence.judged import Judged
+from roadproof.logic.pins import pins
 from roadproof.searching.ask import Search, ask
-from roadproof.searching.question import SearchOptions
+from roadproof.searching.question import SearchOptions, Setting
 from roadproof.spec.compose import negation
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
@@ -12,9 +13,11 @@ from roadproof.spec.query import Query
 def refuting_drive(specification: Specification, claim: Query, effort: Effort) -> Judged | None:
     """A judged drive on which ``claim`` is false at time 0, or None where none was found.
 
-    Looked for on the usual road at declared parameter values. Raises ``InputError`` and
-    ``UsageError`` for claims that are not about drives, and ``Late``.
+    Looked for on the usual road, with parameters at the values that the claim's premise demands, and at the
+    declared ones else. Raises ``InputError`` and ``UsageError`` for claims that are not about drives, and
+    ``Late``.
     """
+    setting = Setting(values=pins(claim.formula))
     search_options = SearchOptions("smooth", effort=effort, explain=False)
-    outcome = ask(Search(specification, negation(claim), search_options=search_options))
+    outcome = ask(Search(specification, negation(claim), setting, search_options))
     return outcome.drives[0] if outcome.drives else None

@@ -24,6 +24,7 @@ from roadproof.searching.variety import differ
 from roadproof.solve.bounds import TooNonlinearError
 from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import Solution, box_of, solve_mixed
+from roadproof.stages import begin
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 
@@ -149,17 +150,22 @@ class _Search:
 
     def _attempt(self, lanes: Mapping[str, str], grid: Grid, assumptions: Assumptions) -> FoundDrive | None:
         start = time.perf_counter()
+        told = self._told(lanes, grid, assumptions)
+        begin("encode", told)
         formula = self.question.bound(lanes)
         problem, layout = self._problem(formula, grid, assumptions)
         self.sizes = problem.sizes()
         start = self._spent("encode", start)
+        begin("solve", told)
         solution = self._solve(problem)
         start = self._spent("solve", start)
         if solution.status != "found":
             self.doubt = "the solver gave up" if solution.status == "unknown" else self.doubt
             return None
+        begin("shape", told)
         for drive in self._drives(problem, layout, solution, formula):
             start = self._spent("shape", start)
+            begin("judge", told)
             complaint = self._complaint(formula, drive, grid, assumptions)
             start = self._spent("judge", start)
             if complaint is None:
@@ -226,6 +232,7 @@ class _Search:
         how = set()
         for lanes in self.question.lanes:
             formula = self.question.bound(lanes)
+            begin("refute", self._told(lanes, self.question.grid, assumptions))
             problem, layout = self._problem(formula, self.question.grid, assumptions)
             by, exact = self._refute(problem)
             start = self._spent("refute", start)
@@ -259,6 +266,13 @@ class _Search:
         if exact.status == "found":
             return "", exact.values
         return ("the exact encoding is unsat for z3" if exact.status == "infeasible" else ""), None
+
+    def _told(self, lanes: Mapping[str, str], grid: Grid, assumptions: Assumptions) -> str:
+        """On which grid and under what is searched, in words."""
+        among = [f"dt={grid.dt} s up to {grid.horizon} s", *(f"{k}={v}" for k, v in lanes.items())]
+        natural = ["natural drives"] if assumptions.natural else []
+        straight = [f"{' and '.join(sorted(assumptions.straight))} straight"] if assumptions.straight else []
+        return ", ".join([*among, *natural, *straight])
 
     def _spent(self, stage: str, start: float) -> float:
         now = time.perf_counter()

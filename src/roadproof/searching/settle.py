@@ -15,7 +15,7 @@ from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
 from roadproof.spec.library import Specification
-from roadproof.spec.motion import under_limits
+from roadproof.spec.motion import Assumed, is_moving, under_limits
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 
@@ -66,16 +66,18 @@ def settle(
     search off.
     """
     begun = time.monotonic()
-    if said:
+    if is_moving(said):
         return _settle_of_motions(specification, query, said, effort, label, scenario, seek_drive)
     try:
-        result = prove(specification, query, effort, label, scenario)
+        result = prove(specification, query, effort, label, scenario, Assumed(tuple(said)))
     except Late as late:
         return in_doubt(str(late), begun)
     if not seek_drive or result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
         return Settled(result)
     try:
-        return Settled(result, _drive_against(query, specification, effort))
+        return Settled(
+            result, _drive_against(under_limits(specification, query, said), specification, effort)
+        )
     except Late as late:
         return Settled(result) if result.verdict is Verdict.REFUTED else in_doubt(str(late), begun)
 

@@ -16,6 +16,10 @@ COMPARISONS = ("<", "<=", ">", ">=", "=", "!=")
 Parameters = Mapping[str, ParameterDeclaration]
 
 
+class ValueOfTermError(TextError):
+    """A term does not fit because of what it may be worth, which may depend on a definition's arguments."""
+
+
 def literal(value: Fraction, unit: str) -> Quantity:
     """A number as it is written; 0 without a unit fits every dimension."""
     factor, dimension = UNITS[unit or "unitless"]
@@ -106,7 +110,7 @@ def combine(op: str, left: Quantity, right: Quantity, parameters: Parameters, at
 
 def _refuse_zero(denominator: t.Term, parameters: Parameters, at: Position) -> None:
     if not _is_positive(denominator, parameters):
-        raise TextError(
+        raise ValueOfTermError(
             "the divisor must be greater than zero whatever happens",
             at,
             "Use numbers and parameters declared with where … > 0; or multiply the other side of the "
@@ -163,9 +167,9 @@ def interval(low: t.Term, high: t.Term | None, at: Position) -> f.Interval:
     low_value = t.constant_value(low)
     high_value = None if high is None else t.constant_value(high)
     if low_value is not None and low_value < 0:
-        raise TextError(f"an interval may not start in the past: low={low_value}", at)
+        raise ValueOfTermError(f"an interval may not start in the past: low={low_value}", at)
     if low_value is not None and high_value is not None and high_value < low_value:
-        raise TextError(
+        raise ValueOfTermError(
             f"the interval is empty: low={low_value} is above high={high_value}",
             at,
             "Write the smaller bound first.",
@@ -181,7 +185,7 @@ def bound(quantity: Quantity, parameters: Parameters, at: Position) -> t.Term:
     if any(isinstance(leaf, t.Varying) for leaf in t.leaves(quantity.term)):
         raise TextError("an interval bound may not depend on a vehicle's motion", at)
     if value is None and not _is_positive(quantity.term, parameters, or_zero=True):
-        raise TextError(
+        raise ValueOfTermError(
             "an interval bound may never be negative",
             at,
             "Use numbers and parameters declared with where … >= 0, added or multiplied.",

@@ -1,16 +1,17 @@
 """Who meets whom: syntax trees to formulas. Names, sorts, arities, units and cycles are checked here."""
 
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 
-from roadproof.errors import TextError
+from roadproof.errors import TextError, once_each, raise_all
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import vehicles_of
 from roadproof.logic.terms import Dimension
 from roadproof.spec import scopes
-from roadproof.spec.elaboration import Elaborator
+from roadproof.spec.elaboration import Elaborator, Note
 from roadproof.spec.library import Specification, unknown
 from roadproof.spec.query import Query
 from roadproof.spec.scopes import Value, Vehicles
@@ -28,7 +29,26 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
     try:
         return replace(elaborate(specification, claim), written=text.strip())
     except TextError as error:
-        raise error.locate(source, text) from None
+        first = error.locate(source, text)
+    raise_all(mistakes_in(specification, claim, source, text) or [first])
+    raise AssertionError("one mistake was found, and then none")
+
+
+def mistakes_in(
+    specification: Specification,
+    claim: syntax.Claim,
+    source: str,
+    text: str,
+    lost: tuple[re.Pattern[str], ...] = (),
+) -> list[TextError]:
+    """All that is wrong with a claim, the first error of each place; of names that are ``lost`` nothing."""
+    errors: list[TextError] = []
+    walk = Elaborator(specification, errors=errors, lost=lost)
+    try:
+        walk.formula(claim.body, walk.given(claim))
+    except TextError as error:
+        errors.append(error)
+    return once_each(error.locate(source, text) for error in errors)
 
 
 def elaborate(specification: Specification, claim: syntax.Claim) -> Query:
@@ -38,6 +58,14 @@ def elaborate(specification: Specification, claim: syntax.Claim) -> Query:
     declared = [b.name for b in claim.given if b.sort == "vehicle"]
     vehicles = tuple(dict.fromkeys([*declared, *sorted(elaborator.free["vehicle"])]))
     return Query(claim, made, vehicles or vehicles_of(made), tuple(sorted(elaborator.free["lane"])))
+
+
+def notes_of(specification: Specification, claim: syntax.Claim) -> list[Note]:
+    """What every expression of a claim, and of the definitions that it uses, became. Raises ``TextError``."""
+    notes: list[Note] = []
+    elaborator = Elaborator(specification, notes=notes)
+    elaborator.formula(claim.body, elaborator.given(claim))
+    return notes
 
 
 def read_term(specification: Specification, text: str, source: str = "term") -> tuple[t.Term, Dimension]:

@@ -4,8 +4,10 @@ Applying a definition puts its body in place of the call, wrapped in ``Named``; 
 are names from the start, so what comes out speaks of SV, POV and L and nothing else.
 """
 
+import re
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import TypeAlias, TypeVar
 
 from roadproof.errors import Position, TextError
 from roadproof.logic import formula as f
@@ -23,23 +25,68 @@ from roadproof.spec.size import Sizes
 from roadproof.units import UNITS
 
 DEEPEST_FORMULA = 100
+MOST_ERRORS = 200
+_ANY_NUMBER = Quantity(t.number(1), None)  # fits wherever a number is wrong
+
+# What definitions of a set mean, applied to values.
+Known: TypeAlias = dict[tuple[str, str, tuple[Value, ...]], Formula | Quantity]
+A = TypeVar("A")
+
+
+class LostError(TextError):
+    """What was asked for is declared by a text that could not be read, of which is told elsewhere."""
+
+
+@dataclass(frozen=True)
+class Note:
+    """That an expression at a place, in the text of a definition or of the claim (None), became a formula."""
+
+    definition: Definition | None
+    at: Position
+    formula: Formula
 
 
 @dataclass
 class Elaborator:
-    """One walk over one claim; ``home`` is set inside ``name@set(…)``, and is the walk that met it."""
+    """One walk over one claim; ``home`` is set inside ``name@set(…)``, and is the walk that met it.
+
+    With ``errors`` mistakes are noted there and the walk goes on; nothing is said of names that are ``lost``,
+    because what declares them could not be read. ``notes``: where it is a list, what each expression became
+    is added to it.
+    """
 
     specification: Specification
     home: "Elaborator | None" = None
     free: Free = field(default_factory=lambda: {"vehicle": set(), "lane": set()})
     stack: list[str] = field(default_factory=list)
     depth: int = 0
-    known: dict[tuple[str, str, tuple[Value, ...]], Formula | Quantity] = field(default_factory=dict)
+    known: Known = field(default_factory=dict)
     sizes: Sizes = field(default_factory=Sizes)
+    errors: list[TextError] | None = None
+    lost: tuple[re.Pattern[str], ...] = ()
+    notes: list[Note] | None = None
 
     def again(self) -> "Elaborator":
         """A walk over another claim in the same specification, which knows what this one has made."""
         return Elaborator(self.specification, known=self.known, sizes=Sizes(self.sizes.known))
+
+    # --- mistakes --------------------------------------------------------------------------------
+
+    def _noted(self, error: TextError, instead: A) -> A:
+        """``instead`` of what is wrong, where mistakes are noted; else the mistake is raised."""
+        if self.errors is None or len(self.errors) >= MOST_ERRORS:
+            raise error
+        if not isinstance(error, LostError):
+            definition = self.specification.definitions[self.stack[-1]] if self.stack else None
+            if definition is not None:
+                source = source_of(self.specification.library, definition)
+                error.locate(source.name, source.text)
+            self.errors.append(error)
+        return instead
+
+    def _refuse_lost(self, name: str, at: Position) -> None:
+        if any(pattern.fullmatch(name) for pattern in self.lost):
+            raise LostError(f"'{name}' could not be read", at)
 
     # --- names ---------------------------------------------------------------------------------
 
@@ -63,6 +110,7 @@ class Elaborator:
         name, _, qualifier = call.name.partition("@")
         if qualifier and qualifier != self.specification.set_name:
             return self._in_other_set(call, name, qualifier, scope)
+        self._refuse_lost(name, call.at)
         if name in BUILT_IN:
             return self._built_in(call, name, scope)
         definition = self.specification.definitions.get(name)
@@ -90,7 +138,14 @@ class Elaborator:
         if qualifier not in self.specification.library.sets:
             raise TextError(unknown("spec set", qualifier, self.specification.library.sets), call.at)
         inner = Elaborator(
-            self.specification.in_set(qualifier), self, self.free, depth=self.depth, sizes=self.sizes
+            self.specification.in_set(qualifier),
+            self,
+            self.free,
+            depth=self.depth,
+            sizes=self.sizes,
+            errors=self.errors,
+            lost=self.lost,
+            notes=self.notes,
         )
         return inner.call(syntax.Call(name, call.arguments, call.at), scope)
 
@@ -148,20 +203,26 @@ class Elaborator:
     # --- expressions ---------------------------------------------------------------------------
 
     def formula(self, expression: Expression, scope: Scope) -> Formula:
-        made = self.expression(expression, scope)
-        if isinstance(made, Quantity):
+        try:
+            made = self.expression(expression, scope)
+            if not isinstance(made, Quantity):
+                return made
             raise TextError(
                 "a formula is expected here, but this is a number",
                 expression.at,
                 "Compare it with something.",
             )
-        return made
+        except TextError as error:
+            return self._noted(error, f.TRUE)
 
     def term(self, expression: Expression, scope: Scope) -> Quantity:
-        made = self.expression(expression, scope)
-        if not isinstance(made, Quantity):
+        try:
+            made = self.expression(expression, scope)
+            if isinstance(made, Quantity):
+                return made
             raise TextError("a number is expected here, but this is a formula", expression.at)
-        return made
+        except TextError as error:
+            return self._noted(error, _ANY_NUMBER)
 
     def expression(self, expression: Expression, scope: Scope) -> Formula | Quantity:
         self.depth += 1
@@ -175,6 +236,9 @@ class Elaborator:
             self.sizes.count_reading(expression.at)
             made = self._expression(expression, scope)
             self.sizes.check(made.term if isinstance(made, Quantity) else made, expression.at)
+            if self.notes is not None and not isinstance(made, Quantity):
+                inside = self.specification.definitions[self.stack[-1]] if self.stack else None
+                self.notes.append(Note(inside, expression.at, made))
             return made
         finally:
             self.depth -= 1
@@ -222,6 +286,7 @@ class Elaborator:
         signal = self.specification.library.signals.get(name)
         if signal is not None and not signal.vehicle:
             return self.call(syntax.Call(name, (), at), scope)
+        self._refuse_lost(name, at)
         if signal is not None or name in self.specification.definitions:
             raise TextError(f"'{name}' needs its arguments", at, f"Write {name}(…).")
         numbers = [n for n, v in scope.items() if isinstance(v, Quantity)]
@@ -276,8 +341,11 @@ class Elaborator:
     def interval(self, bounds: Bounds | None, scope: Scope) -> f.Interval:
         if bounds is None:
             return f.FOREVER
+        before = len(self.errors or ())
         low = self._bound(bounds.low, scope)
         high = None if bounds.high is None else self._bound(bounds.high, scope)
+        if len(self.errors or ()) > before:
+            return f.FOREVER
         return arithmetic.interval(low, high, bounds.at)
 
     def _bound(self, expression: Expression, scope: Scope) -> t.Term:

@@ -13,13 +13,14 @@ from fractions import Fraction
 from functools import cache, cached_property
 from importlib import resources
 from pathlib import Path
-from typing import assert_never
+from typing import TypeAlias, assert_never
 
-from roadproof.errors import InputError, Position, TextError
+from roadproof.errors import InputError, Position, TextError, raise_all
 from roadproof.files import read_limited
 from roadproof.logic import syntax
 from roadproof.logic.own import freedom_of, own_signal
 from roadproof.logic.parse import parse_bundled, parse_library
+from roadproof.logic.recover import Parsed, parse_pieces
 from roadproof.logic.syntax import (
     Binding,
     Definition,
@@ -166,6 +167,9 @@ def read_specification(path: Path) -> Source:
         ) from None
 
 
+Parse: TypeAlias = Callable[[str, str], tuple[Statement, ...]]
+
+
 @cache
 def bundled_library() -> Library:
     """The library that comes with roadproof: ``spec/library/*.spec``."""
@@ -177,28 +181,69 @@ def bundled_library() -> Library:
 
 def load_library(files: Iterable[Path | Source] = ()) -> Library:
     """The bundled library, with the users' files or texts on top: their definitions replace or add."""
-    library = bundled_library()
-    extra = [file if isinstance(file, Source) else read_specification(file) for file in files]
-    return replace(build_library(extra, library), files=tuple(extra)) if extra else library
+    extra = sources_of(files)
+    return (
+        replace(build_library(extra, bundled_library()), files=tuple(extra)) if extra else bundled_library()
+    )
+
+
+def sources_of(files: Iterable[Path | Source]) -> list[Source]:
+    """Texts, read from files where they are none yet. Raises ``InputError``."""
+    return [file if isinstance(file, Source) else read_specification(file) for file in files]
 
 
 def build_library(
-    sources: Iterable[Source],
-    below: Library | None = None,
-    parse: Callable[[str, str], tuple[Statement, ...]] = parse_library,
+    sources: Iterable[Source], below: Library | None = None, parse: Parse = parse_library
 ) -> Library:
     """Put statements into their mappings, as ``parse`` reads them.
 
-    Raises ``TextError`` for duplicates and unknown names.
+    Raises ``TextError`` for all that does not parse, is there twice, or names what does not exist.
     """
-    building = _Building(below)
-    for source in sources:
-        statements = parse(source.text, source.name)
-        try:
-            building.add(statements, source)
-        except TextError as error:
-            raise error.locate(source.name, source.text) from None
-    return building.library()
+    gathered = gather({source: _parsed(source, parse) for source in sources}, below)
+    raise_all(gathered.errors)
+    return gathered.library
+
+
+def _parsed(source: Source, parse: Parse = parse_library) -> Parsed:
+    """What is read of a text; the whole at once, which is quicker where it has no mistake."""
+    try:
+        return Parsed(parse(source.text, source.name))
+    except TextError as error:
+        pieces = parse_pieces(source.text, source.name)
+        return pieces if pieces.errors else replace(pieces, errors=(error,))
+
+
+@dataclass(frozen=True)
+class Gathered:
+    """What could be read of texts, all that could not, in their order, and how names look that are lost."""
+
+    library: Library
+    errors: tuple[TextError, ...] = ()
+    lost: tuple[re.Pattern[str], ...] = ()
+
+
+def gather(readings: Mapping[Source, Parsed], below: Library | None = None) -> Gathered:
+    """What was read of texts, put into its mappings."""
+    building, errors, lost = _Building(below), list[TextError](), list[re.Pattern[str]]()
+    for source, parsed in readings.items():
+        errors += sorted([*parsed.errors, *building.add(parsed.statements, source)], key=place_of)
+        lost += parsed.lost
+    lost += (re.compile(re.escape(name)) for name in building.refused)
+    return Gathered(building.library(), tuple(errors), tuple(lost))
+
+
+def gather_files(files: Iterable[Path | Source]) -> Gathered:
+    """As ``load_library``, with all that is wrong. Raises ``InputError`` where a file is no text."""
+    extra = sources_of(files)
+    if not extra:
+        return Gathered(bundled_library())
+    gathered = gather({source: _parsed(source) for source in extra}, bundled_library())
+    return replace(gathered, library=replace(gathered.library, files=tuple(extra)))
+
+
+def place_of(error: TextError) -> tuple[int, int]:
+    """Line and column of an error, to sort by."""
+    return (0, 0) if error.position is None else (error.position.line, error.position.column)
 
 
 class _Building:
@@ -212,6 +257,7 @@ class _Building:
         self.lanes = dict(below.lanes) if below else {}
         self.titles = dict(below.titles) if below else {}
         self.signals = dict(below.signals) if below else {}
+        self.refused: list[str] = []
 
     def library(self) -> Library:
         return Library(
@@ -226,48 +272,64 @@ class _Building:
             signals=self.signals,
         )
 
-    def add(self, statements: Iterable[Statement], source: Source) -> None:
+    def add(self, statements: Iterable[Statement], source: Source) -> list[TextError]:
+        """Add what a text says, and tell what of it cannot be added."""
         fresh: set[tuple[str, str]] = set()
         blocks: list[SetBlock | WhenBlock] = []
+        errors: list[TextError] = []
         for statement in statements:
-            match statement:
-                case ParameterDeclaration():
-                    _once(fresh, "parameter", statement.name, statement.at)
-                    if not is_within(statement.bound, statement.value):
-                        raise TextError(
-                            f"{statement.name}={statement.value} {statement.unit}: it is declared with "
-                            f"{statement.name} {statement.bound} 0",
-                            statement.at,
-                            "Give a value within the bound, or another bound.",
-                        )
-                    if statement.name in self.signals:
-                        raise TextError(f"'{statement.name}' is a signal already", statement.at)
-                    self.parameters[statement.name] = statement
-                    self.sources[_key(statement)] = source
-                case OptionDeclaration():
-                    _once(fresh, "option", statement.name, statement.at)
-                    self.options[statement.name] = statement
-                case Definition():
-                    self._define(statement, fresh, source)
-                case SignalDeclaration():
-                    self._declare(statement, fresh, source)
-                case EachBlock():
-                    for definition in _instances(statement):
-                        self._define(definition, fresh, source)
-                case SetBlock() | WhenBlock():
-                    blocks.append(statement)
-                case LaneDeclaration():
-                    for number in statement.scenarios:
-                        _once(fresh, "lane of scenario", str(number), statement.at)
-                        self.lanes[number] = statement
-                case TitleDeclaration():
-                    for number in statement.scenarios:
-                        _once(fresh, "title of scenario", str(number), statement.at)
-                        self.titles[number] = (statement, source)
-                case _:
-                    assert_never(statement)
+            if isinstance(statement, SetBlock | WhenBlock):
+                blocks.append(statement)
+                continue
+            try:
+                self._add(statement, fresh, source)
+            except TextError as error:
+                errors.append(error.locate(source.name, source.text))
+                self.refused += _declares(statement)
         for block in blocks:
-            self._override(block, fresh, source)
+            try:
+                self._override(block, fresh, source, errors)
+            except TextError as error:
+                errors.append(error.locate(source.name, source.text))
+        return errors
+
+    def _add(self, statement: Statement, fresh: set[tuple[str, str]], source: Source) -> None:
+        match statement:
+            case ParameterDeclaration():
+                _once(fresh, "parameter", statement.name, statement.at)
+                if not is_within(statement.bound, statement.value):
+                    raise TextError(
+                        f"{statement.name}={statement.value} {statement.unit}: it is declared with "
+                        f"{statement.name} {statement.bound} 0",
+                        statement.at,
+                        "Give a value within the bound, or another bound.",
+                    )
+                if statement.name in self.signals:
+                    raise TextError(f"'{statement.name}' is a signal already", statement.at)
+                self.parameters[statement.name] = statement
+                self.sources[_key(statement)] = source
+            case OptionDeclaration():
+                _once(fresh, "option", statement.name, statement.at)
+                self.options[statement.name] = statement
+            case Definition():
+                self._define(statement, fresh, source)
+            case SignalDeclaration():
+                self._declare(statement, fresh, source)
+            case EachBlock():
+                for definition in _instances(statement):
+                    self._define(definition, fresh, source)
+            case SetBlock() | WhenBlock():
+                raise AssertionError("blocks are added last")
+            case LaneDeclaration():
+                for number in statement.scenarios:
+                    _once(fresh, "lane of scenario", str(number), statement.at)
+                    self.lanes[number] = statement
+            case TitleDeclaration():
+                for number in statement.scenarios:
+                    _once(fresh, "title of scenario", str(number), statement.at)
+                    self.titles[number] = (statement, source)
+            case _:
+                assert_never(statement)
 
     def _define(self, definition: Definition, fresh: set[tuple[str, str]], source: Source) -> None:
         _once(fresh, "definition", definition.name, definition.at)
@@ -301,14 +363,24 @@ class _Building:
             bindings = (Binding(signal.vehicle, "vehicle", at),) if signal.vehicle else ()
             self.definitions[name] = Definition(name, bindings, signal.doc, signal.body, at)
 
-    def _override(self, block: SetBlock | WhenBlock, fresh: set[tuple[str, str]], source: Source) -> None:
+    def _override(
+        self,
+        block: SetBlock | WhenBlock,
+        fresh: set[tuple[str, str]],
+        source: Source,
+        errors: list[TextError],
+    ) -> None:
         inside: set[tuple[str, str]] = set()
         for definition in block.definitions:
-            _once(inside, "definition", definition.name, definition.at)
-            if definition.name not in self.definitions:
-                message = unknown("definition", definition.name, self.definitions)
-                raise TextError(f"an override needs something to replace: {message}", definition.at)
-            self.sources[_key(definition)] = source
+            try:
+                _once(inside, "definition", definition.name, definition.at)
+                if definition.name not in self.definitions:
+                    message = unknown("definition", definition.name, self.definitions)
+                    raise TextError(f"an override needs something to replace: {message}", definition.at)
+                self.sources[_key(definition)] = source
+            except TextError as error:
+                errors.append(error.locate(source.name, source.text))
+                self.refused += _declares(definition)
         if isinstance(block, SetBlock):
             _once(fresh, "set", block.name, block.at)
             if block.parent and block.parent not in self.sets:
@@ -324,6 +396,11 @@ class _Building:
                 raise TextError(message, block.at)
             key = (block.option, block.value)
             self.variants[key] = (*self.variants.get(key, ()), *block.definitions)
+
+
+def _declares(statement: Statement) -> list[str]:
+    declares = Definition | ParameterDeclaration | SignalDeclaration
+    return [statement.name] if isinstance(statement, declares) else []
 
 
 # Names that mean something without a definition; spec.elaborate gives their meaning.

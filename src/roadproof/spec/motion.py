@@ -1,14 +1,18 @@
-"""What a claim may be proved under: that its vehicles move, and within which limits.
+"""What a claim may be proved under: that its vehicles move, within which limits, and at which values.
 
 ``assuming motion: CLAIM`` says that the claim holds on every trace that is a motion (``logic.motion``);
 ``assuming motion, a_lon(SV) <= 3 m/s^2: CLAIM`` on every one that keeps a limit. What is proved is
 ``axioms -> claim``. An axiom is kept as the name of its schema and the texts of its arguments, and its
 formula is made of them each time it is needed: no other formula can be assumed.
+
+``at minDanger = 0.6 s: CLAIM`` says that the claim holds where that is the value of a parameter; after motion
+and limits a value is one more of what is assumed. What is proved is the claim with the value put in.
 """
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from roadproof.errors import InputError, Position, TextError
 from roadproof.logic import formula as f
@@ -16,22 +20,27 @@ from roadproof.logic import motion, syntax
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
-from roadproof.logic.rewrite import terms_of, vehicles_of
-from roadproof.logic.show import as_syntax, text
+from roadproof.logic.pins import pins
+from roadproof.logic.restore import as_syntax, term_as_syntax
+from roadproof.logic.rewrite import parameters_of, terms_of, vehicles_of
+from roadproof.logic.show import text
 from roadproof.logic.terms import Term
 from roadproof.signals import LIMITED
 from roadproof.spec import arithmetic
+from roadproof.spec.bind import values_with
 from roadproof.spec.compose import always, both, implication
 from roadproof.spec.elaborate import elaborate, read_claim
 from roadproof.spec.elaboration import Elaborator
 from roadproof.spec.library import Specification, unknown
 from roadproof.spec.quantity import Quantity
 from roadproof.spec.query import Query
+from roadproof.units import UNITS
 from roadproof.world.vehicle import Vehicle
 
 MOTION = "motion"
 SOURCE = "what is assumed"
-_HEAD = re.compile(r"\s*assuming\s+(motion\b[^:]*):", re.ASCII)
+_HEAD = re.compile(r"\s*(?:assuming\s+(?P<motion>motion\b[^:]*)|at\s+(?P<values>\w+\s*=[^:]*)):", re.ASCII)
+_VALUE = re.compile(r"\s*\w+\s*=(?!=)", re.ASCII)
 _ASSUMING = re.compile(r"\s*assuming\s+(?=\w|:)", re.ASCII)
 _COMPARISON = re.compile(r"[<>=]")
 _START = Position(1, 1)
@@ -62,7 +71,10 @@ class Axiom:
 
 @dataclass(frozen=True)
 class Assumed:
-    """``said``: nothing, or motion and then limits, as words. ``axioms``: what a proof needs of it."""
+    """``said``: nothing, or motion and then limits and then values of parameters, as words; or values alone.
+
+    ``axioms``: what a proof needs of motion.
+    """
 
     said: tuple[str, ...] = ()
     axioms: tuple[Axiom, ...] = ()
@@ -84,7 +96,13 @@ NOTHING = Assumed()
 
 def statement(said: Sequence[str], claim: str) -> str:
     """A claim with what it assumes in front, which ``split`` takes apart."""
-    return f"assuming {', '.join(said)}: {claim}" if said else claim
+    head = "assuming" if is_moving(said) else "at"
+    return f"{head} {', '.join(said)}: {claim}" if said else claim
+
+
+def is_moving(said: Sequence[str]) -> bool:
+    """Whether motion is assumed, so that only a drive refutes."""
+    return MOTION in said[:1]
 
 
 def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
@@ -96,13 +114,14 @@ def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
     if found is None:
         _refuse_other_words(written, source)
         return (), written
-    place = found.start(1)
-    for limit in found[1].split(","):
-        if place > found.start(1) and _COMPARISON.search(limit) is None:
+    said = str(found["motion"] or found["values"])
+    begin = place = found.start("motion" if found["motion"] else "values")
+    for limit in said.split(","):
+        if place > begin and _COMPARISON.search(limit) is None:
             raise _unknown_word(written, place + len(limit) - len(limit.lstrip()), "is no limit", source)
         place += len(limit) + 1
     blank = "".join(c if c == "\n" else " " for c in found[0])
-    return tuple(" ".join(x.split()) for x in found[1].split(",")), blank + written[found.end() :]
+    return tuple(" ".join(x.split()) for x in said.split(",")), blank + written[found.end() :]
 
 
 def _refuse_other_words(written: str, source: str) -> None:
@@ -127,9 +146,60 @@ def read_under(specification: Specification, written: str, source: str = "claim"
 
 
 def under(specification: Specification, query: Query, said: Sequence[str]) -> Under:
-    """A claim under what is assumed, each limit written alike whoever wrote it. Raises ``InputError``."""
+    """A claim under what is assumed, each limit and value written alike whoever wrote it.
+
+    Values of parameters that the claim does not speak of are left out. Raises ``InputError``.
+    """
     limits = (x.text for x in _limits(specification, query, said))
-    return Under(query, tuple(dict.fromkeys([*said[:1], *limits])))
+    spoken = {*parameters_of(query.formula)}
+    values = {name: x for name, x in values_said(specification, said).items() if name in spoken}
+    told = dict.fromkeys([*said[: is_moving(said)], *limits])
+    return Under(query, (*told, *value_texts(specification, values)))
+
+
+def at_values(specification: Specification, claim: Under, values: Mapping[str, Fraction]) -> Under:
+    """``claim`` at ``values`` (SI) as well, of which it may say others itself. Raises ``InputError``."""
+    known = {*values_said(specification, claim.said)}
+    more = {name: value for name, value in values.items() if name not in known}
+    return under(specification, claim.query, (*claim.said, *value_texts(specification, more)))
+
+
+def values_said(specification: Specification, said: Sequence[str]) -> dict[str, Fraction]:
+    """The values of parameters in what is assumed, by name, in SI units. Raises ``InputError``."""
+    values: dict[str, Fraction] = {}
+    for written in said:
+        if not _VALUE.match(written):
+            continue
+        try:
+            read = elaborate(specification, syntax.Claim((), _parsed(written)))
+        except TextError as error:
+            raise error.locate(SOURCE, written) from None
+        found = pins(f.negation(read.formula))
+        if [read.formula] != [x.formula for x in _equalities(specification, found)]:
+            raise InputError(
+                f"'{written[:80]}' is no value of a parameter: write a name, = and a number, such as "
+                "minDanger = 0.6 s"
+            )
+        [(name, value)] = found.items()
+        if values.setdefault(name, value) != value:
+            raise InputError(f"{name} cannot have two values: {', '.join(said)[:200]}")
+    values_with(specification.library, values)
+    return dict(sorted(values.items()))
+
+
+def value_texts(specification: Specification, values: Mapping[str, Fraction]) -> tuple[str, ...]:
+    """Values of parameters (SI) as ``values_said`` reads them: ``minDanger = 0.6 s``, by name."""
+    return tuple(x.text for x in _equalities(specification, values))
+
+
+def _equalities(specification: Specification, values: Mapping[str, Fraction]) -> list[Query]:
+    """``NAME = VALUE`` for each parameter, by name."""
+    known = specification.library.parameters
+    return [
+        elaborate(specification, syntax.Claim((), syntax.Binary("=", syntax.Name(name), number)))
+        for name, value in sorted(values.items())
+        for number in [term_as_syntax(t.number(value, UNITS[known[name].unit][1]))]
+    ]
 
 
 def limits_of(query: Query, name: str, model: Vehicle) -> Iterator[str]:
@@ -149,20 +219,25 @@ def limits_of(query: Query, name: str, model: Vehicle) -> Iterator[str]:
 
 
 def under_limits(specification: Specification, query: Query, said: Sequence[str]) -> Query:
-    """The claim under the limits that it assumes: what a drive refutes, which is a motion anyway.
+    """The claim under the limits and values that it assumes: what a drive refutes, which is a motion anyway.
 
     Raises ``InputError`` for what nobody may assume.
     """
     limits = [always(x) for x in _limits(specification, query, said)]
-    return implication(both(*limits), query) if limits else query
+    premises = [*limits, *_equalities(specification, values_said(specification, said))]
+    return implication(both(*premises), query) if premises else query
 
 
 def _limits(specification: Specification, query: Query, said: Sequence[str]) -> list[Query]:
-    if not said:
+    others = [x for x in said if not _VALUE.match(x)]
+    if not others:
         return []
-    if said[0] != MOTION:
-        raise InputError(f"assume={said[0][:40]!r}: only motion can be assumed, and limits after it")
-    return [_limit(specification, query, x) for x in said[1:]]
+    if others[0] != MOTION or said[0] != MOTION:
+        raise InputError(
+            f"assume={said[0][:40]!r}: only motion can be assumed, with limits after it, and values of "
+            "parameters"
+        )
+    return [_limit(specification, query, x) for x in others[1:]]
 
 
 def _limit(specification: Specification, query: Query, written: str) -> Query:
@@ -188,7 +263,7 @@ def assumption(specification: Specification, query: Query, assumed: Assumed) -> 
     of every motion within the limits that are said, or speaks of what the claim does not."""
     if under(specification, query, assumed.said).said != assumed.said:
         raise InputError(f"what is assumed is written otherwise than it is read: {', '.join(assumed.said)}")
-    if assumed.axioms and not assumed.said:
+    if assumed.axioms and not is_moving(assumed.said):
         raise InputError("facts about motion are used, but the claim does not say that it assumes motion")
     if len(assumed.axioms) > MOST_AXIOMS:
         raise InputError(f"{len(assumed.axioms)} facts about motion; at most {MOST_AXIOMS} are read")

@@ -78,8 +78,12 @@ def in_order(answers: Generator[tuple[int, Answer], None, None]) -> Generator[An
 
 def are_forked(jobs: Sequence[object], hands: Jobs) -> bool:
     """Whether jobs are done in processes that are copies of this one. Raises ``UsageError``."""
-    who = hands_of(hands)
-    return who.cluster is None and min(who.processes or os.cpu_count() or 1, len(jobs)) > 1
+    return hands_of(hands).cluster is None and count_workers(jobs, hands) > 1
+
+
+def count_workers(jobs: Sequence[object], hands: Jobs) -> int:
+    """How many processes here the jobs are given. Raises ``UsageError`` where none would be left."""
+    return min(hands_of(hands).processes or os.cpu_count() or 1, len(jobs))
 
 
 def _nobody(done: int, total: int, what: str) -> None:

@@ -5,6 +5,7 @@ A piece holds from its start on: at a knot the acceleration is that of the piece
 """
 
 from bisect import bisect_right
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -56,6 +57,11 @@ def state_at(motion: Motion, time: Fraction) -> State:
     """The state at ``time`` >= 0; past the last knot the last piece goes on. Raises ``UsageError``."""
     if time < 0:
         raise UsageError(f"time={time}: a drive starts at 0; ask for a time that is not negative")
+    return states_at(motion, (time,))[0]
+
+
+def states_at(motion: Motion, times: Iterable[Fraction]) -> tuple[State, ...]:
+    """As ``state_at``, at many times >= 0."""
     starts = starts_of(motion)
-    begun = starts[bisect_right(starts, time, key=lambda state: state.time) - 1]
-    return advance(begun, time - begun.time)
+    begun = ((starts[bisect_right(starts, x, key=lambda state: state.time) - 1], x) for x in times)
+    return tuple(advance(state, time - state.time) for state, time in begun)

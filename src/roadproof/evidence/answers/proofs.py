@@ -6,6 +6,7 @@ from typing import Any
 from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, read_assuming
+from roadproof.spec.motion import is_moving
 
 SCHEMA = "roadproof/index/1"
 _ENTRY = (
@@ -25,10 +26,10 @@ def _entry(line: Fields, background: Background) -> Entry:
     scenario = line.whole("scenario") if line.get("scenario") is not None else None
     told = (line.text("property"), line.text("part"), scenario)
     assuming = read_assuming(line) if "assuming" in line.content else ()
-    label = None if assuming else background.find_label(claim, set_name)
+    label = None if is_moving(assuming) else background.find_label(claim, set_name)
     own = told[0] == OWN and scenario is None and (not told[1] or told[1].isdecimal())
     fault = "" if told == label or own else misnamed(line.where, told, label)
-    if assuming and line.has("counterexample"):
+    if is_moving(assuming) and line.has("counterexample"):
         fault = f"{line.where} assumes motion, so that only a drive refutes it: a trace may jump"
     return Entry(
         background.at(set_name),

@@ -1,0 +1,1 @@
+"""Results of any kind as one page that needs no network."""

@@ -1,0 +1,119 @@
+"""Claims, drives and comparisons on the page, and evidence that lies alone."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
+from roadproof.report.page.book import Book
+from roadproof.report.page.markup import Content, Markup, joined, table, tag
+from roadproof.report.page.pieces import core, counts, filtered, folded, verdict
+from roadproof.report.page.results import Result
+from roadproof.spec.motion import statement
+from roadproof.study.shelf import INDEX
+
+
+def evidence(findings: Sequence[Finding], book: Book, solver: str) -> Markup:
+    """Evidence with what was found of it: certificates in a table, each drive with its viewer."""
+    accepted = [x for x in findings if x.outcome is Acceptance.ACCEPTED]
+    wrong = [(str(x.outcome), x.label, x.where, x.reason) for x in findings if x not in accepted]
+    counted = Counter(x.verdict for x in accepted)
+    kinds = joined([joined([n, " ", verdict(x)]) for x, n in counted.items()], ", ")
+    told = f"{len(accepted)} of {len(findings)} accepted by {solver} and the exact judge: "
+    proofs = [x for x in accepted if x.kind != "drive"]
+    rows = [(verdict(x.verdict), x.label, tag("code", x.claim), _notes(x)) for x in proofs]
+    parts: list[Content] = [tag("p", told, kinds)]
+    parts += [table(("", "what", "where", "why"), wrong, class_="wrong")] if wrong else []
+    parts += [filtered(table(("verdict", "what", "claim", "checked"), rows))] if rows else []
+    paths = {id(finding): path for path, finding in book.findings.items()}
+    for x in accepted:
+        if x.kind == "drive" and id(x) in paths:
+            shown, title = book.drive(paths[id(x)]), book.documents[-1]["title"]
+            called = tag("b", f"{title} ({x.label.rpartition(' ')[2]})" if x.label else title)
+            summary = (verdict(x.verdict), " ", called, " ", tag("code", x.claim))
+            parts.append(folded(summary, tag("p", _notes(x), class_="faint"), shown))
+    return joined(parts)
+
+
+def _notes(finding: Finding) -> str:
+    if finding.kind == NO_EVIDENCE:
+        return "there is no evidence for it"
+    unchecked = f"not checked: {', '.join(finding.unchecked)}" if finding.unchecked else ""
+    return "; ".join([*finding.checked, *([unchecked] if unchecked else [])])
+
+
+def claims(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+    """An index of claims, or the answer of ``prove --json``."""
+    entries = result.data.get("claims") or result.data.get("verdicts") or ()
+    rows: list[tuple[Content, ...]] = []
+    refuted: list[Markup] = []
+    accepted = 0
+    for number, x in enumerate(entries, 1):
+        finding = book.finding(result.folder, x.get("evidence") or x.get("certificate"))
+        if finding is None and result.folder is not None:
+            finding = book.inside.get(f"{result.folder / INDEX}, claim {number}")
+        accepted += finding is not None and finding.outcome is Acceptance.ACCEPTED
+        claim = tag("code", statement(tuple(x.get("assuming") or ()), str(x.get("claim", ""))))
+        outcome = "" if finding is None else str(finding.outcome)
+        rows.append((verdict(x.get("verdict")), _label(x), x.get("set"), claim, outcome))
+        if x.get("verdict") == "REFUTED":
+            refuted.append(folded((verdict("REFUTED"), f" {_label(x)} ", claim), _against(x, result, book)))
+    told = f"; the evidence of {accepted} was accepted when this page was made" if accepted else ""
+    head = ("verdict", "property", "set", "claim", "evidence")
+    line = tag("p", f"{len(entries)} claims: ", counts(entries), told)
+    return joined([line, filtered(table(head, rows)), *refuted])
+
+
+def _label(entry: Mapping[str, Any]) -> str:
+    name, part, scenario = (entry.get(x) for x in ("property", "part", "scenario"))
+    if not isinstance(name, str) or name == "claim":
+        return ""
+    return f"{name}{f'-{part}' if part else ''}{'' if scenario is None else f' {scenario}'}"
+
+
+def _against(entry: Mapping[str, Any], result: Result, book: Book) -> Markup:
+    drive, name = (entry.get("counterexample") or {}).get("drive"), entry.get("evidence")
+    if isinstance(drive, Mapping):
+        return book.drive(drive)
+    if result.folder is not None and isinstance(name, str):
+        return book.drive(result.folder / name)
+    return tag("p", "Refuted by a trace over points in time, which may jump; it is in the result.")
+
+
+def witnesses(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+    """The answer of ``witness --json``."""
+    made = []
+    for x in result.data.get("verdicts", ()):
+        number = x.get("scenario")
+        called = f"scenario {number} {words.get(number, '')} " if isinstance(number, int) else ""
+        summary = (verdict(x.get("verdict")), " ", tag("b", called), tag("code", x.get("formula")))
+        inside = [tag("p", x["reason"])] if x.get("reason") else []
+        inside += [core(x["core"])] if x.get("core") else []
+        made.append(folded(summary, *inside, *(book.drive(y) for y in x.get("drives", ()))))
+    return joined([tag("p", counts(result.data.get("verdicts", ()))), *made])
+
+
+_RELATIONS = {
+    "stronger": "The first implies the second, but not the reverse.",
+    "weaker": "The second implies the first, but not the reverse.",
+    "equivalent": "Each implies the other.",
+    "incomparable": "Neither implies the other.",
+    "unknown": "It is not known whether one implies the other.",
+}
+
+
+def comparison(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+    """The answer of ``compare --json``."""
+    data = result.data
+    one, two = data.get("first", {}), data.get("second", {})
+    relation = str(data.get("relation"))
+    parts: list[Content] = [
+        tag("p", "First: ", tag("code", one.get("formula")), f" (set {one.get('set')})"),
+        tag("p", "Second: ", tag("code", two.get("formula")), f" (set {two.get('set')})"),
+        tag("p", tag("b", _RELATIONS.get(relation, relation))),
+    ]
+    for name, key in (("first implies second", "forward"), ("second implies first", "backward")):
+        x = data.get(key, {})
+        shown = [book.drive(x["drive"])] if isinstance(x.get("drive"), Mapping) else []
+        parts.append(folded((verdict(x.get("verdict")), f" {name}"), tag("p", x.get("reason")), *shown))
+    return joined(parts)

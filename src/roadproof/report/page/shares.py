@@ -1,0 +1,117 @@
+"""Classes with their shares, catalogues of tests, recordings: tables, bars, and what each test shows."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from roadproof.report.page.book import Book
+from roadproof.report.page.markup import Content, Markup, joined, table, tag
+from roadproof.report.page.pieces import bar, behind, folded, matrix, short, verdict
+from roadproof.report.page.results import Result
+
+
+def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+    """Classes that exclude each other: the share of each, a drive for each, and what is proved of them."""
+    entries = result.data.get("classes", ())
+    total = sum(x.get("situations") or 0 for x in entries)
+    rows = []
+    for x in entries:
+        count = x.get("situations")
+        share = (
+            "" if count is None or not total else bar(count / total, f"{count}, {100 * count / total:.1f} %")
+        )
+        rows.append(
+            (verdict(x.get("verdict")), tag("b", x["name"]), x.get("description"), x.get("traces"), share)
+        )
+    counted = Counter((str(x.get("kind")), str(x.get("verdict"))) for x in result.data.get("claims", ()))
+    told = joined([joined([f"{kind}: {n} ", verdict(word)]) for (kind, word), n in counted.items()], "; ")
+    text = result.data.get("text")
+    file = folded(("The classes as a specification file",), tag("pre", text)) if text else None
+    drives = []
+    for x in entries:
+        inside = (tag("p", tag("code", x.get("formula"))), *behind(x, result, book))
+        drives.append(folded((verdict(x.get("verdict")), " ", tag("b", x["name"])), *inside))
+    head = ("verdict", "class", "what happens", "traces", "share of situations")
+    return joined([tag("p", told), table(head, rows), file, *drives])
+
+
+def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+    """What tests show: a row for each situation, a matrix of tests, and what is odd about them."""
+    data = result.data
+    targets, tests = data.get("targets", ()), data.get("tests", ())
+    missing = {*data.get("not_tested", ())}
+    rows = []
+    for x in targets:
+        tested = x.get("tested", ())
+        lacks = x.get("name") in missing
+        said = "✗ not tested" if lacks else f"✓ {len(tested)} test{'s' if len(tested) != 1 else ''}"
+        word = tag("span", said, class_=f"verdict-word {'against' if lacks else 'proof'}")
+        rows.append((word, x.get("name"), x.get("words"), short(tested), short(x.get("possible"))))
+    head = ("", "what", "in words", "tests that show it", "some of whose drives do")
+    told = f"{len(tests)} tests; {len(missing)} of {len(targets)} situations are tested by none."
+    parts: list[Content] = [tag("p", told), table(head, rows)]
+    names = [str(x.get("name")) for x in targets]
+    columns = [tag("th", tag("span", name), scope="col", class_="turned") for name in names]
+    cells = [[tag("th", x.get("id"), scope="row", title=x.get("title")), *_marks(x, names)] for x in tests]
+    parts.append(folded(("Each test and what it shows",), matrix(columns, cells)))
+    odd = ("faults", "doubts", "contradictions", "notes")
+    parts += [tag("p", tag("b", f"{name}: "), short(data[name], 2000)) for name in odd if data.get(name)]
+    facts = [x for x in data.get("facts", ()) if x.get("drive") or x.get("certificate")]
+    for x in facts:
+        summary = (verdict(x.get("verdict")), f" {x.get('test')} ", tag("code", short(x.get("formula"))))
+        parts.append(folded(summary, *behind(x, result, book)))
+    return joined(parts)
+
+
+def _marks(test: Mapping[str, Any], names: Sequence[str]) -> list[Markup]:
+    shown = {x.get("what") for x in test.get("shown", ())}
+    cells = []
+    for name in names:
+        if name in shown:
+            cells.append(tag("td", "■", class_="drive", title=f"{test.get('id')} shows {name}"))
+        elif name in (test.get("claims") or ()) and "shown" in test:
+            told = f"{test.get('id')} says that it is {name}, and does not show it"
+            cells.append(tag("td", "✗", class_="against", title=told))
+        else:
+            cells.append(tag("td"))
+    return cells
+
+
+_FACTS = {
+    "recordings": "recordings",
+    "vehicles": "vehicles",
+    "samples": "samples",
+    "violating": "pairs that violate the RSS distance",
+    "undecided": "undecided",
+}
+
+
+def traffic(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+    """The results table of recordings, with recall as bars, and what detectors of earlier works report."""
+    data = result.data
+    told = "; ".join(f"{data[key]} {name}" for key, name in _FACTS.items() if key in data)
+    entries = data.get("table", ())
+    numbers = list(dict.fromkeys(n for x in entries for n in x.get("scenarios", {})))
+    named = [tag("span", n, title=words.get(int(n))) for n in numbers]
+    head = ("road sector", "minDanger", "set", "traces", "matching", "recall", *named)
+    parts: list[Content] = [tag("p", told), table(head, [_row(x, numbers) for x in entries])]
+    detectors = data.get("detectors") or {}
+    most = max([*detectors.values(), 1])
+    if detectors:
+        rows = [(name, bar(n / most, str(n))) for name, n in detectors.items()]
+        parts.append(tag("h3", "Pairs that detectors of earlier works report"))
+        parts.append(table(("detector", "pairs"), rows))
+    called = [(n, words[int(n)]) for n in numbers if words.get(int(n))]
+    parts += [folded(("What the scenarios are called",), table(("", ""), called))] if called else []
+    broken = (data.get("checks") or {}).get("broken") or ()
+    if broken:
+        parts.append(tag("p", f"Facts that do not hold, which is our fault: {short(broken)}", class_="wrong"))
+    return joined(parts)
+
+
+def _row(x: Mapping[str, Any], numbers: Sequence[str]) -> list[Content]:
+    recall = x.get("recall")
+    share = bar(recall, f"{100 * recall:.1f} %") if isinstance(recall, int | float) else "–"
+    counts = [x.get(key) for key in ("traces", "matching")]
+    found = [x.get("scenarios", {}).get(n) for n in numbers]
+    return [x.get("sector"), f"{x.get('min_danger')} s", x.get("set"), *counts, share, *found]

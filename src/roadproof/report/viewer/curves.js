@@ -1,0 +1,173 @@
+// Curves over the clock of the strips: the margin of the selected part, speeds, gaps against RSS distances.
+
+import { html, UPlot, useEffect, useRef } from "vendor/view";
+import { colour, coloursOf } from "viewer/palette";
+import { stateAt } from "viewer/drive";
+
+const HEIGHT = 122;
+
+/** The data of one plot: a title, the unit, a clock, and lines. */
+function marginOf(formula, id, drive) {
+  const part = formula?.parts?.[id];
+  if (!part?.margins || !formula.step) return null;
+  const clock = part.margins.map((_, k) => k * formula.step);
+  return {
+    title: `margin of ${part.text}`,
+    clock,
+    lines: [{ label: "margin", values: part.margins, stroke: colour("--ink"), width: 1.8 }],
+    zero: true,
+  };
+}
+
+function speedsOf(drive) {
+  const names = Object.keys(drive.vehicles);
+  const colours = coloursOf(names);
+  const clock = clockOf(drive);
+  const lines = names.map((name) => ({
+    label: name,
+    values: clock.map((t) => stateAt(drive.vehicles[name], t).vLon * 3.6),
+    stroke: colours[name],
+  }));
+  return { title: "speed along, km/h", clock, lines };
+}
+
+function gapsOf(drive, direction) {
+  const found = drive.distances.filter((x) => x.direction === direction);
+  if (!found.length) return null;
+  const colours = coloursOf(Object.keys(drive.vehicles));
+  const lines = found.flatMap((x) => [
+    { label: `gap ${x.one}–${x.other}`, values: x.gap, stroke: colours[x.other] },
+    { label: `RSS ${x.one}–${x.other}`, values: x.needed, stroke: colours[x.other], dash: [6, 4] },
+  ]);
+  return { title: `gap ${direction}, m (broken: RSS distance)`, clock: clockOf(drive), lines, zero: true };
+}
+
+function clockOf(drive) {
+  const count = Math.floor(drive.horizon / drive.grain + 1e-9);
+  return Array.from({ length: count + 1 }, (_, k) => k * drive.grain);
+}
+
+/** Three plots below the strips, to the same clock; `gutter` px are left of it. */
+export function Curves({ doc, look, gutter, theme }) {
+  const { formula, id } = look.selected.value;
+  const chosen = doc.formulas[formula] ?? doc.formulas[0];
+  const plots = [
+    marginOf(chosen, id, doc.drive),
+    speedsOf(doc.drive),
+    gapsOf(doc.drive, "along"),
+    gapsOf(doc.drive, "across"),
+  ].filter(Boolean);
+  return html`<section class="curves" aria-label="Curves">
+    ${plots.map((plot, k) => html`<${Plot} key=${k} ...${{ plot, drive: doc.drive, look, gutter, theme }} />`)}
+  </section>`;
+}
+
+function Plot({ plot, drive, look, gutter, theme }) {
+  const place = useRef(null);
+  useEffect(() => {
+    let made = null;
+    const make = () => {
+      made?.destroy();
+      made = draw(place.current, plot, drive, look, gutter);
+    };
+    make();
+    const stop = look.time.subscribe(() => made?.redraw(false, false));
+    const stopTheme = theme ? theme.subscribe(() => requestAnimationFrame(make)) : () => {};
+    const watching = new ResizeObserver(() => {
+      const width = place.current?.clientWidth;
+      if (made && width) made.setSize({ width, height: HEIGHT });
+    });
+    watching.observe(place.current);
+    return () => {
+      stop();
+      stopTheme();
+      watching.disconnect();
+      made?.destroy();
+    };
+  }, [plot.title, JSON.stringify(plot.lines.map((x) => x.values)), gutter]);
+  return html`<figure class="plot">
+    <figcaption style=${{ width: `${gutter - 58}px` }} title=${plot.title}>
+      <span class="words">${plot.title}</span>
+      ${plot.lines.length > 1
+        ? html`<span class="keys">
+            ${plot.lines.map(
+              (x) => html`<span class="key"><i style=${{ borderTop: `2px ${x.dash ? "dashed" : "solid"} ${x.stroke}` }}></i>${x.label}</span>`,
+            )}
+          </span>`
+        : null}
+    </figcaption>
+    <div class="canvas" ref=${place}></div>
+  </figure>`;
+}
+
+function draw(place, plot, drive, look, gutter) {
+  const grid = { stroke: colour("--rule"), width: 1 };
+  const axis = { stroke: colour("--faint"), grid, ticks: grid, font: "11px system-ui, sans-serif" };
+  const options = {
+    width: place.clientWidth || 600,
+    height: HEIGHT,
+    legend: { show: false },
+    cursor: { drag: { setScale: false }, points: { show: false }, y: false },
+    padding: [8, 14, 0, 0],
+    scales: { x: { time: false, range: [0, drive.horizon] }, y: { range: rangeOf(plot) } },
+    axes: [
+      { ...axis, size: 26, values: (u, xs) => xs.map((x) => `${x} s`) },
+      { ...axis, size: gutter, space: 24 },
+    ],
+    series: [
+      {},
+      ...plot.lines.map((x) => ({
+        label: x.label,
+        stroke: x.stroke,
+        width: x.width ?? 1.8,
+        dash: x.dash,
+        points: { show: false },
+      })),
+    ],
+    hooks: {
+      draw: [(u) => paintClock(u, look.time.peek(), plot.zero)],
+      ready: [
+        (u) =>
+          u.over.addEventListener("click", (event) => {
+            const box = u.over.getBoundingClientRect();
+            const share = Math.max(0, Math.min(1, (event.clientX - box.left) / box.width));
+            look.time.value = share * drive.horizon;
+          }),
+      ],
+    },
+  };
+  return new UPlot(options, [plot.clock, ...plot.lines.map((x) => x.values)], place);
+}
+
+/** The least and the greatest value with some room, and 0 where it tells true from false. */
+function rangeOf(plot) {
+  const values = plot.lines.flatMap((x) => x.values).filter((x) => x !== null);
+  if (plot.zero) values.push(0);
+  const low = Math.min(...values, Infinity);
+  const high = Math.max(...values, -Infinity);
+  if (!Number.isFinite(low)) return [-1, 1];
+  const room = Math.max(1e-6, 0.08 * (high - low), high === low ? 1 : 0);
+  return [low - room, high + room];
+}
+
+function paintClock(u, time, zero) {
+  const brush = u.ctx;
+  const x = u.valToPos(time, "x", true);
+  brush.save();
+  if (zero) {
+    brush.strokeStyle = colour("--faint");
+    brush.lineWidth = 1;
+    const y = u.valToPos(0, "y", true);
+    brush.beginPath();
+    brush.moveTo(u.bbox.left, y);
+    brush.lineTo(u.bbox.left + u.bbox.width, y);
+    brush.stroke();
+  }
+  brush.strokeStyle = colour("--clock");
+  brush.lineWidth = 1.5 * (window.devicePixelRatio || 1);
+  brush.beginPath();
+  brush.moveTo(x, u.bbox.top);
+  brush.lineTo(x, u.bbox.top + u.bbox.height);
+  brush.stroke();
+  brush.restore();
+}

@@ -1,0 +1,92 @@
+// What can be computed from the document of a drive: where a vehicle is, what is true, what is needed.
+// Units are those of the document: m, m/s, m/s^2, s.
+
+/** The state of a vehicle at a time: [time, s, d, v_lon, v_lat, a_lon, a_lat] of its last knot, moved on. */
+export function stateAt(vehicle, time) {
+  const knots = vehicle.knots;
+  let knot = knots[0];
+  for (const next of knots) {
+    if (next[0] > time) break;
+    knot = next;
+  }
+  const [begun, s, d, vLon, vLat, aLon, aLat] = knot;
+  const t = time - begun;
+  return {
+    s: s + t * (vLon + (aLon * t) / 2),
+    d: d + t * (vLat + (aLat * t) / 2),
+    vLon: vLon + aLon * t,
+    vLat: vLat + aLat * t,
+    aLon,
+    aLat,
+  };
+}
+
+/** Whether a part of a formula is true at a time. */
+export function isTrue(part, time) {
+  return part.true.some(
+    ([begin, end, withBegin, withEnd]) =>
+      (time > begin || (withBegin && time === begin)) &&
+      (end === null || time < end || (withEnd && time === end)),
+  );
+}
+
+/** The instants up to a horizon at which the truth of a part changes. */
+export function switchesOf(part, horizon) {
+  const ends = part.true.flatMap(([begin, end]) => [begin, end]);
+  return [...new Set(ends.filter((x) => x !== null && x > 0 && x <= horizon))];
+}
+
+/** The value of a curve sampled every grain seconds, null where it has none. */
+export function sampled(values, grain, time) {
+  const k = Math.max(0, Math.min(values.length - 1, Math.floor(time / grain)));
+  const next = Math.min(values.length - 1, k + 1);
+  if (values[k] === null || values[next] === null) return values[k];
+  const share = Math.max(0, Math.min(1, time / grain - k));
+  return values[k] + share * (values[next] - values[k]);
+}
+
+/** Who has to keep a distance to whom at a time, the one behind or the right one, and how much (m). */
+export function keptAt(drive, distance, time) {
+  const k = Math.max(0, Math.min(distance.one_behind.length - 1, Math.floor(time / drive.grain + 1e-9)));
+  const [keeper, other] = distance.one_behind[k]
+    ? [distance.one, distance.other]
+    : [distance.other, distance.one];
+  const needed = sampled(distance.needed, drive.grain, time);
+  return { keeper, other, needed, gap: sampled(distance.gap, drive.grain, time) };
+}
+
+/** What of the road has to be seen along it, in m from the front of the first vehicle. */
+export function windowOf(drive) {
+  const vehicles = Object.values(drive.vehicles);
+  let low = Infinity;
+  let high = -Infinity;
+  for (let k = 0; k <= 60; k += 1) {
+    const time = (drive.horizon * k) / 60;
+    const origin = stateAt(vehicles[0], time).s;
+    for (const vehicle of vehicles) {
+      const front = stateAt(vehicle, time).s - origin;
+      low = Math.min(low, front - vehicle.length);
+      high = Math.max(high, front);
+    }
+    for (const distance of drive.distances) {
+      if (distance.direction !== "along") continue;
+      const { keeper, needed } = keptAt(drive, distance, time);
+      if (needed > 0) high = Math.max(high, stateAt(drive.vehicles[keeper], time).s - origin + needed);
+    }
+  }
+  const room = 0.1 * Math.max(40, high - low);
+  return [Math.min(-20, low - room), Math.max(20, high + room)];
+}
+
+/** The widest extent of the road across it, from the right to the left edge. */
+export function acrossOf(road) {
+  const ends = road.lanelets.flatMap((x) => x.d);
+  return [Math.min(...ends), Math.max(...ends)];
+}
+
+/** A number as people read it. */
+export function shown(value, digits = 3) {
+  if (value === null || value === undefined) return "–";
+  const text = Number(value).toPrecision(digits);
+  return text.includes("e") ? text : String(Number(text));
+}

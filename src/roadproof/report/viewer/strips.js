@@ -1,0 +1,213 @@
+// The tree of sub-formulas, each with when it is true, on one clock.
+
+import { html, useEffect, useMemo } from "vendor/view";
+import { isTrue, switchesOf } from "viewer/drive";
+
+const JOINED = { and: "all of", or: "some of", not: "not", F: "F", G: "G", U: "U" };
+const SNAP = 7; // pixels around a switch that are the switch
+
+/** Whether a part is shown with its children at first: the whole, and what is only put together of names. */
+function isTemplate(formula, id) {
+  const part = formula.parts[id];
+  if (part.op !== "name") return false;
+  const body = formula.parts[part.children[0]];
+  return body && (body.op === "and" || body.op === "name") && childrenOf(formula, id).every((x) => isNamed(formula, x));
+}
+
+function isNamed(formula, id) {
+  const part = formula.parts[id];
+  return part.op === "name" || part.op === "truth";
+}
+
+/** What is shown below a part: of a name what its body is made of, of others their parts. */
+export function childrenOf(formula, id) {
+  const part = formula.parts[id];
+  if (part.op !== "name") return part.children;
+  const body = formula.parts[part.children[0]];
+  return body && (body.op === "and" || body.op === "or") ? body.children : part.children;
+}
+
+/** How the parts below are put together, in a word. */
+function joinOf(formula, id) {
+  const part = formula.parts[id];
+  if (part.op === "name") {
+    const body = formula.parts[part.children[0]];
+    return body ? (JOINED[body.op] ?? "") : "";
+  }
+  return JOINED[part.op] ?? "";
+}
+
+/** Parts that are open at first. */
+export function openAtFirst(formula) {
+  const open = new Set();
+  const visit = (id, path) => {
+    const key = `${path}/${id}`;
+    if (path === "" || isTemplate(formula, id)) {
+      open.add(key);
+      childrenOf(formula, id).forEach((x) => visit(x, key));
+    }
+  };
+  if (formula.parts) visit(0, "");
+  return open;
+}
+
+/** What has to be open for the reasons to be seen, down to the comparisons. */
+function reasonsIn(formula) {
+  const keys = new Set();
+  const visit = (id, path) => {
+    const key = `${path}/${id}`;
+    const below = childrenOf(formula, id).filter((x) => formula.because[x]);
+    if (below.length) keys.add(key);
+    if (keys.size < 200) below.forEach((x) => visit(x, key));
+  };
+  visit(0, "");
+  return keys;
+}
+
+/** The rows that are seen: parts with their depth, each known by its path from the whole. */
+export function rowsOf(formula, open) {
+  const rows = [];
+  const visit = (id, path, depth) => {
+    const key = `${path}/${id}`;
+    const children = childrenOf(formula, id);
+    rows.push({ key, id, depth, children, open: open.has(key) });
+    if (open.has(key)) children.forEach((x) => visit(x, key, depth + 1));
+  };
+  if (formula.parts) visit(0, "", 0);
+  return rows;
+}
+
+/**
+ * The strips of one formula. `look` holds the signals time, selected ({formula, key, id}) and open (a map
+ * from the index of a formula to a set of keys); `index` is that of the formula. `beside` is another one,
+ * such as the same before an edit: a part of the same name has its strip below.
+ */
+export function Strips({ formula, index, drive, look, title, beside = null }) {
+  const isFolded = formula.role === "before";
+  const first = useMemo(
+    () => (isFolded ? new Set() : openAtFirst(formula)),
+    [formula.text, formula.parts?.length, isFolded],
+  );
+  const others = useMemo(() => new Map((beside?.parts ?? []).map((x) => [x.text, x])), [beside]);
+  const open = look.open.value.get(index) ?? first;
+  const rows = rowsOf(formula, open);
+  useEffect(() => {
+    if (!formula.because) return;
+    const shown = reasonsIn(formula);
+    look.open.value = new Map(look.open.value).set(index, new Set([...open, ...shown]));
+  }, [formula.because]);
+  if (formula.error) {
+    return html`<section class="strips">
+      <h3>${title}</h3>
+      <p class="wrong" role="alert">${formula.error}</p>
+    </section>`;
+  }
+  const selected = look.selected.value;
+  const change = (key, on) => {
+    const next = new Set(open);
+    if (on) next.add(key);
+    else next.delete(key);
+    look.open.value = new Map(look.open.value).set(index, next);
+  };
+  const select = (row) => {
+    look.selected.value = { formula: index, key: row.key, id: row.id };
+  };
+  const onKey = (event) => {
+    const at = rows.findIndex((row) => selected.formula === index && row.key === selected.key);
+    const row = rows[at] ?? rows[0];
+    const parent = rows.find((x) => x.key === row.key.slice(0, row.key.lastIndexOf("/")));
+    const moves = {
+      ArrowDown: () => select(rows[Math.min(rows.length - 1, at + 1)]),
+      ArrowUp: () => select(rows[Math.max(0, at - 1)]),
+      ArrowRight: () => (row.children.length && !row.open ? change(row.key, true) : select(rows[at + 1] ?? row)),
+      ArrowLeft: () => (row.open && at > 0 ? change(row.key, false) : parent && select(parent)),
+      Enter: () => jumpToSwitch(formula.parts[row.id], drive, look, event.shiftKey ? -1 : 1),
+      Home: () => select(rows[0]),
+      End: () => select(rows.at(-1)),
+    };
+    if (moves[event.key]) {
+      event.preventDefault();
+      event.stopPropagation();
+      moves[event.key]();
+    }
+  };
+  return html`<section class=${`strips ${formula.role}`} aria-label=${title}>
+    <h3>${title} ${html`<span class=${formula.undecided ? "" : formula.holds ? "holds" : "fails"}>${formula.undecided ? "undecided" : formula.holds ? "true" : "false"} at 0 s</span>`}</h3>
+    ${beside?.parts
+      ? html`<p class="legend"><span><i style=${{ background: "var(--true)" }}></i>after the edit</span><span><i style=${{ background: "var(--four)" }}></i>before the edit</span></p>`
+      : null}
+    <div class="tree" role="tree" tabindex="0" aria-label=${title} onKeyDown=${onKey}>
+      ${rows.map((row) => {
+        const part = formula.parts[row.id];
+        const chosen = selected.formula === index && selected.key === row.key;
+        return html`<${Row}
+          key=${row.key}
+          ...${{ row, part, drive, look, chosen, join: joinOf(formula, row.id) }}
+          because=${formula.because?.[row.id]}
+          other=${others.get(part.text)}
+          onFold=${() => change(row.key, !row.open)}
+          onSelect=${() => select(row)}
+        />`;
+      })}
+    </div>
+  </section>`;
+}
+
+function Row({ row, part, drive, look, chosen, join, because, other, onFold, onSelect }) {
+  const at = (time) => `${(100 * time) / drive.horizon}%`;
+  const onTrack = (event) => {
+    const box = event.currentTarget.getBoundingClientRect();
+    const time = Math.max(0, Math.min(1, (event.clientX - box.left) / box.width)) * drive.horizon;
+    const pixels = (x) => Math.abs(((x - time) / drive.horizon) * box.width);
+    const near = switchesOf(part, drive.horizon).filter((x) => pixels(x) <= SNAP);
+    near.sort((a, b) => pixels(a) - pixels(b));
+    onSelect();
+    look.time.value = near[0] ?? time;
+  };
+  const bars = (spans, name) =>
+    spans
+      .filter(([begin]) => begin <= drive.horizon)
+      .map(([begin, end]) => {
+        const until = Math.min(end ?? drive.horizon, drive.horizon);
+        const style = { left: at(begin), width: `max(2px, ${at(until - begin)})` };
+        return html`<i class=${name} style=${style}></i>`;
+      });
+  const now = isTrue(part, look.time.value);
+  const differs = other && other.exact !== part.exact;
+  const says = [part.text, part.says, `true: ${part.exact}`, differs ? `before: ${other.exact}` : ""].filter(Boolean).join("\n");
+  return html`<div
+    class=${`row ${chosen ? "chosen" : ""} ${because ? "because" : ""} ${differs ? "differs" : ""}`}
+    role="treeitem"
+    aria-level=${row.depth + 1}
+    aria-selected=${chosen}
+    aria-expanded=${row.children.length ? row.open : undefined}
+    title=${says}
+  >
+    <div class="label" style=${{ paddingLeft: `${6 + row.depth * 14}px` }} onClick=${onSelect}>
+      ${row.children.length
+        ? html`<button class="fold" tabindex="-1" aria-label=${row.open ? "fold" : "unfold"} onClick=${(e) => (e.stopPropagation(), onFold())}>${row.open ? "▾" : "▸"}</button>`
+        : html`<span class="fold"></span>`}
+      <span class=${`now ${now ? "on" : "off"}`} aria-hidden="true"></span>
+      <span class="words">${part.text}</span>
+      ${join && row.open ? html`<span class="join">${join}</span>` : null}
+    </div>
+    ${other
+      ? html`<div class="track two" onClick=${onTrack}>
+          <div>${bars(part.true, "true")} ${because ? bars(because, "why") : null}</div>
+          <div>${bars(other.true, "other")}</div>
+        </div>`
+      : html`<div class="track" onClick=${onTrack}>
+          ${bars(part.true, "true")} ${part.open ? bars(part.open, "open") : null}
+          ${because ? bars(because, "why") : null}
+        </div>`}
+  </div>`;
+}
+
+/** Move the clock to the next switch of a part, or with -1 to the one before. */
+export function jumpToSwitch(part, drive, look, direction) {
+  const switches = [0, ...switchesOf(part, drive.horizon), drive.horizon].sort((a, b) => a - b);
+  const now = look.time.value;
+  const next =
+    direction > 0 ? switches.find((x) => x > now + 1e-9) : switches.findLast((x) => x < now - 1e-9);
+  if (next !== undefined) look.time.value = next;
+}

@@ -1,0 +1,130 @@
+"""Who may ask: this machine, this page, this start, in JSON, and not too much of it.
+
+A page of another site can make a browser send requests to 127.0.0.1, and can make a name of its own point
+there (DNS rebinding). It can neither read the token, which stands in the fragment of the address that was
+printed, nor forge the headers Host and Origin.
+"""
+
+import hmac
+import json
+from collections.abc import Awaitable, Callable, Mapping, MutableMapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+Message: TypeAlias = MutableMapping[str, Any]
+Receive: TypeAlias = Callable[[], Awaitable[Message]]
+Send: TypeAlias = Callable[[Message], Awaitable[None]]
+App: TypeAlias = Callable[[Message, Receive, Send], Awaitable[None]]
+
+TOKEN = "x-roadproof-token"
+LARGEST_BODY = 64_000_000
+POLICY = (
+    "default-src 'none'; script-src 'self' 'nonce-{nonce}'; style-src 'self' 'nonce-{nonce}'; "
+    "img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+
+class RefusedError(Exception):
+    """A request that is not answered: the HTTP status, and why in words."""
+
+    def __init__(self, status: int, reason: str) -> None:
+        super().__init__(reason)
+        self.status = status
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Guard:
+    """An ASGI application in front of ``app``, for the server at ``port`` that was started with ``token``."""
+
+    app: App
+    port: int
+    token: str
+    largest_body: int = LARGEST_BODY
+
+    async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            if scope["type"] == "lifespan":
+                await self.app(scope, receive, send)
+            return
+        try:
+            self.admit(scope["method"], headers_of(scope))
+        except RefusedError as refused:
+            await refuse(send, refused)
+            return
+        await self.app(scope, receive, send)
+
+    def admit(self, method: str, headers: Mapping[str, str]) -> None:
+        """Raises ``RefusedError``."""
+        hosts = {f"127.0.0.1:{self.port}", f"localhost:{self.port}"}
+        if headers.get("host") not in hosts:
+            raise RefusedError(403, "this server answers to its own address only")
+        origin = headers.get("origin")
+        if origin is not None and origin not in {f"http://{host}" for host in hosts}:
+            raise RefusedError(403, "pages of other origins are not answered")
+        if headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none"):
+            raise RefusedError(403, "pages of other sites are not answered")
+        if method in ("GET", "HEAD"):
+            return
+        if method != "POST":
+            raise RefusedError(405, "ask with GET or POST")
+        if origin != f"http://{headers['host']}":
+            raise RefusedError(403, "a question comes from the page of this server")
+        if headers.get("content-type", "").partition(";")[0].strip() != "application/json":
+            raise RefusedError(415, "a question is application/json")
+        if not hmac.compare_digest(headers.get(TOKEN, "").encode(), self.token.encode()):
+            raise RefusedError(401, "the token is not that of this start: open the address that was printed")
+
+
+def headers_of(scope: Message) -> dict[str, str]:
+    """The headers by name. A name that comes twice, as in smuggled requests, has no value that is known."""
+    found: dict[str, str] = {}
+    for name, value in scope["headers"]:
+        key = name.decode("latin-1").lower()
+        found[key] = "" if key in found else value.decode("latin-1")
+    return found
+
+
+async def refuse(send: Send, refused: RefusedError) -> None:
+    """Answer with the status and the reason."""
+    body = json.dumps({"error": refused.reason}).encode()
+    headers = [(b"content-type", b"application/json"), (b"connection", b"close"), *safe_headers()]
+    await send({"type": "http.response.start", "status": refused.status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
+
+
+def safe_headers(nonce: str = "") -> list[tuple[bytes, bytes]]:
+    """What every answer says of what a browser may do with it."""
+    policy = POLICY.format(nonce=nonce) if nonce else "default-src 'none'; frame-ancestors 'none'"
+    return [
+        (b"content-security-policy", policy.encode()),
+        (b"x-content-type-options", b"nosniff"),
+        (b"referrer-policy", b"no-referrer"),
+        (b"cross-origin-resource-policy", b"same-origin"),
+        (b"cross-origin-opener-policy", b"same-origin"),
+        (b"cache-control", b"no-store"),
+    ]
+
+
+async def read_json(receive: Receive, most: int) -> dict[str, Any]:
+    """The body as a JSON object; its size is counted while it comes, whatever was announced.
+
+    Raises ``RefusedError``.
+    """
+    body = bytearray()
+    while True:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            raise RefusedError(400, "the question broke off")
+        body += message.get("body", b"")
+        if len(body) > most:
+            raise RefusedError(413, f"the question is larger than {most} bytes")
+        if not message.get("more_body", False):
+            break
+    try:
+        data = json.loads(body)
+    except (ValueError, RecursionError):
+        raise RefusedError(400, "the question is no JSON") from None
+    if not isinstance(data, dict):
+        raise RefusedError(400, "the question is no JSON object")
+    return data

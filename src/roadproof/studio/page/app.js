@@ -1,0 +1,143 @@
+// The page: panes side by side, keys, and the address.
+
+import { effect, html, render } from "vendor/view";
+import { toggle, Viewer } from "viewer/viewer";
+import * as actions from "studio/actions";
+import { fromAddress, toAddress } from "studio/address";
+import { Bar, toggleTheme } from "studio/bar";
+import { followEdits } from "studio/live";
+import { start, takeToken } from "studio/server";
+import { addWatch, Side } from "studio/side";
+import * as state from "studio/state";
+
+const KEYS = [
+  ["f", "Find a drive", () => actions.find()],
+  ["n", "Next: one that differs clearly", () => actions.find({ next: true })],
+  ["w", "Find one without it", () => actions.find({ negated: true })],
+  ["p", "Prove", () => actions.prove()],
+  ["c", "Compare before and after the edit", () => actions.compare()],
+  ["e", "Explain the selected part at the present time", () => actions.explain()],
+  ["b", "Keep the text as before", () => actions.keepAsBefore()],
+  ["Escape", "Stop what runs", () => actions.stop()],
+  [" ", "Play or pause", () => state.view.value && toggle(state.look, state.view.value.drive)],
+  ["x", "Save as a page", () => actions.savePage()],
+  ["l", "Copy the address", () => actions.copy(location.href)],
+  ["d", "To the definitions", () => document.querySelector(".definitions .cm-content")?.focus()],
+  ["q", "To the question", () => document.querySelector(".asked .cm-content")?.focus()],
+  ["s", "To the strips", () => document.querySelector(".tree")?.focus()],
+  ["a", "Watch another formula", () => addWatch()],
+  ["k", "Scene to scale or stretched", () => (state.look.toScale.value = !state.look.toScale.value)],
+  ["t", "Light or dark", () => toggleTheme()],
+  ["?", "These keys", () => (state.help.value = !state.help.value)],
+];
+const MORE = [
+  ["↑ ↓", "in the strips: select a part"],
+  ["← →", "in the strips: fold and unfold"],
+  ["Enter, Shift-Enter", "in the strips: to the next switch, to the one before"],
+  ["Enter", "in the question: find a drive"],
+  ["Escape", "in an editor: leave it"],
+  ["Ctrl-Space", "in an editor: names"],
+];
+
+function Help() {
+  if (!state.help.value) return null;
+  const close = () => (state.help.value = false);
+  return html`<div class="help" role="dialog" aria-label="Keys" onClick=${close}>
+    <div class="card">
+      <h2>Keys</h2>
+      <dl>${[...KEYS.map(([key, text]) => [key === " " ? "Space" : key, text]), ...MORE].map(([key, text]) => html`<dt><kbd>${key}</kbd></dt><dd>${text}</dd>`)}</dl>
+      <button onClick=${close}>Close</button>
+    </div>
+  </div>`;
+}
+
+function Main() {
+  const doc = state.view.value;
+  const titles = { question: "Question, with the definitions of the editor", before: "Before the edit" };
+  return html`<main class="stage">
+    ${doc
+      ? html`<${Viewer} ...${{ doc, look: state.look, titles, theme: state.theme }} />`
+      : html`<div class="empty">
+          <p>No drive is shown.</p>
+          <p class="faint">Find one, or drop a drive file here.</p>
+        </div>`}
+  </main>`;
+}
+
+function App() {
+  return html`<${Bar} /><div class="panes"><${Side} /><${Main} /></div><${Help} />`;
+}
+
+function isTyping(target) {
+  return target.closest?.(".cm-editor, input[type=text], select, textarea") !== null;
+}
+
+function onKey(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+  if (isTyping(event.target)) {
+    if (event.key === "Escape") event.target.blur();
+    return;
+  }
+  if (event.key === "Escape" && state.help.value) {
+    state.help.value = false;
+    return;
+  }
+  if ((event.key === " " || event.key === "Enter") && event.target.closest("button, input")) return;
+  const known = KEYS.find(([key]) => key === event.key);
+  if (known) {
+    event.preventDefault();
+    known[2]();
+  }
+}
+
+function onDrop(event) {
+  event.preventDefault();
+  actions.open([...event.dataTransfer.files]);
+}
+
+async function begin() {
+  takeToken();
+  const wanted = localStorage.getItem("roadproof-theme");
+  const dark = wanted ? wanted === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+  state.theme.value = dark ? "dark" : "light";
+  const begun = await start();
+  const said = await fromAddress();
+  if (said) state.takeOver(said);
+  else {
+    if (begun.text) state.kept.text.value = begun.text;
+    if (begun.drives.length) {
+      state.kept.drive.value = begun.drives[0].drive;
+      state.kept.formula.value = begun.drives[0].drive.formula ?? state.kept.formula.value;
+    }
+  }
+  const app = document.getElementById("app");
+  app.textContent = "";
+  render(html`<${App} />`, app);
+  document.addEventListener("keydown", onKey);
+  document.addEventListener("dragover", (event) => event.preventDefault());
+  document.addEventListener("drop", onDrop);
+  addEventListener("popstate", async () => state.takeOver((await fromAddress()) ?? {}));
+  keepAddress();
+  followEdits();
+  document.documentElement.dataset.ready = "yes";
+}
+
+/** Edits replace the address, a new drive is a new entry of the history. */
+function keepAddress() {
+  let timer = 0;
+  let last = state.kept.drive.peek();
+  effect(() => {
+    const data = state.asData();
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      toAddress(data, data.drive !== last);
+      last = data.drive;
+    }, 300);
+  });
+}
+
+begin().catch((error) => {
+  const app = document.getElementById("app");
+  app.textContent = `The studio cannot be used: ${error.message}`;
+});

@@ -1,0 +1,69 @@
+// The bar above: what is asked, and what can be done with it.
+
+import { html } from "vendor/view";
+import * as actions from "studio/actions";
+import { Editor } from "studio/editor";
+import * as state from "studio/state";
+
+const OBJECTIVES = ["smooth", "severe", "mild", "short", "margin", "any"];
+
+export function Bar() {
+  const { kept, names, about, job } = state;
+  const called = about.value.formula;
+  const wrong = state.mistakes.value.find((x) => x.where === "formula");
+  return html`<header class="bar">
+    <div class="first">
+      <h1>roadproof studio</h1>
+      <label>on top of
+        <select aria-label="Spec set" value=${kept.base.value} onChange=${(e) => (kept.base.value = e.target.value)}>
+          ${(names.value?.sets ?? [{ name: kept.base.value }])
+            .filter((x) => !["edit", "before"].includes(x.name))
+            .map((x) => html`<option value=${x.name} title=${x.doc}>${x.name}</option>`)}
+        </select>
+      </label>
+      <div class="asked">
+        <${Editor} where="formula" label="Question" line=${true} text=${kept.formula.value} hint="a formula, or a scenario's number"
+          onChange=${actions.askAnother} onEnter=${() => actions.find()} />
+      </div>
+      <button title="l: the address holds everything" onClick=${() => actions.copy(location.href)}>Copy link</button>
+      <button title="x: one file that needs no server" onClick=${() => actions.savePage()}>Save page</button>
+      <button class="icon" title="Light or dark" aria-label="Light or dark" onClick=${toggleTheme}>◐</button>
+      <button class="icon" title="Keys (?)" aria-label="Keys" onClick=${() => (state.help.value = true)}>?</button>
+    </div>
+    <div class="second">
+      <div class="called" title=${called?.sentence ?? ""}>
+        ${wrong ? html`<span class="wrong">${wrong.message}</span>` : html`<b>${called?.name ?? ""}</b> ${called?.sentence ?? ""}`}
+      </div>
+      <div class="buttons">
+        <button class="main" title="f" onClick=${() => actions.find()}>Find a drive</button>
+        <select aria-label="What the drive should be like" value=${kept.objective.value} onChange=${(e) => (kept.objective.value = e.target.value)}>
+          ${OBJECTIVES.map((x) => html`<option>${x}</option>`)}
+        </select>
+        <button title="n" onClick=${() => actions.find({ next: true })}>Next</button>
+        <button title="w" onClick=${() => actions.find({ negated: true })}>Find one without it</button>
+        <button title="p" onClick=${() => actions.prove()}>Prove</button>
+        <select aria-label="For which values of parameters" value=${kept.declared.value ? "declared" : "all"} onChange=${(e) => (kept.declared.value = e.target.value === "declared")}>
+          <option value="all">for all values</option><option value="declared">at declared values</option>
+        </select>
+        <button title="c" onClick=${() => actions.compare()}>Compare</button>
+        <button title="e" aria-pressed=${state.explain.value !== null} onClick=${() => actions.explain()}>Explain</button>
+      </div>
+    </div>
+    <div class="third" aria-live="polite">
+      ${job.value
+        ? html`<span class="spinner" aria-hidden="true"></span><b>${job.value.title}</b> <span>${job.value.stage}</span>
+            <span class="seconds">${job.value.seconds.toFixed(1)} s</span>
+            <button class="stop" title="Esc" onClick=${() => actions.stop()}>Stop</button>`
+        : state.trouble.value
+          ? html`<span class="wrong" role="alert">${state.trouble.value}</span>`
+          : html`<span class="faint">${state.said.value}</span>`}
+    </div>
+  </header>`;
+}
+
+export function toggleTheme() {
+  const next = state.theme.value === "dark" ? "light" : "dark";
+  document.documentElement.dataset.theme = next;
+  localStorage.setItem("roadproof-theme", next);
+  state.theme.value = next;
+}

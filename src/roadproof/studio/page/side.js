@@ -1,0 +1,136 @@
+// The left side: definitions, watched formulas, answers.
+
+import { html } from "vendor/view";
+import { Verdict } from "viewer/verdict";
+import * as actions from "studio/actions";
+import { Editor } from "studio/editor";
+import * as state from "studio/state";
+
+export function Side() {
+  const { kept } = state;
+  const wrong = state.mistakes.value.filter((x) => x.where === "definitions");
+  return html`<aside class="side">
+    <section class="pane definitions" aria-label="Definitions">
+      <h2>Definitions <small>set <code>edit</code> on top of <code>${kept.base.value}</code></small>
+        <span class="right">
+          ${kept.before.value === null
+            ? html`<button title="b: what the next edit is compared with" onClick=${actions.keepAsBefore}>Keep as before</button>`
+            : html`<button title="Compare with the set below again" onClick=${actions.forgetBefore}>Forget before</button>`}
+        </span>
+      </h2>
+      <${Editor} where="definitions" label="Definitions" text=${kept.text.value}
+        hint=${"def danger(a, b: vehicle) \"what replaces the definition of the set\"\n  := …"}
+        onChange=${actions.rewrite} />
+      ${wrong.length
+        ? html`<ul class="mistakes" role="alert">
+            ${wrong.map((x) => html`<li><b>${x.line ? `${x.line}:${x.column}` : ""}</b> ${x.message} <span class="faint">${x.hint}</span></li>`)}
+          </ul>`
+        : null}
+    </section>
+    <${Readings} />
+    <section class="pane watch" aria-label="Watch">
+      <h2>Watch <span class="right"><button onClick=${addWatch}>Add</button></span></h2>
+      ${kept.watches.value.map((text, k) => html`<${WatchLine} key=${k} ...${{ text, k }} />`)}
+      ${kept.watches.value.length ? null : html`<p class="faint">Any formula typed here gets a strip on the drive that is shown.</p>`}
+    </section>
+    <${Recording} />
+    <section class="pane answers" aria-label="Answers">
+      <h2>Answers</h2>
+      ${state.answers.value.map(
+        (x) => html`<${Verdict} key=${x.key} answer=${x} downloads=${downloadsOf(x)} onCopy=${actions.copy}
+          onShow=${x.drive ? () => actions.showDrive(x.drive, x.view, x.sets !== undefined) : null} />`,
+      )}
+      ${state.answers.value.length ? null : html`<p class="faint">None yet: press Find a drive.</p>`}
+    </section>
+  </aside>`;
+}
+
+/** Readings and values of parameters, folded away at first. */
+function Readings() {
+  const { options, params } = state.kept;
+  const known = state.names.value;
+  if (!known) return null;
+  const set = (kept, name, value) => {
+    const next = { ...kept.value };
+    if (value) next[name] = value;
+    else delete next[name];
+    kept.value = next;
+  };
+  const changed = [...Object.entries(options.value), ...Object.entries(params.value)];
+  return html`<details class="pane readings">
+    <summary>Parameters and readings <small>${changed.map(([name, value]) => `${name} = ${value}`).join(", ")}</small></summary>
+    <dl>
+      ${known.parameters.map(
+        (x) => html`<dt title=${x.doc}>${x.name}</dt>
+          <dd><input type="text" aria-label=${x.name} placeholder=${x.value} value=${params.value[x.name] ?? ""} onChange=${(e) => set(params, x.name, e.target.value.trim())} /></dd>`,
+      )}
+      ${known.options.map(
+        (x) => html`<dt title=${x.doc}>${x.name}</dt>
+          <dd><select aria-label=${x.name} value=${options.value[x.name] ?? x.values[0]} onChange=${(e) => set(options, x.name, e.target.value === x.values[0] ? "" : e.target.value)}>${x.values.map((y) => html`<option>${y}</option>`)}</select></dd>`,
+      )}
+    </dl>
+  </details>`;
+}
+
+/** The pairs of a recording on which danger arises, and which scenarios match them. */
+function Recording() {
+  const found = state.recording.value;
+  if (!found) return null;
+  const scenariosOf = (row) => {
+    const same = (m) =>
+      String(m.recording) === String(row.recording) &&
+      m.minDanger === row.minDanger &&
+      [m.SV, m.POV].sort().join() === [row.first, row.second].sort().join();
+    return found.matches.filter(same);
+  };
+  return html`<section class="pane recording" aria-label="Recording">
+    <h2>Recording <small>${found.pairs.length} traces on which danger arises, ${found.matches.length} matches</small>
+      <span class="right"><button aria-label="Close the recording" onClick=${() => (state.recording.value = null)}>×</button></span>
+    </h2>
+    <div class="table"><table>
+      <thead><tr><th>vehicles</th><th>frames</th><th>minDanger</th><th>scenarios</th></tr></thead>
+      <tbody>${found.pairs.map((row) => {
+        const matches = scenariosOf(row);
+        const show = (sv, pov, number) => actions.showPair({ ...row, vehicles: [sv, pov] }, number);
+        return html`<tr>
+          <td><button onClick=${() => show(row.first, row.second)}>${row.first}, ${row.second}</button></td>
+          <td>${row.first_frame}–${row.last_frame}</td>
+          <td>${row.minDanger} s</td>
+          <td>${matches.map((m) => html`<button title=${`SV ${m.SV}, POV ${m.POV}`} onClick=${() => show(m.SV, m.POV, m.scenario)}>${m.scenario}</button>`)}</td>
+        </tr>`;
+      })}</tbody>
+    </table></div>
+  </section>`;
+}
+
+function WatchLine({ text, k }) {
+  const wrong = state.mistakes.value.find((x) => x.where === `watch ${k + 1}`);
+  const change = (value) => {
+    state.kept.watches.value = state.kept.watches.value.map((x, n) => (n === k ? value : x));
+  };
+  const remove = () => {
+    state.kept.watches.value = state.kept.watches.value.filter((_, n) => n !== k);
+  };
+  return html`<div class="watched">
+    <${Editor} where=${`watch ${k + 1}`} label=${`Watched formula ${k + 1}`} line=${true} text=${text} onChange=${change} hint="v_lon(SV) > 100 km/h" />
+    <button aria-label="Remove" onClick=${remove}>×</button>
+    ${wrong ? html`<p class="wrong">${wrong.message}</p>` : null}
+  </div>`;
+}
+
+export function addWatch() {
+  state.kept.watches.value = [...state.kept.watches.value, ""];
+  requestAnimationFrame(() => document.querySelector(".watched:last-of-type .cm-content")?.focus());
+}
+
+function downloadsOf(answer) {
+  const made = [];
+  if (answer.drive) made.push({ name: "drive.json", content: text(answer.drive) });
+  if (answer.certificate) made.push({ name: "certificate.json", content: text(answer.certificate) });
+  if (answer.command?.includes("edit.spec") && answer.spec) {
+    made.push({ name: "edit.spec", content: answer.spec, kind: "text/plain" });
+  }
+  return made;
+}
+
+const text = (data) => `${JSON.stringify(data, null, 2)}\n`;

@@ -1,0 +1,63 @@
+// What the page is about. All of `kept` is in the address; the rest follows from it, or is asked for again.
+
+import { computed, signal } from "vendor/view";
+import { makeLook } from "viewer/viewer";
+
+export const kept = {
+  base: signal("base"),
+  text: signal(""),
+  before: signal(null),
+  options: signal({}),
+  params: signal({}),
+  formula: signal("scenario_1(SV,POV,L)"),
+  watches: signal([]),
+  objective: signal("smooth"),
+  declared: signal(false),
+  drive: signal(null),
+  compared: signal(false),
+};
+
+export const names = signal(null); // what there is to be named
+export const view = signal(null); // the document of the drive that is shown
+export const mistakes = signal([]);
+export const about = signal({}); // what each formula is called
+export const answers = signal([]); // verdicts, the newest first
+export const job = signal(null); // what runs: {title, stage, seconds, stop}
+export const trouble = signal(""); // what went wrong with the page itself
+export const said = signal(""); // a word for the user, such as "copied"
+export const help = signal(false);
+export const recording = signal(null); // a recording that was dropped: its pairs, matches and files
+export const pair = signal(null); // the vehicles of it that are shown
+export const explain = signal(null); // {part, at}: what is to be explained
+export const clashes = signal([]); // where the parts are said that clash
+export const marks = computed(() => [...clashes.value, ...(view.value?.marks ?? [])]);
+export const theme = signal(document.documentElement.dataset.theme ?? "light");
+export const look = makeLook();
+
+export const draft = computed(() => ({
+  base: kept.base.value,
+  text: kept.text.value,
+  before: kept.before.value,
+  options: kept.options.value,
+  params: kept.params.value,
+}));
+
+/** What is asked with every question about the drive that is shown. */
+export const question = computed(() => ({
+  draft: draft.value,
+  set: "edit",
+  formula: kept.formula.value,
+  watches: kept.watches.value.filter((x) => x.trim()),
+}));
+
+/** All that is kept, as plain data. */
+export function asData() {
+  return Object.fromEntries(Object.entries(kept).map(([name, x]) => [name, x.value]));
+}
+
+/** Take over what an address says; what it does not say stays. */
+export function takeOver(data) {
+  for (const [name, x] of Object.entries(kept)) {
+    if (data && name in data) x.value = data[name];
+  }
+}

@@ -1,0 +1,48 @@
+"""The files that the browser is given, from a fixed list: no name that it sends is looked up on a disk."""
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+from roadproof.report.viewer_files import viewer_modules, viewer_style
+
+_SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
+_OWN = ("server", "address", "state", "editor", "actions", "live", "bar", "side", "app")
+
+
+@dataclass(frozen=True)
+class Served:
+    """A file: its text and media type."""
+
+    text: str
+    kind: str
+
+
+@cache
+def served() -> dict[str, Served]:
+    """Every file by its name below /page/."""
+    modules = {f"{name}.js": Served(text, _SCRIPT) for name, text in _modules().items()}
+    return {
+        **modules,
+        "viewer.css": Served(viewer_style(), _STYLE),
+        "studio.css": Served(_read("studio.css"), _STYLE),
+    }
+
+
+def page_of(nonce: str) -> str:
+    """The page, whose scripts and styles carry ``nonce``."""
+    names = json.dumps({"imports": {name: f"/page/{name}.js" for name in _modules()}})
+    return _read("index.html").replace("{{nonce}}", nonce).replace("{{imports}}", names)
+
+
+@cache
+def _modules() -> dict[str, str]:
+    editor = resources.files("roadproof.report").joinpath("viewer", "vendor", "edit.js").read_text("utf-8")
+    own = {f"studio/{name}": _read(f"{name}.js") for name in _OWN}
+    return {**viewer_modules(), "vendor/edit": editor, **own}
+
+
+@cache
+def _read(name: str) -> str:
+    return resources.files("roadproof.studio").joinpath("page", name).read_text("utf-8")

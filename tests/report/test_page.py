@@ -1,0 +1,193 @@
+"""The page about results: what sections show, that all text stays text, and that a browser opens it alone."""
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import roadproof as rp
+from evidence.folders import some_proofs
+from roadproof.cli.main import main
+from roadproof.report.page.markup import joined, table, tag
+from roadproof.shipped import shipped
+
+HOSTILE = "<img src=x onerror=alert(1)>"
+CLOSED = "</script><script>alert(1)</script>"
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+NO_BROWSER = "there is no chromium here: install it, for instance apt-get install chromium"
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory) -> Path:
+    """One drive, as witness writes it."""
+    folder = tmp_path_factory.mktemp("drives")
+    rp.witness("danger(SV,POV)", jobs=1, out=folder, pictures=False)
+    return folder
+
+
+def drive_in(folder: Path) -> dict:
+    [path] = [x for x in folder.glob("*.json") if x.name != "question.json"]
+    return json.loads(path.read_text("utf-8"))
+
+
+def made(*results: object, out: Path, **more: object):
+    found = rp.page(*map(str, results), out=out, jobs=1, **more)
+    assert out.read_text("utf-8") == found.text
+    return found, found.text
+
+
+def body_of(text: str) -> str:
+    """What is seen: without scripts, styles and the data of viewers."""
+    return re.sub(r"<(script|style)\b.*?</\1>", "", text, flags=re.DOTALL)
+
+
+def test_every_text_is_escaped_wherever_it_is_put():
+    assert tag("p", HOSTILE) == "<p>&lt;img src=x onerror=alert(1)&gt;</p>"
+    assert tag("p", tag("b", "&"), title='"><i>') == '<p title="&quot;&gt;&lt;i&gt;"><b>&amp;</b></p>'
+    assert "<img" not in table([HOSTILE], [[HOSTILE, 3]]) + joined([HOSTILE], HOSTILE)
+
+
+def test_proofs_and_drives_with_what_was_found_of_them(tmp_path, drives):
+    found, text = made(some_proofs(tmp_path / "proofs"), drives, out=tmp_path / "page.html")
+    seen = body_of(text)
+    assert '5 claims: 3 <span class="verdict-word proof">✓ PROVED</span>' in seen
+    assert "scenario_4(SV,POV,L) -&gt; dangerArises(SV,POV)" in seen
+    assert "1 of 1 accepted by z3 and the exact judge" in seen
+    assert (found.results, found.drives, found.exit_code) == (2, 2, 0)
+    assert len(re.findall(r'<script type="application/json" id="document-\d+">', text)) == 2
+    assert not re.search(r"""(?:src|href|action)\s*=\s*["']?\s*(?:https?:|//)""", text)
+
+
+def test_what_does_not_stand_is_said_on_the_page(tmp_path, drives):
+    wrong = drive_in(drives) | {"formula": "not danger(SV,POV)"}
+    (tmp_path / "wrong.json").write_text(json.dumps(wrong), "utf-8")
+    found, text = made(tmp_path / "wrong.json", out=tmp_path / "page.html")
+    assert "0 of 1 accepted" in body_of(text)
+    assert found.exit_code == 10
+    inline = {"schema": "roadproof/witness/1", "verdicts": [{"verdict": "WITNESSED", "drives": [wrong]}]}
+    (tmp_path / "inline.json").write_text(json.dumps(inline), "utf-8")
+    assert "the formula is false on this drive" in made(tmp_path / "inline.json", out=tmp_path / "b.html")[1]
+
+
+def hostile_overlap() -> dict:
+    pair = {"set_a": HOSTILE, "set_b": CLOSED, "formula": HOSTILE, "reason": CLOSED, "certificate": HOSTILE}
+    verdicts = [
+        {"a": 1, "b": 5, "verdict": HOSTILE, "core": [HOSTILE], **pair},
+        {"a": 1, "b": 4, "verdict": "IMPOSSIBLE", "core": [CLOSED], **pair},
+    ]
+    return {"schema": "roadproof/overlap/1", "set": HOSTILE, "verdicts": verdicts}
+
+
+def hostile_answers(drive: dict) -> dict[str, dict]:
+    named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
+    entry = {"verdict": "WITNESSED", "formula": HOSTILE, "reason": CLOSED, "name": HOSTILE, "scenario": 1}
+    return {
+        "overlap": hostile_overlap(),
+        "witness": {"verdicts": [entry | {"drives": [named]}]},
+        "verdicts": {
+            "verdicts": [{"verdict": "PROVED", "claim": HOSTILE, "assuming": [CLOSED], "set": HOSTILE}]
+        },
+        "compare": {"first": {"formula": HOSTILE}, "relation": CLOSED, "forward": {"drive": named}},
+        "classify": {"classes": [entry | {"situations": 1}], "text": CLOSED, "claims": [{"kind": HOSTILE}]},
+        "coverage": {
+            "verdict": CLOSED,
+            "classes": [entry | {"component": HOSTILE, "condition": CLOSED, "gaps": [1]}],
+            "gaps": [{"number": 1, "road": HOSTILE, "formula": CLOSED, "caught_by": HOSTILE}],
+        },
+        "catalogue": {
+            "targets": [{"name": HOSTILE, "words": CLOSED, "tested": [HOSTILE]}],
+            "tests": [{"id": HOSTILE, "title": CLOSED, "claims": [HOSTILE], "shown": []}],
+            "notes": [CLOSED],
+        },
+        "traffic-results": {
+            "table": [{"sector": HOSTILE, "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}],
+            "detectors": {HOSTILE: 3},
+        },
+        "explore": {"explored": [{"formula": HOSTILE, CLOSED: [HOSTILE]}], "note": CLOSED},
+    }
+
+
+def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
+    files = []
+    for kind, data in hostile_answers(drive_in(drives)).items():
+        files.append(tmp_path / f"{kind}.json")
+        files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/1", **data}), "utf-8")
+    found, text = made(*files, out=tmp_path / "page.html", title=f"{HOSTILE} {CLOSED}")
+    assert found.results == len(files)
+    assert "<img" not in text
+    assert text.count("<script") == text.count("</script") == 3 + found.drives
+    assert body_of(text).count("&lt;img src=x onerror=alert(1)&gt;") > 15
+    assert "Which scenarios can hold together" in text
+
+
+@pytest.mark.parametrize(
+    ("content", "wrong"),
+    [
+        (None, "does not exist"),
+        ("{", "is no JSON"),
+        ("[]", ""),
+        ('{"schema": "other/1"}', "no schema that begins with roadproof/"),
+        ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "is no result that can be shown"),
+        ('{"schema": "roadproof/classify/1", "classes": 3}', "is no result that can be shown"),
+    ],
+)
+def test_mistakes_are_named(tmp_path, capsys, content, wrong):
+    path = tmp_path / "x.json"
+    if content is not None:
+        path.write_text(content, "utf-8")
+    assert main(["report", str(path), "-o", str(tmp_path / "page.html"), "--quiet"]) == 3
+    assert wrong in capsys.readouterr().err
+    assert not (tmp_path / "page.html").exists()
+
+
+def test_the_command_line(tmp_path, capsys, drives):
+    assert main(["report", str(drives), "-o", str(tmp_path / "page.txt"), "--quiet"]) == 2
+    assert "name a file that ends with .html" in capsys.readouterr().err
+    assert main(["report", str(drives), "-o", str(tmp_path / "no/page.html"), "--quiet"]) == 3
+    assert main(["report", str(tmp_path), "-o", str(tmp_path / "page.html"), "--quiet"]) == 3
+    capsys.readouterr()
+    assert main(["report", str(drives), "-o", str(tmp_path / "page.html"), "--quiet"]) == 0
+    assert "1 result, 1 drive" in capsys.readouterr().out
+
+
+def opened(page: Path, more: str = "") -> tuple[str, str]:
+    """The document after its scripts have run, and what the browser said on its console."""
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+    options += ["--enable-logging=stderr", "--virtual-time-budget=4000", "--dump-dom"]
+    done = subprocess.run(
+        [str(CHROMIUM), *options, page.as_uri() + more],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    return done.stdout, "\n".join(x for x in done.stderr.splitlines() if "CONSOLE" in x)
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason=NO_BROWSER)
+def test_a_browser_opens_it_without_a_word_and_asks_nobody(tmp_path, drives):
+    """A policy of the page forbids every request, and the browser complains of each that is tried."""
+    overlap = hostile_overlap() | {"set": "base"}
+    overlap["verdicts"][0] |= {"verdict": "WITNESSED", "drive": drive_in(drives)}
+    (tmp_path / "overlap.json").write_text(json.dumps(overlap), "utf-8")
+    _, text = made(tmp_path / "overlap.json", drives, out=tmp_path / "page.html")
+    document, said = opened(tmp_path / "page.html", "#pair-0-0")
+    assert said == ""
+    assert re.search(r'<html[^>]* data-ready="\d+"', document)
+    assert 'class="viewer"' in document  # the drive behind the cell that the address names
+    assert document.count('class="viewer"') == 1
+    assert "<img" not in document
+    wrong = text.replace("<main>", '<main><img src="http://127.0.0.1:9/x.png">')
+    (tmp_path / "wrong.html").write_text(wrong, "utf-8")
+    assert "Content Security Policy" in opened(tmp_path / "wrong.html")[1]
+
+
+def test_the_shipped_proofs_are_a_page(tmp_path):
+    folder = tmp_path / "some"
+    folder.mkdir()
+    for name in ("P2-base", "P8-rear-base"):
+        shutil.copy(shipped("proofs") / f"{name}.json", folder)
+    assert "2 of 2 accepted" in made(folder, out=tmp_path / "page.html")[1]
