@@ -14,6 +14,7 @@ from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
 from roadproof.study.shelf import specification_names
 from roadproof.world.road import Road
+from roadproof.world.vehicle import Vehicle
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,8 @@ class Basis:
 
     ``values``: parameters with another value than the declared one (SI); ``horizon``: seconds of driving
     that are searched; ``effort`` for one drive; ``proof``: units of work for a proof before a drive is
-    looked for; ``objective``: what drives should be like.
+    looked for; ``objective``: what drives should be like; ``vehicles``: models by name, "" for all others,
+    where another than a car is wanted.
     """
 
     specification: Specification
@@ -32,6 +34,12 @@ class Basis:
     effort: Effort = field(default_factory=Effort)
     proof: float = 3.0
     objective: Objective = "smooth"
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
+
+    @property
+    def models(self) -> dict[str, str]:
+        """The models, for those on which answers depend besides what an index says."""
+        return {"vehicles": repr(sorted(self.vehicles.items()))} if self.vehicles else {}
 
     @property
     def library(self) -> Library:
@@ -59,7 +67,8 @@ class Basis:
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
     ) -> Search:
         """A search for a drive on which ``query`` holds."""
-        setting = Setting(road=road, values=self.values, horizon=self.horizon)
+        vehicles = {name: x for name, x in self.vehicles.items() if not name or name in query.vehicles}
+        setting = Setting(road=road, vehicles=vehicles, values=self.values, horizon=self.horizon)
         search_options = SearchOptions(self.objective, effort=effort or self.effort, explain=explain)
         return Search(self.specification, query, setting, search_options)
 

@@ -187,7 +187,7 @@ class Redundancy:
     @property
     def question(self) -> Question:
         said = {"set": self.basis.specification.set_name, **self.basis.said()}
-        more = {"whole": str(self.whole), "effort": f"{self.basis.effort.units:g}"}
+        more = {"whole": str(self.whole), "effort": f"{self.basis.effort.units:g}", **self.basis.models}
         return Question(SCHEMA, said, more, self.basis.library)
 
     def pieces(self, known: Mapping[str, ChangeFindings]) -> Sequence[Examined]:

@@ -26,7 +26,7 @@ from roadproof.analysis.coverage.claims import Covered
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.completing import Completed, write_completions
 from roadproof.api.definitions import Among, Definitions, load
-from roadproof.api.settings import basis_of, one_of
+from roadproof.api.settings import Vehicles, basis_of, one_of
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.kinds import Evidence
@@ -324,6 +324,7 @@ def catalogue(
     lanes: _Look = "fixed",
     start: _Look = "fixed",
     near: float = NEAR,
+    vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -350,7 +351,7 @@ def catalogue(
         raise UsageError(f"near={near}: write a number, 0 or more")
     tests = read_catalogue(paths, home.specification)
     numbers = home.among(among) or numbers_of(home.specification)
-    basis = basis_of(home, effort, timeout)
+    basis = basis_of(home, effort, timeout, vehicles)
 
     def ask(set_name: str) -> Asked:
         here = replace(basis, specification=home.specification.in_set(set_name), sets=())

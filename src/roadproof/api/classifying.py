@@ -16,7 +16,7 @@ from roadproof.analysis.classify.study import Classification, Classified, Decisi
 from roadproof.analysis.classify.text import claims_text
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Among, Definitions, load
-from roadproof.api.settings import basis_of
+from roadproof.api.settings import Vehicles, basis_of
 from roadproof.api.studied import Studied, drawn
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import make_folder, write_whole
@@ -125,6 +125,7 @@ def classify(
     using: Definitions | None = None,
     on: str | Path | None = None,
     shares: bool = True,
+    vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -140,7 +141,7 @@ def classify(
     """
     begun = time.monotonic()
     home = using or load()
-    basis = basis_of(home, effort, timeout)
+    basis = basis_of(home, effort, timeout, vehicles)
     plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
     folder = None if out is None else Path(out)
     if folder is not None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from roadproof.api.answer import Answer, Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
-from roadproof.api.settings import RoadLike, VehicleLike, one_of, setting, work_of
+from roadproof.api.settings import RoadLike, Vehicles, one_of, setting, work_of
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.heading import heading
@@ -97,7 +97,7 @@ def compare(
     using: Definitions | None = None,
     road: RoadLike | None = None,
     lanes: Mapping[str, str] | None = None,
-    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    vehicles: Vehicles = None,
     horizon: Number = 6,
     dt: Number | None = None,
     reach: Number = 80,

@@ -17,7 +17,7 @@ from roadproof.analysis.coverage.surveyed import Surveyed
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, load
-from roadproof.api.settings import RoadLike, as_road, basis_of
+from roadproof.api.settings import RoadLike, Vehicles, as_road, basis_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
@@ -139,6 +139,7 @@ def coverage(
     roads: Iterable[RoadLike] = ROADS,
     needed: bool = False,
     on: str | Path | None = None,
+    vehicles: Vehicles = None,
     effort: float = 10.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -156,7 +157,7 @@ def coverage(
     """
     begun = time.monotonic()
     home = using or load()
-    basis = basis_of(home, effort, timeout)
+    basis = basis_of(home, effort, timeout, vehicles)
     name = home.alone.set_name
     if wider is not None:
         home.specification.in_set(wider)

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from roadproof.analysis.witnesses import Witnessing, evidence_files, stems
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
-from roadproof.api.settings import RoadLike, VehicleLike, one_of, searches_of, setting, work_of
+from roadproof.api.settings import RoadLike, Vehicles, one_of, searches_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.drives import SCHEMA
@@ -150,7 +150,7 @@ def witness(
     using: Definitions | None = None,
     road: RoadLike | None = None,
     lanes: Mapping[str, str] | None = None,
-    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    vehicles: Vehicles = None,
     horizon: Number = 6,
     dt: Number | None = None,
     reach: Number = 80,

@@ -12,7 +12,7 @@ from roadproof.analysis.explore.study import Exploration
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
 from roadproof.api.phrases import Term
-from roadproof.api.settings import RoadLike, VehicleLike, searches_of, setting, work_of
+from roadproof.api.settings import RoadLike, Vehicles, searches_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
@@ -110,7 +110,7 @@ def explore(
     precision: Number | None = None,
     road: RoadLike | None = None,
     lanes: Mapping[str, str] | None = None,
-    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    vehicles: Vehicles = None,
     horizon: Number = 6,
     dt: Number | None = None,
     reach: Number = 80,

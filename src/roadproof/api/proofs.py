@@ -12,7 +12,7 @@ from roadproof.analysis.claims import Answered, Claims, name_of
 from roadproof.analysis.proof_folder import former_claims, write_claims
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
-from roadproof.api.settings import RoadLike, VehicleLike, models_of, one_of, setting, work_of
+from roadproof.api.settings import RoadLike, Vehicles, models_of, one_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
@@ -132,7 +132,7 @@ def prove(
     using: Definitions | None = None,
     expect: _Expected = "PROVED",
     assume: Literal["motion"] | None = None,
-    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    vehicles: Vehicles = None,
     declared: bool = False,
     engine: _Engine = "dense",
     road: RoadLike | None = None,
@@ -169,13 +169,17 @@ def prove(
     one_of("engine", engine, _Engine)
     one_of("expect", expect, _Expected)
     home = using or load()
-    said = assuming(assume, vehicles, values_put_in(home, declared) if engine == "dense" else {})
+    said = assuming(
+        assume,
+        vehicles if engine == "dense" else None,
+        values_put_in(home, declared) if engine == "dense" else {},
+    )
     asked = claims_of(home, what, using.alone.set_name if using else None, Verdict(expect), said)
     asked = replace(asked, effort=work_of(effort, timeout), seek_drive=drive)
     if engine != "dense":
         if not asked.are_own:
             raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
-        asked = within_limits(asked, home, engine, road, horizon, dt)
+        asked = within_limits(asked, home, engine, road, horizon, dt, vehicles)
     with listening(stage):
         return Proofs.asked(asked, out, jobs, progress, say)
 
@@ -217,7 +221,7 @@ def values_put_in(home: Definitions, declared: bool) -> dict[str, Fraction]:
 
 def assuming(
     assume: str | None,
-    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    vehicles: Vehicles = None,
     values: Mapping[str, Fraction] | None = None,
 ) -> Assuming:
     """What is assumed, in the words of Python. Raises ``UsageError``, ``InputError``."""
@@ -290,8 +294,12 @@ def within_limits(
     road: RoadLike | None = None,
     horizon: Number = 6,
     dt: Number | None = None,
+    vehicles: Vehicles = None,
 ) -> Claims:
-    """The same claims, about drives on one road up to a horizon. Raises ``InputError``, ``UsageError``."""
+    """The same claims, about drives on one road up to a horizon, within models of vehicles.
+
+    Raises ``InputError``, ``UsageError``.
+    """
     from roadproof.searching.question import SearchOptions
 
     if any(task.assuming for task in asked.tasks):
@@ -299,5 +307,5 @@ def within_limits(
             f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "
             "engine='dense'"
         )
-    place = replace(setting(home, road, horizon=horizon, dt=dt), values=dict(home.values))
+    place = replace(setting(home, road, vehicles=vehicles, horizon=horizon, dt=dt), values=dict(home.values))
     return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))

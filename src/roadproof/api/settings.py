@@ -10,7 +10,7 @@ from roadproof.api.definitions import Definitions, What
 from roadproof.effort import Effort
 from roadproof.errors import UsageError
 from roadproof.spec.bind import values_with
-from roadproof.spec.scenarios import numbers_of
+from roadproof.spec.scenarios import numbers_of, roles
 from roadproof.spec.values import Number, exact
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.road import Road
@@ -23,13 +23,15 @@ if TYPE_CHECKING:
 
 RoadLike: TypeAlias = Road | str | Path
 VehicleLike: TypeAlias = Vehicle | str | Path
+Vehicles: TypeAlias = VehicleLike | Mapping[str, VehicleLike] | None
+"""A model for all vehicles, or models by name."""
 
 
 def setting(
     using: Definitions,
     road: RoadLike | None = None,
     lanes: Mapping[str, str] | None = None,
-    vehicles: VehicleLike | Mapping[str, VehicleLike] | None = None,
+    vehicles: Vehicles = None,
     horizon: Number = 6,
     dt: Number | None = None,
     reach: Number = 80,
@@ -55,7 +57,7 @@ def setting(
     )
 
 
-def models_of(vehicles: VehicleLike | Mapping[str, VehicleLike] | None) -> dict[str, Vehicle]:
+def models_of(vehicles: Vehicles) -> dict[str, Vehicle]:
     """Models of vehicles by name, "" for all. Raises ``InputError``."""
     models = vehicles if isinstance(vehicles, Mapping) else {} if vehicles is None else {"": vehicles}
     return {name: x if isinstance(x, Vehicle) else load_vehicle(str(x)) for name, x in models.items()}
@@ -108,8 +110,27 @@ def one_of(name: str, value: str, allowed: Any) -> None:
         raise UsageError(f"{name}={value!r}: write {' or '.join(map(repr, get_args(allowed)))}")
 
 
-def basis_of(home: Definitions, effort: float, timeout: float | None) -> "Basis":
-    """What analyses rest on; ``effort``: units of work for a drive."""
+def basis_of(
+    home: Definitions,
+    effort: float,
+    timeout: float | None,
+    vehicles: Vehicles = None,
+) -> "Basis":
+    """What analyses rest on; ``effort``: units of work for a drive; ``vehicles``: models, by role or for all.
+
+    Raises ``InputError``, ``UsageError`` for a role that no scenario has.
+    """
     from roadproof.analysis.basis import Basis
 
-    return Basis(home.specification, home.sets, home.all_values(), effort=work_of(effort, timeout))
+    models = models_of(vehicles)
+    known = {name for count in (2, 3) for name in roles(count)}
+    for name in models:
+        if name and name not in known:
+            raise UsageError(f"vehicle {name}: scenarios speak of {', '.join(sorted(known))}")
+    return Basis(
+        home.specification,
+        home.sets,
+        home.all_values(),
+        effort=work_of(effort, timeout),
+        vehicles=models,
+    )

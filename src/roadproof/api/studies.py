@@ -13,7 +13,7 @@ from roadproof.analysis.overlap import Overlap, PairVerdict, pairs_of
 from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Among, Definitions, load
-from roadproof.api.settings import basis_of, one_of, positive
+from roadproof.api.settings import Vehicles, basis_of, one_of, positive
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
@@ -101,6 +101,7 @@ def overlap(
     roles: _Same = "same",
     start: _Same = "same",
     horizon: Number | None = None,
+    vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -123,7 +124,7 @@ def overlap(
     # What happens one after the other takes longer than what happens at once.
     usual = 9 if start == "any" else 6
     found = positive("horizon", usual if horizon is None else horizon, "s")
-    basis = replace(basis_of(home, effort, timeout), horizon=found)
+    basis = replace(basis_of(home, effort, timeout, vehicles), horizon=found)
     pairs = pairs_of(basis, home.among(among))
     if not pairs:
         raise UsageError(f"--among {among} leaves no pair: name at least two scenarios")
@@ -180,6 +181,7 @@ class Orders(Studied[Ordering, Any]):
 def order(
     among: Among = None,
     using: Definitions | None = None,
+    vehicles: Vehicles = None,
     effort: float = 120.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -189,7 +191,7 @@ def order(
 ) -> Orders:
     """Which scenarios imply which, in the sets of ``using`` (base, extA and ext). Raises as ``overlap``."""
     home = using or load("base", "extA", "ext")
-    basis = basis_of(home, effort, timeout)
+    basis = basis_of(home, effort, timeout, vehicles)
     kinds = kinds_of(basis.specification, basis.set_names, home.among(among))
     return Orders.asked(Ordering(basis, kinds), out, jobs, progress, say)
 
@@ -246,6 +248,7 @@ def redundancy(
     among: Among = None,
     using: Definitions | None = None,
     whole: bool = False,
+    vehicles: Vehicles = None,
     effort: float = 20.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -259,5 +262,5 @@ def redundancy(
     """
     home = using or load()
     every = numbers_of(home.alone)
-    basis = basis_of(home, effort, timeout)
+    basis = basis_of(home, effort, timeout, vehicles)
     return Redundancies.asked(Redundancy(basis, home.among(among) or every, whole), out, jobs, progress, say)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 from roadproof.cli.numbers import read_hands
 from roadproof.cli.options import chosen_options, given_values, load_library_of, write_json
 from roadproof.cli.progress import Counter, warn
+from roadproof.cli.search_options import named
 from roadproof.errors import UsageError
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ class Asking(TypedDict):
     timeout: float | None
     jobs: "Hands"
     out: Path | None
+    vehicles: dict[str, str]
     progress: "Progress"
     say: "Say"
 
@@ -51,6 +53,7 @@ def asking(args: argparse.Namespace, folder: Path | None) -> Asking:
         "timeout": args.timeout,
         "jobs": read_hands(args),
         "out": folder,
+        "vehicles": dict(named(args.vehicles, "")),
         "progress": Counter(),
         "say": warn,
     }

@@ -12,6 +12,7 @@ from roadproof.cli.options import (
     chosen_sets,
 )
 from roadproof.cli.progress import Counter
+from roadproof.cli.search_options import add_models_option
 from roadproof.errors import UsageError
 
 SUMMARY = "what a catalogue of tests shows, which scenarios and classes nobody tests, drives for these"
@@ -94,6 +95,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         help="with --complete: write the drives as openscenario, commonroad, highd, csv or opendrive too",
     )
+    add_models_option(parser)
     add_effort_options(parser, 60.0, "a drive")
     add_working_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write matrix, JUnit, picture, evidence")

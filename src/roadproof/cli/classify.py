@@ -6,6 +6,7 @@ from pathlib import Path
 from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
 from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.cli.search_options import add_models_option
 from roadproof.errors import UsageError
 
 SUMMARY = "classes of scenarios, proved to exclude each other and to cover the same, with their shares"
@@ -33,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1-8")
     parser.add_argument("--on", type=Path, metavar="DIR", help="recordings (default: simulated for this)")
     parser.add_argument("--no-shares", action="store_true", help="no recordings, so no shares")
+    add_models_option(parser)
     add_effort_options(parser, 60.0, "a drive or a proof")
     add_working_options(parser)
     add_sharing_options(parser)

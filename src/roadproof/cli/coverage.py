@@ -7,6 +7,7 @@ from roadproof.cli.basis import asking, hand_over, read_definitions
 from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
 from roadproof.cli.progress import Counter, tell
+from roadproof.cli.search_options import add_models_option
 
 SUMMARY = "which disturbances a spec set misses, by drives in classes; or a proof that it misses none"
 
@@ -42,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         help="where to look for drives; may be repeated (default: main-2, then main-3)",
     )
+    add_models_option(parser)
     add_effort_options(parser, 10.0, "a search, half of it for one more that another set catches")
     parser.add_argument(
         "--needed", action="store_true", help="of a set that covers: a drive for each definition it needs"

@@ -11,6 +11,7 @@ from roadproof.cli.options import (
     add_specification_options,
     chosen_sets,
 )
+from roadproof.cli.search_options import add_models_option
 
 SUMMARY = "which scenarios imply which: proofs for the implications, drives against the others"
 
@@ -30,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser, "base, extA, ext", several=True)
     add_parameter_option(parser)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
+    add_models_option(parser)
     add_effort_options(parser, 120.0, "a drive")
     add_working_options(parser)
     add_sharing_options(parser)

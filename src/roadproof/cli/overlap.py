@@ -12,6 +12,7 @@ from roadproof.cli.options import (
     chosen_sets,
     read_seconds,
 )
+from roadproof.cli.search_options import add_models_option
 
 SUMMARY = "which scenarios can hold together: for every pair a drive, or a proof that there is none"
 
@@ -40,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ):
         parser.add_argument(f"--{name}", choices=("same", "any"), default="same", help=what)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
+    add_models_option(parser)
     add_effort_options(parser, 60.0, "a drive")
     parser.add_argument(
         "--horizon", metavar="S", help="seconds of driving searched (default: 6; 9 with --start any)"

@@ -81,7 +81,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="[NAME=]MODEL",
         action="append",
         default=[],
-        help="with --assume motion: within the limits of a model, for all vehicles or for one",
+        help="with --assume motion or an engine: within the limits of a model, for all vehicles or for one",
     )
     add_effort_options(parser, each="a claim")
     parser.add_argument(
@@ -140,7 +140,8 @@ def _asked(args: argparse.Namespace) -> "Claims":
         raise UsageError(f"{args.file} holds no claim: write one a paragraph")
     what = [*args.claims, *(read_under(home.specification, claim) for claim in written)]
     values = values_put_in(home, args.declared) if args.engine == "dense" else {}
-    said = assuming(args.assume, dict(named(args.vehicles, "")), values)
+    models = dict(named(args.vehicles, ""))
+    said = assuming(args.assume, models if args.engine == "dense" else None, values)
     asked = claims_of(home, what, args.set_name, Verdict(args.expect), said)
     asked = replace(asked, effort=read_effort(args), seek_drive=not args.no_drive)
     if args.engine == "dense":
@@ -149,4 +150,4 @@ def _asked(args: argparse.Namespace) -> "Claims":
         raise UsageError(f"--engine {args.engine} is for claims of your own: the list is about all time")
     horizon = read_seconds("--horizon", args.horizon)
     dt = None if args.dt is None else read_seconds("--dt", args.dt)
-    return within_limits(asked, home, args.engine, args.road, horizon, dt)
+    return within_limits(asked, home, args.engine, args.road, horizon, dt, models)

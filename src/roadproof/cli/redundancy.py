@@ -6,6 +6,7 @@ from pathlib import Path
 from roadproof.cli.basis import asking, hand_over, read_definitions
 from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.cli.search_options import add_models_option
 
 SUMMARY = "which parts of scenarios are redundant, by proof; drives that show the others needed"
 
@@ -29,6 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_parameter_option(parser)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
     parser.add_argument("--whole", action="store_true", help="also the parts of simple predicates")
+    add_models_option(parser)
     add_effort_options(parser, 20.0, "a drive")
     add_working_options(parser)
     add_sharing_options(parser)

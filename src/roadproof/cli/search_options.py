@@ -33,6 +33,18 @@ class How(TypedDict):
     timeout: float | None
 
 
+def add_models_option(parser: argparse.ArgumentParser) -> None:
+    """``--vehicle``, which ``named`` takes apart."""
+    parser.add_argument(
+        "--vehicle",
+        dest="vehicles",
+        metavar="[NAME=]MODEL",
+        action="append",
+        default=[],
+        help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
+    )
+
+
 def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> None:
     """Where, with whom, how long and by whom is searched; see ``where_asked``, ``how_asked``."""
     add_specification_options(parser, several=True)
@@ -48,14 +60,7 @@ def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> 
         default=[],
         help="the lane that L stands for (default: any that works, from the right)",
     )
-    parser.add_argument(
-        "--vehicle",
-        dest="vehicles",
-        metavar="[NAME=]MODEL",
-        action="append",
-        default=[],
-        help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
-    )
+    add_models_option(parser)
     parser.add_argument("--horizon", metavar="S", default="6", help="seconds that are searched (default: 6)")
     parser.add_argument(
         "--dt", metavar="S", help="seconds between samples (default: the coarsest that fits, at most 3/5)"

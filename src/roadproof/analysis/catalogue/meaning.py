@@ -91,7 +91,7 @@ class Meanings:
         """What is asked about gaps is kept by itself, and whether it is asked changes nothing else."""
         said = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
         more = {x.id: repr((x.query.text, x.road, sorted(x.vehicles.items()))) for x in self.entries}
-        more |= {f"set {x.specification.set_name}": "" for x in self.beside}
+        more |= {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
         return Question(SCHEMA, said | self.basis.said(), more, self.basis.library)
 
     @cached_property

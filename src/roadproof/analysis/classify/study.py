@@ -81,7 +81,10 @@ class Classification:
     def question(self) -> Question:
         said = {"set": self.classes.plan.set_name, **self.basis.said()}
         return Question(
-            SCHEMA, {**said, "scenarios": list(self.classes.plan.numbers)}, {}, self.basis.library
+            SCHEMA,
+            {**said, "scenarios": list(self.classes.plan.numbers)},
+            self.basis.models,
+            self.basis.library,
         )
 
     @cached_property

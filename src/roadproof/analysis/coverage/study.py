@@ -53,7 +53,7 @@ class Coverage:
         """Without the roads: what was decided on some of them stays so, and doubts are asked again."""
         basis = self.survey.basis
         said = {"set": basis.specification.set_name, "wider": list(self.survey.wider), **basis.said()}
-        return Question(SCHEMA, said, {}, basis.library)
+        return Question(SCHEMA, said, basis.models, basis.library)
 
     @cached_property
     def claims(self) -> tuple[CoverageClaim, ...]:

@@ -67,7 +67,7 @@ class Ordering:
     @property
     def question(self) -> Question:
         said = {"sets": list(self.basis.set_names), **self.basis.said()}
-        more = {"order": " ".join(str(kind.node) for kind in self.kinds)}
+        more = {"order": " ".join(str(kind.node) for kind in self.kinds), **self.basis.models}
         return Question(SCHEMA, said, more, self.basis.library)
 
     @property
