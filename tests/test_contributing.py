@@ -18,7 +18,10 @@ NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass N
 READERS_OF_NODES = {
     *(
         "judge/exact.py",
+        "judge/blame.py",
         "judge/robust.py",
+        "logic/pins.py",
+        "report/viewer_data.py",
         "monitoring/recursive.py",
         "monitoring/semantics.py",
         "encode/unroll.py",

@@ -57,7 +57,7 @@ def test_proofs_and_drives_with_what_was_found_of_them(tmp_path, drives):
     assert "scenario_4(SV,POV,L) -&gt; dangerArises(SV,POV)" in seen
     assert "1 of 1 accepted by z3 and the exact judge" in seen
     assert (found.results, found.drives, found.exit_code) == (2, 2, 0)
-    assert len(re.findall(r'<script type="application/json" id="document-\d+">', text)) == 2
+    assert len(re.findall(r'<script type="application/gzip" id="document-\d+">', text)) == 2
     assert not re.search(r"""(?:src|href|action)\s*=\s*["']?\s*(?:https?:|//)""", text)
 
 

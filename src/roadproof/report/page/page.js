@@ -10,7 +10,14 @@ function open(place) {
   place.replaceChildren(...place.querySelectorAll(":scope > p.wrong"));
   const room = document.createElement("div");
   place.append(room);
-  mount(room, JSON.parse(data.textContent));
+  unpacked(data.textContent).then((text) => mount(room, JSON.parse(text)));
+}
+
+/** The text of gzipped bytes in base64. */
+function unpacked(base64) {
+  const bytes = Uint8Array.from(atob(base64), (sign) => sign.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).text();
 }
 
 for (const button of document.querySelectorAll("button.open")) {

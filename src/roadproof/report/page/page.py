@@ -1,5 +1,7 @@
 """The page: one file with styles, scripts, viewers and all texts, which asks nobody for anything."""
 
+import base64
+import gzip
 import json
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -8,7 +10,7 @@ from typing import Any
 
 from roadproof.report.page.markup import Content, Markup, tag
 from roadproof.report.viewer_files import viewer_modules, viewer_style
-from roadproof.report.viewer_page import as_url, hash_of, json_in_html
+from roadproof.report.viewer_page import as_url, hash_of
 
 # Before anything is drawn: the colours of the system's choice, light or dark.
 _THEME = """
@@ -30,7 +32,7 @@ def page(title: str, sections: Sequence[Markup], documents: Sequence[Mapping[str
         "base-uri 'none'; form-action 'none'"
     )
     data: list[Content] = [
-        tag("script", Markup(json_in_html(x)), type="application/json", id=f"document-{k}")
+        tag("script", _packed(x), type="application/gzip", id=f"document-{k}")
         for k, x in enumerate(documents)
     ]
     head = tag(
@@ -51,6 +53,12 @@ def page(title: str, sections: Sequence[Markup], documents: Sequence[Mapping[str
         tag("script", Markup(script), type="module"),
     )
     return f"<!doctype html>\n{tag('html', head, body, lang='en')}\n"
+
+
+def _packed(document: Mapping[str, Any]) -> str:
+    """A document as gzipped JSON in base64, which the browser unpacks when it is asked for."""
+    text = json.dumps(document, ensure_ascii=False, separators=(",", ":"))
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
 
 
 @cache
