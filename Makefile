@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test demo findings interop mutants fuzz lint unit format clean
+.PHONY: test demo browser findings interop mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -33,6 +33,10 @@ demo: $(READY)
 	$(BIN)/roadproof report $(DEMO)/proofs $(DEMO)/drives $(DEMO)/overlap $(DEMO)/evaluation \
 		--title 'roadproof: 162 claims, 24 drives, a matrix and a recording' --out $(DEMO)/demo.html
 	@echo "Open $(CURDIR)/$(DEMO)/demo.html in a browser; it needs no network."
+
+# The studio in a real browser: Debian's Chromium (apt-get install chromium), or CHROMIUM=/path/to/it.
+browser: $(READY)
+	$(BIN)/python -m pytest -q -rs tests/studio $(ARGS)
 
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)

@@ -7,7 +7,6 @@ sets, since a set can only replace. All mistakes are told, each with its place i
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from functools import lru_cache
 
 from roadproof.api.definitions import Definitions, values_of
@@ -19,7 +18,7 @@ from roadproof.spec.scenarios import read_query
 from roadproof.spec.values import Number
 
 EDIT, BEFORE = "edit", "before"
-DRAFT, QUESTION = "definitions", "formula"
+DRAFT, QUESTION, PARAMETERS = "definitions", "formula", "parameters"
 _WORDS = re.compile(r'"[^"\n]*"|#[^\n]*|[{}]|(?<![\w@])(def|param|option|each|set|when|lane|title)\s+(\w+)')
 
 
@@ -33,22 +32,22 @@ class Draft:
     options: Mapping[str, str] = field(default_factory=dict)
     params: Mapping[str, Number] = field(default_factory=dict)
 
+    @property
+    def edited(self) -> str:
+        """The set that the draft makes: ``edit``, or the one below where it says nothing."""
+        return EDIT if _statements(self.text) else self.base
+
     def definitions(self, *sets: str) -> Definitions:
-        """What questions are asked of; the sets are ``edit`` where none is named.
+        """What questions are asked of; the set is ``edited`` where none is named, and where it is ``edit``.
 
         Raises ``TextError`` for the first mistake, ``InputError``.
         """
         library = _library(self.base, self.text, self.before)
-        chosen = sets or (EDIT,)
+        chosen = tuple(self.edited if name == EDIT else name for name in sets or (EDIT,))
         for name in chosen:
             library.select(name, self.options)
         values = values_of(library, self.params)
         return Definitions(library.select(chosen[0], self.options), chosen, values)
-
-    @property
-    def values(self) -> dict[str, Fraction]:
-        """The parameters that were given a value, in SI units. Raises as ``definitions``."""
-        return dict(self.definitions().values)
 
     def file(self) -> str:
         """The draft as one specification file, which declares its sets. Raises ``TextError``."""
@@ -58,7 +57,7 @@ class Draft:
 
 @dataclass(frozen=True)
 class Mistake:
-    """Something wrong in a draft (``where`` is "definitions") or in a formula asked of it ("formula")."""
+    """Something wrong: ``where`` is "definitions", "parameters", or the name of a formula that is asked."""
 
     where: str
     message: str
@@ -84,6 +83,10 @@ def mistakes(draft: Draft, formulas: Mapping[str, str]) -> list[Mistake]:
         home = Draft(draft.base, readable, draft.before, draft.options).definitions()
     except RoadproofError as error:
         return [*found, _mistake(error, DRAFT)]
+    try:
+        values_of(home.library, draft.params)
+    except RoadproofError as error:
+        found.append(Mistake(PARAMETERS, str(error)))
     found += _in_definitions(home.specification, readable)
     for name, formula in formulas.items():
         try:

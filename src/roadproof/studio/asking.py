@@ -1,24 +1,35 @@
 """Questions that may take long: a drive, a proof, a comparison."""
 
+import contextlib
 import shlex
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import roadproof as rp
 from roadproof.api.definitions import Definitions
-from roadproof.api.drafting import BEFORE, Draft, place_in
+from roadproof.api.drafting import BEFORE, EDIT, Draft, place_in
 from roadproof.evidence.certificate import certificate_data
 from roadproof.logic.formula import Formula
 from roadproof.report.viewer_data import shown_place
 from roadproof.spec.compose import negation
 from roadproof.spec.places import nearest, places_of
 from roadproof.spec.query import Query
+from roadproof.stages import Listener
 from roadproof.studio.asked import count_of, draft_of, set_of, text_of
 from roadproof.studio.showing import marks_of, view
 
 Say = Callable[[str], None]
 MOST_DRIVES = 12
 FILE = "edit.spec"
+_STAGES = {
+    "prove": "looking for a proof",
+    "encode": "writing it down for a solver",
+    "solve": "looking for a drive",
+    "shape": "shaping the drive",
+    "judge": "judging it",
+    "refute": "showing that there is none on the grid",
+    "explain": "looking for a proof that there is none",
+}
 
 
 def find(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
@@ -30,7 +41,8 @@ def find(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
         query = negation(query)
     objective = text_of(ask, "objective")
     say("looking for a drive")
-    found = rp.witness(query, using=home, objective=objective, count=count, jobs=1)  # type: ignore[arg-type]
+    how: Any = {"objective": objective, "count": count, "jobs": 1, "stage": _telling(say)}
+    found = rp.witness(query, using=home, **how)
     outcome = found.outcomes[0]
     options = [] if objective == "smooth" else ["--objective", objective]
     options += ["--count", str(count)] if count > 1 else []
@@ -57,6 +69,28 @@ def find(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
     return answer
 
 
+class _AnsweredError(Exception):
+    """The direction that was asked for has its answer."""
+
+
+def _first_direction(text: str, home: Definitions, say: Say) -> Any:
+    """Whether the formula in the first set implies it in the second; the other direction is another job's."""
+    found: list[Any] = []
+
+    def each(name: str, direction: object) -> None:
+        found.append(direction)
+        raise _AnsweredError
+
+    with contextlib.suppress(_AnsweredError):
+        rp.compare(text, text, home, jobs=1, each=each, stage=_telling(say))
+    return found[0]
+
+
+def _telling(say: Say) -> Listener:
+    """A listener to stages that says them in words."""
+    return lambda stage: say(", ".join(filter(None, (_STAGES.get(stage.name, stage.name), stage.told))))
+
+
 def _clash(home: Definitions, query: Query, core: Iterable[Formula]) -> list[dict[str, Any]]:
     """Where the parts that clash are said in the texts that the user sees."""
     every = places_of(home.specification, query)
@@ -73,7 +107,8 @@ def prove(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
     home = draft.definitions(chosen)
     declared = ask.get("declared") is True
     say("looking for a proof")
-    [found] = rp.prove(home.read(text_of(ask, "formula")), using=home, declared=declared, jobs=1).answers
+    query, stage = home.read(text_of(ask, "formula")), _telling(say)
+    [found] = rp.prove(query, using=home, declared=declared, jobs=1, stage=stage).answers
     settled = found.settled
     answer: dict[str, Any] = {
         "verdict": str(found.verdict),
@@ -104,9 +139,7 @@ def compare(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
     pair = (below, "edit") if ask.get("forward") is True else ("edit", below)
     home = draft.definitions(*pair)
     text = text_of(ask, "formula")
-    say(f"does {pair[0]} imply {pair[1]}?")
-    found = rp.compare(text, text, home)
-    direction = found.comparison.forward
+    direction = _first_direction(text, home, say)
     answer: dict[str, Any] = {
         "verdict": str(direction.verdict),
         "reason": direction.reason,
@@ -126,10 +159,9 @@ def compare(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
 def command(name: str, words: list[str], draft: Draft, home: Definitions, options: list[str]) -> str:
     """The command line that gives the same answer; the draft is in ``edit.spec`` where it says something."""
     said = ["roadproof", name, *words]
-    is_needed = any(x in ("edit", BEFORE) for x in home.sets) and (draft.text.strip() or draft.before)
-    sets = [draft.base if x == "edit" and not is_needed else x for x in home.sets]
+    sets = home.sets
     said += [x for one in sets if one != "base" or len(sets) > 1 for x in ("--set", one)]
-    said += ["--spec", FILE] if is_needed else []
+    said += ["--spec", FILE] if {EDIT, BEFORE} & {*sets} else []
     for option, reading in draft.options.items():
         said += ["--option", f"{option}={reading}"]
     for parameter, value in draft.params.items():

@@ -20,13 +20,15 @@ Message = dict[str, Any]
 
 @dataclass(frozen=True)
 class Limits:
-    """``workers`` processes; at most ``waiting`` jobs that none of them has begun; a job may take ``seconds``
-    of the clock and ``memory`` MiB."""
+    """``workers`` processes, warm for ``long`` jobs or for those of a moment; at most ``waiting`` jobs that
+    none of them has begun; a job may take ``seconds`` of the clock and ``memory`` MiB.
+    """
 
     workers: int = 2
     waiting: int = 8
     seconds: float = 600.0
     memory: int = 3072
+    long: bool = True
 
 
 class FullError(RoadproofError):
@@ -43,9 +45,10 @@ class Worker:
     warm: "asyncio.Task[None]"
 
     @classmethod
-    async def start(cls, memory: int) -> "Worker":
+    async def start(cls, limits: Limits) -> "Worker":
         process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "roadproof.studio.worker", str(memory)),
+            *(sys.executable, "-m", "roadproof.studio.worker"),
+            *(str(limits.memory), "long" if limits.long else "live"),
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             limit=LONGEST_LINE,
@@ -84,7 +87,7 @@ class Crew:
     async def _add(self) -> None:
         if self.closed:
             return
-        worker = await Worker.start(self.limits.memory)
+        worker = await Worker.start(self.limits)
         self.every.append(worker)
         self.idle.put_nowait(worker)
 

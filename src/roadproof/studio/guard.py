@@ -52,7 +52,7 @@ class Guard:
         except RefusedError as refused:
             await refuse(send, refused)
             return
-        await self.app(scope, receive, send)
+        await self.app(scope, receive, _safely(send))
 
     def admit(self, method: str, headers: Mapping[str, str]) -> None:
         """Raises ``RefusedError``."""
@@ -85,10 +85,26 @@ def headers_of(scope: Message) -> dict[str, str]:
     return found
 
 
+def _safely(send: Send) -> Send:
+    """As ``send``, with the headers of ``safe_headers`` where an answer does not have its own."""
+
+    async def safe_send(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            said = list(message.get("headers", []))
+            names = {name.lower() for name, _ in said}
+            said += [(name, value) for name, value in safe_headers() if name not in names]
+            message = {**message, "headers": said}
+        await send(message)
+
+    return safe_send
+
+
 async def refuse(send: Send, refused: RefusedError) -> None:
     """Answer with the status and the reason."""
     body = json.dumps({"error": refused.reason}).encode()
-    headers = [(b"content-type", b"application/json"), (b"connection", b"close"), *safe_headers()]
+    size = str(len(body)).encode()
+    headers = [(b"content-type", b"application/json"), (b"content-length", size), (b"connection", b"close")]
+    headers += safe_headers()
     await send({"type": "http.response.start", "status": refused.status, "headers": headers})
     await send({"type": "http.response.body", "body": body})
 
@@ -106,11 +122,13 @@ def safe_headers(nonce: str = "") -> list[tuple[bytes, bytes]]:
     ]
 
 
-async def read_json(receive: Receive, most: int) -> dict[str, Any]:
-    """The body as a JSON object; its size is counted while it comes, whatever was announced.
+async def read_json(receive: Receive, announced: str, most: int) -> dict[str, Any]:
+    """The body as a JSON object; its size is counted while it comes, whatever was ``announced``.
 
     Raises ``RefusedError``.
     """
+    if announced.isdecimal() and int(announced) > most:
+        raise RefusedError(413, f"the question is larger than {most} bytes")
     body = bytearray()
     while True:
         message = await receive()

@@ -31,9 +31,11 @@ def answer(kind: str, ask: Ask, say: Say) -> dict[str, Any]:
     return {**LIVE, **LONG}[kind](ask, say)
 
 
-def warm_up() -> None:
-    """Ask for a drive, so that the first that a user asks for is found as quickly as the next."""
-    asking.find({**_FIRST, "objective": "smooth"}, lambda stage: None)
+def warm_up(long: bool) -> None:
+    """Read a formula, for ``long`` jobs find a drive: so the first of a user is as quick as the next."""
+    naming.read({**_FIRST, "formulas": {"formula": "1"}}, None)
+    if long:
+        asking.find({**_FIRST, "objective": "smooth"}, lambda stage: None)
 
 
 _FIRST: Ask = {

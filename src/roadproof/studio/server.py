@@ -20,6 +20,7 @@ from roadproof.studio.guard import (
     Receive,
     RefusedError,
     Send,
+    headers_of,
     read_json,
     refuse,
     safe_headers,
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from starlette.applications import Starlette
 
 # Jobs that answer while somebody types; one worker, which the others cannot keep.
-LIVE = Limits(workers=1, waiting=32, seconds=20.0)
+LIVE = Limits(workers=1, waiting=32, seconds=20.0, long=False)
 """Limits of jobs that take a moment."""
 
 
@@ -47,7 +48,8 @@ class Studio:
     async def run(self, app: object) -> AsyncIterator[None]:
         """Workers, for as long as the server runs."""
         self.crews = {"live": Crew(self.live), "long": Crew(self.long)}
-        await asyncio.gather(*(crew.start() for crew in self.crews.values()))
+        for crew in self.crews.values():
+            await crew.start()
         try:
             yield
         finally:
@@ -56,12 +58,12 @@ class Studio:
     async def ask(self, scope: Message, receive: Receive, send: Send, most: int) -> None:
         """Answer one question with JSON lines; it ends with the request, whoever breaks that off."""
         try:
-            asked = await read_json(receive, most)
+            asked = await read_json(receive, headers_of(scope).get("content-length", ""), most)
             crew, kind = self._crew(asked.get("kind"))
         except RefusedError as refused:
             await refuse(send, refused)
             return
-        headers = [(b"content-type", b"application/x-ndjson"), *safe_headers()]
+        headers = [(b"content-type", b"application/x-ndjson")]
         await send({"type": "http.response.start", "status": 200, "headers": headers})
         gone = asyncio.create_task(_until_gone(receive))
         try:
@@ -116,13 +118,14 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
 
     async def page(request: Request) -> Response:
         nonce = secrets.token_urlsafe(16)
-        return _response(page_of(nonce), "text/html; charset=utf-8", nonce)
+        headers = {name.decode(): value.decode() for name, value in safe_headers(nonce)}
+        return Response(page_of(nonce), media_type="text/html; charset=utf-8", headers=headers)
 
     async def file(request: Request) -> Response:
         found = served().get(request.path_params["name"])
         if found is None:
-            return Response("there is no such file", 404, {k.decode(): v.decode() for k, v in safe_headers()})
-        return _response(found.text, found.kind)
+            return Response("there is no such file", 404)
+        return Response(found.text, media_type=found.kind)
 
     class Asking:
         """An ASGI endpoint, since answers are streams that end when nobody listens."""
@@ -131,11 +134,7 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
             await studio.ask(scope, receive, send, largest_body)
 
     async def start(request: Request) -> Response:
-        return _response(json.dumps(studio.begun.as_data()), "application/json")
-
-    def _response(text: str, kind: str, nonce: str = "") -> Response:
-        headers = {k.decode(): v.decode() for k, v in safe_headers(nonce)}
-        return Response(text, media_type=kind, headers=headers)
+        return Response(json.dumps(studio.begun.as_data()), media_type="application/json")
 
     return Starlette(
         routes=[
@@ -198,6 +197,7 @@ def listen(port: int | None) -> socket.socket:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind(("127.0.0.1", number))
+            listening.listen(64)  # so that a browser which is quicker than the server waits
             return listening
         except OSError as error:
             listening.close()

@@ -1,6 +1,7 @@
 """Drives on the page: judged with the definitions as they are at the moment."""
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from roadproof.api.drafting import BEFORE, Draft, place_in
@@ -44,18 +45,17 @@ def view(draft: Draft, file: DriveFile, ask: Mapping[str, Any]) -> dict[str, Any
 
 def marks_of(places: Iterable[Mapping[str, Any]], kind: str) -> list[dict[str, Any]]:
     """Places in texts as the editors mark them; those in the library's texts are left out."""
-    found = []
+    found: list[dict[str, Any]] = []
     for place in places:
         begin, end = (place_in(place["source"], tuple(place[x])) for x in ("from", "to"))
         if begin is not None and end is not None:
-            found.append({"where": begin[0], "from": list(begin[1]), "to": list(end[1]), "kind": kind})
+            mark = {"where": begin[0], "from": list(begin[1]), "to": list(end[1]), "kind": kind}
+            found += [] if mark in found else [mark]
     return found
 
 
 def _readable(file: DriveFile, home: Specification) -> tuple[DriveFile, Library]:
     """A drive with a library that knows its set: a drive of another draft is shown with the one at hand."""
-    from dataclasses import replace
-
     library = home.library
     options = {k: v for k, v in file.options.items() if v in _values(library, k)}
     values = {k: v for k, v in file.values.items() if k in library.parameters}

@@ -14,15 +14,18 @@ from roadproof.errors import RoadproofError
 from roadproof.parent import die_with
 
 
-def main(memory: int) -> int:
-    """Answer jobs until stdin ends; ``memory``: MiB that jobs may take above what a warm worker has."""
+def main(memory: int, long: bool) -> int:
+    """Answer jobs until stdin ends; ``memory``: MiB that jobs may take above what a warm worker has.
+
+    ``long``: whether it is warm for jobs that may take long, too.
+    """
     die_with(os.getppid())
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), 1)
     from roadproof.studio.jobs import answer, warm_up
 
-    warm_up()
+    warm_up(long)
     _limit_memory(memory)
     _tell(answers, {"ready": True})
     for line in sys.stdin:
@@ -64,4 +67,4 @@ def _tell(answers: TextIO, message: dict[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1])))
+    sys.exit(main(int(sys.argv[1]), sys.argv[2] == "long"))

@@ -5,6 +5,7 @@ import { save } from "viewer/verdict";
 import { ask } from "studio/server";
 import * as state from "studio/state";
 
+const LARGEST = 60_000_000; // bytes of files that are dropped together
 let running = null;
 
 /** The definitions as they are now; what was explained of the former ones is no longer shown. */
@@ -151,8 +152,8 @@ export async function compare() {
     if (told.error) state.trouble.value = told.error;
     else {
       const [one, other] = told.answer.sets.map((x) => (x === "edit" ? "after" : "before"));
-      const so = { PROVED: "always", REFUTED: "not always" }[told.answer.verdict] ?? "it is not known whether";
-      const promise = `Where it holds ${one} the edit, it ${so} holds ${other} it.`;
+      const so = { PROVED: "it holds", REFUTED: "it does not always hold" }[told.answer.verdict];
+      const promise = `Where it holds ${one} the edit, ${so ?? "nobody knows whether it holds"} ${other} it.`;
       take({ ...told.answer, promise }, { compared: true, show: !isShown });
       isShown ||= Boolean(told.answer.drive);
     }
@@ -217,6 +218,10 @@ export async function copy(text) {
 /** Files that were dropped on the page, or chosen: definitions, a drive, a certificate, a recording. */
 export async function open(list) {
   const files = [];
+  if (list.reduce((sum, x) => sum + x.size, 0) > LARGEST) {
+    state.trouble.value = "The files are larger than 60 MB together: ask `roadproof evaluate` on the command line.";
+    return;
+  }
   for (const file of list) files.push({ name: file.name, content: await file.text() });
   if (!files.length) return;
   const spec = files.find((x) => x.name.endsWith(".spec"));

@@ -22,7 +22,7 @@ export function Bar() {
         </select>
       </label>
       <div class="asked">
-        <${Editor} where="formula" label="Question" line=${true} text=${kept.formula.value} hint="a formula, or a scenario's number"
+        <${Editor} where="formula" label="Question" line=${true} read=${() => kept.formula.value} hint="a formula, or a scenario's number"
           onChange=${actions.askAnother} onEnter=${() => actions.find()} />
       </div>
       <button title="l: the address holds everything" onClick=${() => actions.copy(location.href)}>Copy link</button>

@@ -176,10 +176,11 @@ function oneLine(onEnter) {
 }
 
 /**
- * An editor of `text`, a value; `onChange` hears of edits. `where` names it in mistakes and marks: definitions,
- * formula, watch 1. `line`: one line only, with `onEnter`.
+ * An editor of what `read` gives at any time; `onChange` hears of edits and keeps them at once. `where` names it in mistakes and marks: definitions,
+ * formula, watch 1. `line`: one line only, with `onEnter`. `takesFocus`: whether it has the focus at first.
  */
-export function Editor({ text, onChange, where, label, line = false, onEnter = () => {}, hint = "" }) {
+export function Editor({ read, onChange, where, label, line = false, onEnter = () => {}, hint = "", takesFocus = false }) {
+  const text = read();
   const place = useRef(null);
   const view = useRef(null);
   const hear = useRef(onChange);
@@ -207,11 +208,14 @@ export function Editor({ text, onChange, where, label, line = false, onEnter = (
       }),
     ];
     view.current = new cm.EditorView({ doc: text, extensions, parent: place.current });
+    if (takesFocus) view.current.focus();
     return () => view.current.destroy();
   }, []);
   useEffect(() => {
+    // What is kept now, not when this was rendered: the user may have typed on.
     const shown = view.current.state.doc.toString();
-    if (shown !== text) view.current.dispatch({ changes: { from: 0, to: shown.length, insert: text } });
+    const now = read();
+    if (shown !== now) view.current.dispatch({ changes: { from: 0, to: shown.length, insert: now } });
   }, [text]);
   const mistakes = state.mistakes.value;
   useEffect(() => {

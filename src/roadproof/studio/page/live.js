@@ -6,10 +6,10 @@ import { ask } from "studio/server";
 import * as state from "studio/state";
 
 const PATIENCE = 25; // ms after the last key
-const LONGER = 700; // the same, where a recording is read again
+const LONGER = 500; // the same, for what nobody waits for, and where a recording is read again
 
 /** Ask `kind` whenever `question` changes; `take` gets the latest answer, `fail` why there is none. */
-function follow(kind, question, take, fail) {
+function follow(kind, question, take, fail, patience = PATIENCE) {
   let wanted = null;
   let busy = false;
   let timer = 0;
@@ -30,10 +30,12 @@ function follow(kind, question, take, fail) {
     busy = false;
     next();
   };
+  let isFirst = true;
   effect(() => {
     wanted = question();
     clearTimeout(timer);
-    timer = setTimeout(next, PATIENCE);
+    timer = setTimeout(next, isFirst ? 0 : patience);
+    isFirst = false;
   });
 }
 
@@ -58,6 +60,7 @@ export function followEdits() {
     () => ({ draft: state.draft.value, set: "edit" }),
     (answer) => (state.names.value = answer),
     () => {},
+    LONGER,
   );
   let timer = 0;
   let last = JSON.stringify(state.question.peek());

@@ -18,7 +18,7 @@ export function Side() {
             : html`<button title="Compare with the set below again" onClick=${actions.forgetBefore}>Forget before</button>`}
         </span>
       </h2>
-      <${Editor} where="definitions" label="Definitions" text=${kept.text.value}
+      <${Editor} where="definitions" label="Definitions" read=${() => kept.text.value}
         hint=${"def danger(a, b: vehicle) \"what replaces the definition of the set\"\n  := …"}
         onChange=${actions.rewrite} />
       ${wrong.length
@@ -30,7 +30,7 @@ export function Side() {
     <${Readings} />
     <section class="pane watch" aria-label="Watch">
       <h2>Watch <span class="right"><button onClick=${addWatch}>Add</button></span></h2>
-      ${kept.watches.value.map((text, k) => html`<${WatchLine} key=${k} ...${{ text, k }} />`)}
+      ${kept.watches.value.map((_, k) => html`<${WatchLine} key=${k} ...${{ k }} />`)}
       ${kept.watches.value.length ? null : html`<p class="faint">Any formula typed here gets a strip on the drive that is shown.</p>`}
     </section>
     <${Recording} />
@@ -56,9 +56,11 @@ function Readings() {
     else delete next[name];
     kept.value = next;
   };
+  const wrong = state.mistakes.value.find((x) => x.where === "parameters");
   const changed = [...Object.entries(options.value), ...Object.entries(params.value)];
   return html`<details class="pane readings">
     <summary>Parameters and readings <small>${changed.map(([name, value]) => `${name} = ${value}`).join(", ")}</small></summary>
+    ${wrong ? html`<p class="wrong">${wrong.message}</p>` : null}
     <dl>
       ${known.parameters.map(
         (x) => html`<dt title=${x.doc}>${x.name}</dt>
@@ -103,7 +105,8 @@ function Recording() {
   </section>`;
 }
 
-function WatchLine({ text, k }) {
+function WatchLine({ k }) {
+  const { kept } = state;
   const wrong = state.mistakes.value.find((x) => x.where === `watch ${k + 1}`);
   const change = (value) => {
     state.kept.watches.value = state.kept.watches.value.map((x, n) => (n === k ? value : x));
@@ -112,7 +115,7 @@ function WatchLine({ text, k }) {
     state.kept.watches.value = state.kept.watches.value.filter((_, n) => n !== k);
   };
   return html`<div class="watched">
-    <${Editor} where=${`watch ${k + 1}`} label=${`Watched formula ${k + 1}`} line=${true} text=${text} onChange=${change} hint="v_lon(SV) > 100 km/h" />
+    <${Editor} where=${`watch ${k + 1}`} label=${`Watched formula ${k + 1}`} line=${true} read=${() => kept.watches.value[k] ?? ""} onChange=${change} hint="v_lon(SV) > 100 km/h" takesFocus=${(kept.watches.value[k] ?? "") === ""} />
     <button aria-label="Remove" onClick=${remove}>×</button>
     ${wrong ? html`<p class="wrong">${wrong.message}</p>` : null}
   </div>`;
@@ -120,7 +123,6 @@ function WatchLine({ text, k }) {
 
 export function addWatch() {
   state.kept.watches.value = [...state.kept.watches.value, ""];
-  requestAnimationFrame(() => document.querySelector(".watched:last-of-type .cm-content")?.focus());
 }
 
 function downloadsOf(answer) {

@@ -1,0 +1,104 @@
+"""Definitions while they are written: what a draft stands for, and everything that is wrong with it."""
+
+import pytest
+
+import roadproof as rp
+from roadproof.api.drafting import Draft, Mistake, mistakes, place_in, sources_of
+from roadproof.errors import InputError, Position
+from roadproof.logic.formula import Named
+
+LOOSE = """\
+# what replaces, what is new, and what is no definition
+def danger(a, b: vehicle) "loose" := G[0, minDanger] far(a, b)
+param far_away = 30 m
+def far(a, b: vehicle) := s(b) - s(a) <= far_away
+"""
+
+
+def test_a_draft_is_a_set_on_top_of_another_and_means_what_its_file_means() -> None:
+    home = Draft("ext", LOOSE).definitions()
+    assert home.specification.set_name == "edit"
+    assert isinstance(home.read("danger(SV,POV)").formula, Named)
+    assert "far_away" in home.library.parameters
+    file = Draft("ext", LOOSE).file()
+    again = rp.load("edit", specs=[file])
+    for name in ("danger(SV,POV)", "scenario_1(SV,POV,L)", "scenario_8(SV,POV,L)"):
+        assert again.read(name).formula == home.read(name).formula
+    below = rp.load("ext", specs=[file]).read("danger(SV,POV)").formula
+    assert below == rp.load("ext").read("danger(SV,POV)").formula
+
+
+def test_an_empty_draft_is_the_set_below() -> None:
+    home = Draft("extA", "  # nothing\n").definitions()
+    assert home.read("4").formula == rp.load("extA").read("4").formula
+
+
+def test_what_was_before_is_a_set_of_its_own() -> None:
+    """What is new is told apart by set too."""
+    before = "def far(a: vehicle) := s(a) > 1 m\ndef danger(a, b: vehicle) := far(a)\n"
+    after = "def far(a: vehicle) := s(a) > 2 m\ndef danger(a, b: vehicle) := far(a)\n"
+    home = Draft("base", after, before).definitions("before", "edit")
+    was = home.read("danger(SV,POV)").formula
+    now = Draft("base", after, before).definitions().read("danger(SV,POV)").formula
+    alone = Draft("base", before).definitions().read("danger(SV,POV)").formula
+    assert was == alone != now
+
+
+def test_every_mistake_is_told_with_its_place() -> None:
+    text = (
+        "def danger(a, b: vehicle) := G[0, minDanger (far(a, b)\n"
+        "def near(a, b: vehicle) := s(b) - q(a) <= 100 m\n"
+        "def fine(a: vehicle) := true\n"
+        "def sums(a: vehicle) := s(a) + v_lon(a) > 3 m\n"
+    )
+    found = mistakes(Draft("base", text), {"formula": "near(SV, POV) and (", "watch 1": "fine(SV, POV)"})
+    places = [(x.where, x.position) for x in found]
+    assert places == [
+        ("definitions", Position(1, 55)),
+        ("definitions", Position(2, 35)),
+        ("definitions", Position(4, 25)),
+        ("formula", Position(1, 20)),
+        ("watch 1", Position(1, 1)),
+    ]
+    assert "'q'" in found[1].message
+    assert "cannot be added" in found[2].message
+
+
+@pytest.mark.parametrize(
+    ("draft", "where", "words"),
+    [
+        (Draft("nothing"), "definitions", "there is no spec set 'nothing'"),
+        (Draft("base", "def danger(a: vehicle) := true\n" * 2), "definitions", "given twice"),
+        (Draft("base", "bla bla"), "definitions", "cannot stand here"),
+        (Draft("base", options={"speed": "mad"}), "definitions", "speed=mad"),
+        (Draft("base", params={"rho": "-1"}), "parameters", "rho"),
+        (Draft("base", "def a(b: vehicle) := c(b)\ndef c(b: vehicle) := a(b)"), "definitions", "by itself"),
+    ],
+)
+def test_mistakes_of_other_kinds(draft: Draft, where: str, words: str) -> None:
+    found = mistakes(draft, {})
+    assert found
+    assert all(x.where == where for x in found)
+    assert any(words in x.message for x in found)
+
+
+def test_a_draft_without_mistakes_has_none() -> None:
+    assert mistakes(Draft("base", LOOSE), {"formula": "scenario_1(SV,POV,L)"}) == []
+
+
+def test_a_mistake_in_a_draft_is_raised_where_it_is_asked() -> None:
+    with pytest.raises(InputError, match="no spec set"):
+        Draft("nothing").definitions()
+
+
+def test_places_in_the_set_count_as_they_stand_in_the_draft() -> None:
+    sources = {x.name: x.text for x in sources_of("base", LOOSE, None)}
+    written = LOOSE.splitlines()
+    for name, text in sources.items():
+        for row, line in enumerate(text.splitlines(), 1):
+            column = line.find("def ")
+            place = place_in(name, (row, column + 1))
+            if column >= 0 and place is not None:
+                assert written[place[1][0] - 1][place[1][1] - 1 :].startswith("def ")
+    assert place_in("iso34502.spec", (3, 1)) is None
+    assert isinstance(mistakes(Draft("base", "def"), {})[0], Mistake)

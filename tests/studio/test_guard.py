@@ -1,0 +1,233 @@
+"""Who may ask the studio: every attack of the list is tried on a server that runs."""
+
+import json
+import re
+import socket
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("uvicorn", reason="the extra 'studio' is not installed")
+
+from roadproof.studio.pages import served
+from studio.serving import Served, question, serving
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[Served]:
+    with serving() as made:
+        yield made
+
+
+def test_the_page_of_this_start_is_answered(server: Served) -> None:
+    assert server.get("/")[0] == 200
+    assert server.post("/start", {})[0] == 200
+    assert server.get("/", host=f"localhost:{server.port}")[0] == 200
+
+
+@pytest.mark.parametrize(
+    "host",
+    [
+        "evil.example",
+        "127.0.0.1",
+        "127.0.0.1:1",
+        "localhost.evil.example:{port}",
+        "127.0.0.1:{port}.evil.example",
+    ],
+)
+def test_a_name_that_was_made_to_point_here_is_refused(server: Served, host: str) -> None:
+    """DNS rebinding: the browser sends the other name as Host, with an origin that fits."""
+    name = host.format(port=server.port)
+    assert server.get("/", host=name)[0] == 403
+    assert server.post("/start", {}, host=name, origin=f"http://{name}")[0] == 403
+
+
+def test_a_request_without_host_or_with_two_is_refused(server: Served) -> None:
+    assert server.get("/", host=None)[0] in (400, 403)
+    twice = {**server.headers(), "Host": "evil.example"}
+    assert server.send("GET / HTTP/1.1", twice)[0] in (400, 403)
+
+
+@pytest.mark.parametrize(
+    "origin", ["http://evil.example", "http://127.0.0.1:1", "null", "https://127.0.0.1:{port}"]
+)
+def test_another_origin_is_refused(server: Served, origin: str) -> None:
+    name = origin.format(port=server.port)
+    assert server.post("/start", {}, origin=name)[0] == 403
+    assert server.get("/", origin=name)[0] == 403
+
+
+def test_a_question_without_an_origin_is_refused(server: Served) -> None:
+    assert server.post("/start", {}, origin=None)[0] == 403
+
+
+def test_what_another_site_has_the_browser_fetch_is_refused(server: Served) -> None:
+    assert server.get("/", sec_fetch_site="cross-site")[0] == 403
+    assert server.get("/page/vendor/view.js", sec_fetch_site="same-site")[0] == 403
+
+
+@pytest.mark.parametrize("token", [None, "", "the-toke", "the-token2", "the-tökén"])
+def test_a_wrong_token_is_refused(server: Served, token: str | None) -> None:
+    status, _, body = server.post("/start", {}, x_roadproof_token=token)
+    assert status == 401
+    assert b"the-token" not in body
+
+
+def test_nothing_that_is_served_without_the_token_holds_it(server: Served) -> None:
+    for path in ("/", *(f"/page/{name}" for name in served())):
+        assert b"the-token" not in server.get(path)[2]
+
+
+@pytest.mark.parametrize(
+    "kind", [None, "text/plain", "application/x-www-form-urlencoded", "multipart/form-data"]
+)
+def test_forms_and_simple_requests_are_refused(server: Served, kind: str | None) -> None:
+    """What a page of another site may send without asking first."""
+    assert server.post("/start", {}, content_type=kind)[0] == 415
+
+
+@pytest.mark.parametrize("method", ["PUT", "DELETE", "OPTIONS", "TRACE", "PATCH"])
+def test_other_methods_are_refused(server: Served, method: str) -> None:
+    assert server.send(f"{method} /ask HTTP/1.1", server.headers())[0] == 405
+
+
+def test_questions_are_not_asked_with_get(server: Served) -> None:
+    assert server.get("/ask?kind=find")[0] == 405
+    assert server.get("/start")[0] == 405
+
+
+def test_a_body_that_says_its_size_is_refused_where_it_is_too_large(server: Served) -> None:
+    """At once, before it is sent."""
+    assert server.send("POST /ask HTTP/1.1", server.headers(content_length="100001"))[0] == 413
+
+
+def test_a_chunked_body_is_counted_while_it_is_read(server: Served) -> None:
+    """It says no size; the server ends reading long before the sender would be done."""
+    headers = server.headers(transfer_encoding="chunked")
+    lines = ["POST /ask HTTP/1.1", *(f"{name}: {value}" for name, value in headers.items()), "", ""]
+    chunk = b"2710\r\n" + b" " * 10_000 + b"\r\n"
+    with socket.create_connection(("127.0.0.1", server.port), timeout=30) as connection:
+        connection.sendall("\r\n".join(lines).encode())
+        sent = 0
+        try:
+            for _ in range(10_000):
+                connection.sendall(chunk)
+                sent += 1
+        except OSError:
+            pass
+        try:
+            answer = connection.recv(65536)
+        except ConnectionError:
+            answer = b""
+    assert sent < 10_000
+    assert not answer or answer.split()[1] == b"413"
+
+
+def test_a_small_chunked_body_is_read(server: Served) -> None:
+    headers = server.headers(transfer_encoding="chunked")
+    status, _, body = server.send("POST /ask HTTP/1.1", headers, b"2\r\n{}\r\n0\r\n\r\n")
+    assert (status, body) == (400, b'{"error": "there is no question of that kind"}')
+
+
+@pytest.mark.parametrize("body", [b"", b"{", b"[]", b'"text"', b"[" * 50_000, b"\xff\xfe"])
+def test_what_is_no_json_object_is_refused(server: Served, body: bytes) -> None:
+    headers = server.headers(content_length=str(len(body)))
+    assert server.send("POST /ask HTTP/1.1", headers, body)[0] == 400
+
+
+@pytest.mark.parametrize("kind", ["import", "__class__", "", None, 3, ["find"], {"find": 1}])
+def test_only_questions_of_the_list_are_asked(server: Served, kind: object) -> None:
+    assert server.post("/ask", {"kind": kind})[0] == 400
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        *("/page/../server.py", "/page/..%2fserver.py", "/page/%2e%2e/%2e%2e/errors.py", "/page//etc/passwd"),
+        *("/page/index.html", "/../../etc/passwd", "/page/studio/app.js%00.css", "/page/studio/app.js/"),
+        *("/studio/server.py", "/.git/config", "/page/", "/page/vendor/package.json"),
+    ],
+)
+def test_no_path_leads_to_a_file(server: Served, path: str) -> None:
+    assert server.get(path)[0] == 404
+
+
+def test_what_the_browser_may_do_is_said_with_every_answer(server: Served) -> None:
+    status, heading, body = server.get("/")
+    policy = next(line for line in heading.splitlines() if line.startswith("content-security-policy:"))
+    assert status == 200
+    assert "default-src 'none'" in policy
+    assert "unsafe" not in policy
+    assert "*" not in policy
+    nonces = set(re.findall(r'nonce="([^"]+)"', body.decode()))
+    assert len(nonces) == 1
+    assert f"'nonce-{nonces.pop().lower()}'" in policy
+    for path in ("/page/studio/app.js", "/nothing"):
+        assert "content-security-policy: " in server.get(path)[1]
+    for answer in (
+        server.get("/"),
+        server.get("/page/viewer.css"),
+        server.post("/start", {}),
+        server.get("/ask"),
+    ):
+        assert "x-content-type-options: nosniff" in answer[1]
+        assert "access-control-allow" not in answer[1]
+
+
+def test_two_pages_have_different_nonces(server: Served) -> None:
+    first, second = (re.findall(r'nonce="([^"]+)"', server.get("/")[2].decode())[0] for _ in range(2))
+    assert first != second
+
+
+def test_own_scripts_make_no_code_of_texts() -> None:
+    """No eval, no function made of text, no HTML made of text; the policy forbids the first two anyway."""
+    wanted = re.compile(r"\beval\(|new Function|innerHTML|outerHTML|insertAdjacentHTML|document\.write")
+    own = {name: x.text for name, x in served().items() if not name.startswith("vendor/")}
+    assert len(own) > 10
+    assert [name for name, text in own.items() if wanted.search(text)] == []
+    vendored = {name: x.text for name, x in served().items() if name.startswith("vendor/")}
+    assert [n for n, text in vendored.items() if re.search(r"\beval\(|new Function\(", text)] == []
+
+
+def test_only_the_loopback_interface_listens(server: Served) -> None:
+    """127.0.0.1 alone: every other address of this machine refuses."""
+    others = {x[4][0] for x in socket.getaddrinfo(socket.gethostname(), None)} - {"127.0.0.1", "::1"}
+    for address in others:
+        with pytest.raises(OSError, match=r".*"):
+            socket.create_connection((address, server.port), timeout=1)
+    assert listening_addresses(server.port) == {"127.0.0.1"}
+
+
+def listening_addresses(port: int) -> set[str]:
+    """Where something listens on a port, as Linux tells it."""
+    with open("/proc/net/tcp", encoding="ascii") as file:
+        rows = [line.split() for line in file.readlines()[1:]]
+    here = [row[1].split(":") for row in rows if row[3] == "0A"]
+    return {
+        ".".join(str(x) for x in reversed(bytes.fromhex(address)))
+        for address, at in here
+        if int(at, 16) == port
+    }
+
+
+def test_a_question_waits_where_no_worker_is_there_and_the_queue_says_when_it_is_full(server: Served) -> None:
+    """Nine waiters on a server whose queue takes eight."""
+    body = json.dumps({"kind": "find", **question()}).encode()
+    head = "\r\n".join(
+        [
+            "POST /ask HTTP/1.1",
+            *(f"{k}: {v}" for k, v in server.headers(content_length=str(len(body))).items()),
+            "",
+            "",
+        ]
+    )
+    waiting = [socket.create_connection(("127.0.0.1", server.port), timeout=30) for _ in range(8)]
+    for connection in waiting:
+        connection.sendall(head.encode() + body)
+        answer = b""
+        while b"waiting" not in answer:
+            answer += connection.recv(4096)
+    _, _, told = server.post("/ask", {"kind": "find", **question()})
+    assert b"the queue is full" in told
+    for connection in waiting:
+        connection.close()
