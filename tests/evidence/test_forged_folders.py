@@ -43,6 +43,7 @@ EQUIVALENT = {
         "formulas: twice": "a formula that no entry points to",
         "times: turned around": "the order of a list of names",
         "instances: turned around": "the order of a list of instances",
+        "tableau": "the proof for Coq, which a solver is not asked about; see tests/kernel/test_refused.py",
     },
     "C4-scenario-04-base-drive.json": {
         "scenario: removed": "it names none",

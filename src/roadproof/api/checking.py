@@ -1,20 +1,22 @@
 """Evidence checked again, without the programs that made it."""
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from roadproof.api import kernel as kernels
 from roadproof.api.answer import Row
 from roadproof.api.settings import one_of, work_of
 from roadproof.effort import Effort
 from roadproof.evidence.checking import Checker
-from roadproof.evidence.finding import Acceptance, Finding, exit_code, summary
+from roadproof.evidence.finding import Acceptance, Finding, Ruled, exit_code, summary
 from roadproof.evidence.folder import conclude, survey
 from roadproof.evidence.heading import heading
+from roadproof.kernel import coq
 from roadproof.proving.properties import find_label
 from roadproof.solve.smt import Satisfiability as SolverAnswer
 from roadproof.solve.smt import ask
@@ -29,19 +31,22 @@ if TYPE_CHECKING:
 
 SCHEMA = "roadproof/check/2"
 Solver: TypeAlias = Literal["z3", "cvc5"]
+Kernel: TypeAlias = Literal["coq"]
 
 
 @dataclass(frozen=True, repr=False)
 class Checked:
     """A finding for each claim, with the definitions of ``library``.
 
-    ``specs``: specification files that lie beside the evidence, and were read on top of it.
+    ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
+    evidence, and were read on top of it. ``kernel``: what Coq needed and stands on, where it was asked.
     """
 
     findings: tuple[Finding, ...]
     solver: str
     library: Library
     specs: tuple[Path, ...] = ()
+    kernel: kernels.Answered | None = None
 
     @property
     def accepted(self) -> bool:
@@ -59,8 +64,10 @@ class Checked:
 
     def as_data(self) -> dict[str, Any]:
         """As the plain data of ``--json``."""
-        entries = [{**asdict(x), "accepted": x.outcome is Acceptance.ACCEPTED} for x in self.findings]
-        return {**heading(SCHEMA, self.library), "solver": self.solver, "findings": entries}
+        data: dict[str, Any] = {**heading(SCHEMA, self.library), "solver": self.solver}
+        if self.kernel is not None:
+            data["kernel"] = self.kernel.as_data()
+        return {**data, "findings": [_entry(x) for x in self.findings]}
 
     def rows(self) -> list[Row]:
         """A row for each claim."""
@@ -92,7 +99,16 @@ class Checked:
         lines += map(str, self.findings)
         words = called_by(self.library.select(), (x.claim for x in self.findings))
         lines += [f"  {line}" for line in legend(words)]
-        return "\n".join([*lines, summary(self.findings, self.solver)])
+        kernel = [] if self.kernel is None else [str(self.kernel)]
+        return "\n".join([*lines, summary(self.findings, self.solver), *kernel])
+
+
+def _entry(finding: Finding) -> dict[str, Any]:
+    """A finding as plain data; of the kernel only where it was asked."""
+    data = {**asdict(finding), "accepted": finding.outcome is Acceptance.ACCEPTED}
+    if not finding.kernel:
+        del data["kernel"]
+    return data
 
 
 def check(
@@ -103,35 +119,74 @@ def check(
     timeout: float | None = None,
     jobs: int | None = None,
     progress: Progress | None = None,
+    kernel: Kernel | None = None,
 ) -> Checked:
     """Check certificates, drive files and folders of them, as ``roadproof check`` does.
 
-    ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. Raises
-    ``InputError`` for a path that holds nothing, ``MissingSolverError``.
+    ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
+    certificates are put to Coq instead, and accepted by its word alone. Raises ``InputError`` for a path
+    that holds nothing, ``MissingSolverError``.
     """
     one_of("solver", solver, Solver)
-    ask("(set-logic QF_UF)(check-sat)", solver)  # a solver that is missing is said once, before any work
+    if kernel is None:
+        ask("(set-logic QF_UF)(check-sat)", solver)  # a solver that is missing is said once, before any work
+    else:
+        one_of("kernel", kernel, Kernel)
+        coq.find()
     named = tuple(Path(x) for x in specs)
     library = load_library(named)
     surveyed = survey([Path(x) for x in paths], named, find_label)
     given = list(surveyed.files.items())
+    answered = None if kernel is None else kernels.put(_asked(given), jobs, progress)
+    names = kernels.names_of(path for path, _ in given)
+    said = {} if answered is None else answered.rulings
+    work = [
+        _Job(path, beside, kernels.ruled(said[names[path]]) if names[path] in said else None)
+        for path, beside in given
+    ]
     judge = partial(_examine, solver, work_of(effort, timeout))
-    answers = pool.in_order(pool.work(judge, given, jobs, _doubt, progress, "files"))
+    answers = pool.in_order(pool.work(judge, work, jobs, _doubt, progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)
-    return Checked(tuple(conclude(surveyed, found)), solver, library, beside)
+    return Checked(tuple(conclude(surveyed, found)), kernel or solver, library, beside, answered)
 
 
-def _doubt(job: tuple[Path, tuple[Path, ...]], reason: str) -> Finding:
+def write_sources(
+    *paths: str | Path, folder: str | Path, specs: Iterable[str | Path] = (), jobs: int | None = None
+) -> dict[Path, str]:
+    """Write what would be put to Coq for each certificate; why there is no file for those without one.
+
+    Raises ``InputError`` for a path that holds nothing, and where it cannot be written.
+    """
+    given = list(survey([Path(x) for x in paths], tuple(Path(x) for x in specs), find_label).files.items())
+    reasons = kernels.write(_asked(given), Path(folder), jobs)
+    by_name = {name: path for path, name in kernels.names_of(path for path, _ in given).items()}
+    return {by_name[name]: reason for name, reason in reasons.items()}
+
+
+def _asked(given: Sequence[tuple[Path, tuple[Path, ...]]]) -> list[kernels.Asked]:
+    names = kernels.names_of(path for path, _ in given)
+    return [kernels.Asked(names[path], path, specs) for path, specs in given]
+
+
+@dataclass(frozen=True)
+class _Job:
+    """A file with the specification files that it is read with, and what Coq said of it."""
+
+    path: Path
+    specs: tuple[Path, ...]
+    ruled: Ruled | None
+
+
+def _doubt(job: _Job, reason: str) -> Finding:
     """The finding on a file that nothing is known of."""
-    return Finding(str(job[0]), "", Acceptance.UNDECIDED, reason)
+    return Finding(str(job.path), "", Acceptance.UNDECIDED, reason)
 
 
-def _examine(solver: str, effort: Effort, job: tuple[Path, tuple[Path, ...]]) -> Finding:
+def _examine(solver: str, effort: Effort, job: _Job) -> Finding:
     """Check one file by what its schema says that it is."""
-    path, specs = job
 
     def answer(script: str) -> SolverAnswer:
         return ask(script, solver, effort.meter())
 
-    return Checker(load_library(specs), answer, find_label).check(path)
+    return Checker(load_library(job.specs), answer, find_label, job.ruled).check(job.path)

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Literal, Self, TypeAlias
 from roadproof.analysis import claims
 from roadproof.analysis.claims import Answered, Claims, name_of
 from roadproof.analysis.proof_folder import former_claims, write_claims
+from roadproof.api import kernel as kernels
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
 from roadproof.api.settings import RoadLike, Vehicles, models_of, one_of, setting, work_of
@@ -17,7 +18,8 @@ from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_if_any
-from roadproof.hands import Jobs
+from roadproof.hands import Jobs, hands_of
+from roadproof.kernel import coq
 from roadproof.proving.properties import OWN, Task, choose, template_properties
 from roadproof.report import claims as claims_text
 from roadproof.spec.elaborate import read_claim
@@ -37,8 +39,9 @@ _PROPERTY = re.compile(r"[A-Z]\d+")
 
 @dataclass(frozen=True, repr=False)
 class Proofs(Studied[Claims, Answered]):
-    """Claims, settled."""
+    """Claims, settled. ``kernel``: what Coq says of those that are proved, by claim, where it was asked."""
 
+    kernel: kernels.Answered | None = None
     pieces: ClassVar[str] = "claims"
 
     @classmethod
@@ -79,7 +82,34 @@ class Proofs(Studied[Claims, Answered]):
 
     @property
     def exit_code(self) -> ExitCode:
-        return exit_code((x.verdict, x.expected) for x in self.answers)
+        found = exit_code((x.verdict, x.expected) for x in self.answers)
+        return found if self.kernel is None else max(found, self.kernel.exit_code)
+
+    def put_to_kernel(self, jobs: Jobs = None, progress: Progress | None = None) -> Self:
+        """The same, with what Coq says of each proof. Raises ``MissingSolverError`` without a coqc."""
+        proved = [(x, x.settled.result.certificate) for x in self.answers]
+        library = self.study.library
+        asked = {name_of(x.task): y for x, y in proved if y is not None}
+        names = {f"claim_{number}": name for number, name in enumerate(asked, 1)}
+        found = kernels.put(
+            [kernels.Asked(x, asked[y], library) for x, y in names.items()],
+            hands_of(jobs).processes,
+            progress,
+        )
+        rulings = {names[x]: ruling for x, ruling in found.rulings.items()}
+        return replace(self, kernel=replace(found, rulings=rulings))
+
+    def kernel_text(self) -> str:
+        """What Coq says of each proof in a line, and what it stands on."""
+        if self.kernel is None:
+            return ""
+        lines: list[str] = []
+        for x in self.answers:
+            ruling = self.kernel.rulings.get(name_of(x.task))
+            if ruling is not None:
+                claim = " ".join(x.task.claim.split())
+                lines.append(f"kernel: {ruling.told}  {claim}" + f": {ruling.reason}" * bool(ruling.reason))
+        return "\n".join([*lines, str(self.kernel)])
 
     def rows(self) -> list[Row]:
         return [
@@ -99,7 +129,14 @@ class Proofs(Studied[Claims, Answered]):
     def as_data(self) -> dict[str, Any]:
         files = {name: x["claim"]["evidence"] for name, x in self.found.records.items()}
         named = {name: file for name, file in files.items() if isinstance(file, str)}
-        return claims.as_data(self.answers, self.study.library, named)
+        data = claims.as_data(self.answers, self.study.library, named)
+        if self.kernel is None:
+            return data
+        for x, entry in zip(self.answers, data["verdicts"], strict=True):
+            ruling = self.kernel.rulings.get(name_of(x.task))
+            if ruling is not None:
+                entry["kernel"] = ruling.as_data()
+        return {**data, "kernel": self.kernel.as_data()}
 
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
         return {**self.study.question.heading, "claims": [x["claim"] for x in records.values()]}
@@ -145,6 +182,7 @@ def prove(
     jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
+    kernel: Literal["coq"] | None = None,
     stage: Listener | None = None,
 ) -> Proofs:
     """Prove or refute claims for all time, on all roads, for all parameter values within their bounds.
@@ -160,7 +198,8 @@ def prove(
     ``expect``: the verdict that is expected of your own claims; ``drive``: whether one is looked for that
     refutes. ``effort``: units of work for a claim, each about a second of a solver; ``timeout``: seconds
     after which the clock ends it. ``out``: a folder in which answers are kept as they come. ``using``: one
-    spec set. ``stage`` is told of each stage that begins (``stages.Stage``), and ends all by raising.
+    spec set. ``kernel`` "coq": each proof is put to Coq, too. ``stage`` is told of each stage that begins
+    (``stages.Stage``), and ends all by raising.
     Raises ``TextError``, ``UsageError``, ``InputError``.
 
     >>> prove("danger(SV,POV) -> danger(SV,POV)", jobs=1).verdict
@@ -180,8 +219,21 @@ def prove(
         if not asked.are_own:
             raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
         asked = within_limits(asked, home, engine, road, horizon, dt, vehicles)
+    if kernel is not None:
+        ask_kernel(kernel, engine)
     with listening(stage):
-        return Proofs.asked(asked, out, jobs, progress, say)
+        found = Proofs.asked(asked, out, jobs, progress, say)
+    return found if kernel is None else found.put_to_kernel(jobs, progress)
+
+
+def ask_kernel(kernel: str, engine: str) -> None:
+    """Whether proofs can be put to a kernel. Raises ``UsageError``, ``MissingSolverError``."""
+    one_of("kernel", kernel, Literal["coq"])
+    if engine != "dense":
+        raise UsageError(
+            f"engine={engine!r} makes no certificates that could be put to Coq: ask without kernel"
+        )
+    coq.find()
 
 
 @dataclass(frozen=True)

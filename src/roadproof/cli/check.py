@@ -6,6 +6,8 @@ from pathlib import Path
 from roadproof.cli.numbers import add_effort_options, add_working_options
 from roadproof.cli.options import add_json_option, add_spec_option, write_json
 from roadproof.cli.progress import Counter
+from roadproof.errors import UsageError
+from roadproof.verdict import ExitCode
 
 SUMMARY = "check certificates and drive files again, without the programs that made them"
 
@@ -14,6 +16,8 @@ examples:
   roadproof check proofs/                          every claim of a folder, with its index
   roadproof check proofs/ --solver cvc5            ask another solver
   roadproof check drives/scenario-04-base.json     judge a drive again, exactly
+  roadproof check proofs/ --kernel coq             certificates are put to Coq, and to no solver
+  roadproof check proofs/ --kernel coq --write v/  what would be put to Coq, to be read
   roadproof check mine/ --spec mine.spec           claims that were made with definitions of yours
 
 A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
@@ -32,6 +36,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
     parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who is asked (default: z3)")
+    parser.add_argument(
+        "--kernel",
+        choices=("coq",),
+        help="put certificates to the kernel of Coq, with coqc, in place of a solver",
+    )
+    parser.add_argument(
+        "--write", type=Path, metavar="DIR", help="with --kernel: only write the files for Coq"
+    )
     add_effort_options(parser, each="a query")
     add_spec_option(parser, "a specification file that the claims were made with")
     add_working_options(parser)
@@ -41,10 +53,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.api.checking import check
 
+    if args.kernel is not None and args.solver != "z3":
+        raise UsageError(f"--kernel {args.kernel} asks no solver: ask without --solver, or without --kernel")
+    if args.write is not None:
+        return _write(args)
     more = {"effort": args.effort, "timeout": args.timeout, "jobs": args.jobs, "progress": Counter()}
-    checked = check(*args.paths, solver=args.solver, specs=args.specs, **more)
+    checked = check(*args.paths, solver=args.solver, specs=args.specs, kernel=args.kernel, **more)
     if args.json != "-":
         print(checked)
     if args.json:
         write_json(checked.as_data(), args.json)
     return checked.exit_code
+
+
+def _write(args: argparse.Namespace) -> int:
+    from roadproof.api.checking import write_sources
+
+    if args.kernel is None or args.json:
+        raise UsageError(
+            "--write DIR writes files for Coq and checks nothing: ask with --kernel, without --json"
+        )
+    reasons = write_sources(*args.paths, folder=args.write, specs=args.specs, jobs=args.jobs)
+    for path, reason in reasons.items():
+        print(f"no file for {path}: {reason}")
+    print(
+        f"written to {args.write}; there: coqc -Q Roadproof Roadproof FILE.v, after the theories in Roadproof"
+    )
+    return ExitCode.UNKNOWN if reasons else ExitCode.AS_EXPECTED

@@ -37,6 +37,7 @@ examples:
   roadproof prove --claims mine.txt --json -          one claim a paragraph
   roadproof prove 'danger(SV,POV) -> G[0, 0.6 s] rssViolation(SV,POV)' --param minDanger=0.6
   roadproof prove 1-8 --declared --out declared       at the declared values of all parameters
+  roadproof prove 4 --kernel coq                      each proof is put to the kernel of Coq, too
   roadproof prove --assume motion 'G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)'
   roadproof prove 'dangerArises(SV,POV) -> F aheadOf(SV,POV)' --engine smt --horizon 3 --dt 3/5
 
@@ -97,6 +98,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--road", metavar="R", help="with smt, milp: a reference road, or a .toml or .xodr file"
     )
+    parser.add_argument(
+        "--kernel", choices=("coq",), help="put each proof to the kernel of Coq, too, with coqc"
+    )
     add_working_options(parser)
     parser.add_argument(
         "--no-drive", action="store_true", help="do not look for a drive that refutes a claim"
@@ -108,10 +112,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.analysis.claims import name_of
-    from roadproof.api.proofs import Proofs
+    from roadproof.api.proofs import Proofs, ask_kernel
     from roadproof.report.claims import details, line
 
     asked = _asked(args)
+    if args.kernel is not None:
+        ask_kernel(args.kernel, args.engine)
 
     def show(name: str, answer: "Answered") -> None:
         clear()
@@ -124,6 +130,10 @@ def run(args: argparse.Namespace) -> int:
         found = Proofs.asked(asked, args.out, args.jobs, Counter(), warn, each)
     if args.json != "-" and not asked.are_own:
         print(found)
+    if args.kernel is not None:
+        found = found.put_to_kernel(args.jobs, Counter())
+        if args.json != "-":
+            print(found.kernel_text())
     if args.json:
         write_json(found.as_data(), args.json)
     return found.exit_code

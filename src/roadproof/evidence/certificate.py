@@ -8,7 +8,7 @@ solver that is passed in.
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,9 @@ from roadproof.spec.library import Library, Specification, unknown
 from roadproof.spec.motion import NOTHING, SCHEMAS, Assumed, Axiom, assumption, value_texts, values_said
 from roadproof.spec.query import Query
 
-SCHEMA = "roadproof/certificate/1"
+SCHEMA = "roadproof/certificate/2"
+WITHOUT_TABLEAU = "roadproof/certificate/1"  # as files were written before, which are read too
+SCHEMAS_READ = (SCHEMA, WITHOUT_TABLEAU)
 VIEW = "dense"
 
 
@@ -36,6 +38,8 @@ class Certificate:
 
     ``pinned``: values of parameters that the claim's own premise demands, as words (``minDanger = 0.6 s``);
     they are put in before anything is asked (``logic.pins``).
+    ``tableau``: the same proof for Coq (``kernel.tableau``), as lines; None where there is none. Certificates
+    that differ in it alone are equal: it can be found again.
     """
 
     property: str
@@ -50,6 +54,7 @@ class Certificate:
     queries: tuple[tuple[str, str], ...]
     assumed: Assumed = NOTHING
     pinned: tuple[str, ...] = ()
+    tableau: tuple[str, ...] | None = field(default=None, compare=False)
 
 
 def certify(
@@ -167,6 +172,15 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
     return Acceptance.ACCEPTED, ""
 
 
+def unreadable(certificate: Certificate, library: Library) -> str:
+    """Why the claim cannot be read with this library, or nothing where it can."""
+    try:
+        read_claim(library.select(certificate.set_name, certificate.options), certificate.claim)
+    except RoadproofError as error:
+        return str(error)
+    return ""
+
+
 def _difference(derived: Certificate, stored: Certificate) -> str:
     """What the file says otherwise than claim and instances give, or nothing."""
     if derived.assumptions != stored.assumptions:
@@ -219,6 +233,7 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
             for lemma in certificate.lemmas
         ],
         "queries": [{"title": title, "smtlib": query.splitlines()} for title, query in certificate.queries],
+        "tableau": None if certificate.tableau is None else list(certificate.tableau),
     }
 
 
@@ -238,14 +253,17 @@ def read_certificate(path: Path) -> Certificate:
 _FIELDS = (
     *("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions"),
     *("formulas", "times", "instances", "lemmas", "queries", "assuming", "axioms", "pinned"),
+    "tableau",
 )
 
 
 def read_certificate_data(content: object, where: str) -> Certificate:
     """The inverse of ``certificate_data``. Raises ``InputError``."""
     data = Fields(content, where, _FIELDS)
-    if data.text("schema") != SCHEMA:
-        raise InputError(f"{where} is no certificate: its schema must be {SCHEMA}")
+    if data.text("schema") not in SCHEMAS_READ:
+        raise InputError(f"{where} is no certificate: its schema must be {SCHEMA} or {WITHOUT_TABLEAU}")
+    if ("tableau" in data.content) != (data.text("schema") == SCHEMA):
+        raise InputError(f"{where}: tableau is a field of {SCHEMA}, and of no other")
     if data.text("view") != VIEW:
         raise InputError(f"{where}: view={data.text('view')!r}: a certificate is about {VIEW} time")
     table = data.texts("formulas")
@@ -269,6 +287,7 @@ def read_certificate_data(content: object, where: str) -> Certificate:
         tuple(_query(entry, f"{where}, queries") for entry in data.items("queries")),
         _assumed(data),
         data.texts("pinned") if "pinned" in data.content else (),
+        data.texts("tableau") if data.has("tableau") else None,
     )
 
 

@@ -12,7 +12,7 @@ from roadproof.evidence.answers.proofs import misnamed, shown
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.finding import Acceptance, Finding, Ruled
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.judge.exact import Judgement
@@ -30,18 +30,22 @@ _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before 
 
 @dataclass(frozen=True)
 class Checker:
-    """``ask`` answers sat, unsat or unknown to a script; ``find_label`` knows the template properties."""
+    """``ask`` answers sat, unsat or unknown to a script; ``find_label`` knows the template properties.
+
+    ``ruled``: what was said of a certificate elsewhere, in place of asking for its queries.
+    """
 
     library: Library
     ask: Callable[[str], str]
     find_label: FindLabel
+    ruled: Ruled | None = None
 
     def check(self, path: Path) -> Finding:
         """What a file shows. Never fails for what is in the file."""
         try:
             content = read_json(path)
             schema = Fields(content, str(path)).text("schema")
-            if schema == certificate.SCHEMA:
+            if schema in certificate.SCHEMAS_READ:
                 return self._certificate(path, certificate.read_certificate_data(content, str(path)))
             if schema == drive_file.SCHEMA:
                 return self._drive(path, content)
@@ -58,7 +62,7 @@ class Checker:
             return Finding(str(path), "", Acceptance.FAULT, f"{type(error).__name__}: {error}"[:300])
 
     def _certificate(self, path: Path, file: Certificate) -> Finding:
-        outcome, reason = certificate.rule(file, self.library, self.ask)
+        outcome, reason = self._rule(file)
         moving = is_moving(file.assumed.said)
         label = None if moving else self.find_label(file.claim, file.set_name)
         named_by = label_of(file)
@@ -68,7 +72,17 @@ class Checker:
             reason = with_hint(reason, file.claim)
         named = shown(label, file.set_name)
         told = statement(file.assumed.said, file.claim)
-        return Finding(str(path), "certificate", outcome, reason, "PROVED", named, told)
+        ruled = self.ruled or Ruled(outcome, reason, "")
+        more = (ruled.checked, ruled.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
+        return Finding(
+            str(path), "certificate", outcome, reason, "PROVED", named, told, *more, kernel=ruled.word
+        )
+
+    def _rule(self, file: Certificate) -> tuple[Acceptance, str]:
+        if self.ruled is None:
+            return certificate.rule(file, self.library, self.ask)
+        unreadable = certificate.unreadable(file, self.library)
+        return (Acceptance.UNREADABLE, unreadable) if unreadable else (self.ruled.outcome, self.ruled.reason)
 
     def _drive(self, path: Path, content: object) -> Finding:
         file = drive_file.read_drive(content, str(path))

@@ -39,7 +39,8 @@ class Finding:
     """One claim of a file or of an index; ``reason`` says why it is not accepted.
 
     ``verdict``, ``label`` and ``claim`` are those that the evidence itself gives. ``checked`` and
-    ``unchecked`` say in words what was looked at, and what was not.
+    ``unchecked`` say in words what was looked at, and what was not. ``kernel``: what Coq says of a
+    certificate, where it was asked.
     """
 
     where: str
@@ -51,6 +52,7 @@ class Finding:
     claim: str = ""
     checked: tuple[str, ...] = ()
     unchecked: tuple[str, ...] = ()
+    kernel: str = ""
 
     def __str__(self) -> str:
         """The finding in a line."""
@@ -58,8 +60,24 @@ class Finding:
             named = f"{self.label}  " if self.label else ""
             return f"{self.outcome:<9} {named}{self.where}: {self.reason}"
         line = f"{self.verdict:<9} {f'{self.label}  ' if self.label else ''}{' '.join(self.claim.split())}"
-        notes = [*self.checked, *(f"not checked: {', '.join(self.unchecked)}",) * bool(self.unchecked)]
+        kernel = (f"kernel: {self.kernel}",) * bool(self.kernel)
+        notes = [
+            *kernel,
+            *self.checked,
+            *(f"not checked: {', '.join(self.unchecked)}",) * bool(self.unchecked),
+        ]
         return line + (f"  [{'; '.join(notes)}]" if notes else "")
+
+
+@dataclass(frozen=True)
+class Ruled:
+    """What another than a solver says of a certificate: ``word`` in its own word."""
+
+    outcome: Acceptance
+    reason: str
+    word: str
+    checked: tuple[str, ...] = ()
+    unchecked: tuple[str, ...] = ()
 
 
 def exit_code(findings: Iterable[Finding]) -> ExitCode:

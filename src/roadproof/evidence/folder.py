@@ -213,7 +213,7 @@ def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     if entry.file not in told.named or path not in found:
         return replace(rejected, reason=f"{entry.file} is not there, or another index is about it")
     finding = found[path]
-    said = replace(said, where=str(path), kind=finding.kind)
+    said = replace(said, where=str(path), kind=finding.kind, kernel=finding.kernel)
     if finding.outcome is not Acceptance.ACCEPTED:
         return replace(said, outcome=finding.outcome, reason=finding.reason)
     try:

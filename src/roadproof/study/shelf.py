@@ -8,7 +8,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Container, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.files import json_bytes, make_folder, write_json, write_whole
+from roadproof.kernel.accept import find_tableau
 from roadproof.spec.library import Library
 
 INDEX = "index.json"
@@ -75,9 +76,11 @@ class Shelf:
     # --- evidence ------------------------------------------------------------------------------
 
     def certificate(self, name: str, certificate: Certificate | None) -> str | dict[str, Any] | None:
-        """The name of a file with a certificate, or its data."""
+        """The name of a file with a certificate, or its data; a file has its tableau too, if one is found."""
         if certificate is None or self.folder is None:
             return None if certificate is None else certificate_data(certificate)
+        if certificate.tableau is None:
+            certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
         return self._put(self.folder, name, to_json(certificate).encode())
 
     def drive(self, name: str, drive: Judged | None) -> str | dict[str, Any] | None:

@@ -1,0 +1,161 @@
+"""Certificates put to Coq, many at once: each process has one file for its share."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from roadproof.errors import RoadproofError
+from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certificate_data
+from roadproof.evidence.finding import Acceptance, Ruled
+from roadproof.evidence.strict import read_json
+from roadproof.files import make_folder, write_whole
+from roadproof.kernel import accept
+from roadproof.kernel.accept import Judged, Prepared, Ruling, Word
+from roadproof.kernel.coq import THEORIES, ready
+from roadproof.kernel.source import file
+from roadproof.shipped import shipped
+from roadproof.spec.library import Library, load_library
+from roadproof.study import pool
+from roadproof.study.pool import Progress
+from roadproof.verdict import ExitCode
+
+_OUTCOMES = {
+    Word.ACCEPTED: Acceptance.ACCEPTED,
+    Word.REFUSED: Acceptance.REJECTED,
+    Word.UNKNOWN: Acceptance.UNDECIDED,
+}
+_EXIT = {
+    Word.ACCEPTED: ExitCode.AS_EXPECTED,
+    Word.UNKNOWN: ExitCode.UNKNOWN,
+    Word.REFUSED: ExitCode.CROSSCHECK_FAILED,
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A certificate, or the file that it is in; ``home`` is its library, or the files of that."""
+
+    name: str
+    certificate: Certificate | Path
+    home: Library | tuple[Path, ...]
+
+
+@dataclass(frozen=True)
+class Answered:
+    """Rulings by name; seconds of the processor for all Coqs, megabytes of the largest, axioms used."""
+
+    version: str
+    rulings: Mapping[str, Ruling] = field(default_factory=dict)
+    seconds: float = 0.0
+    megabytes: float = 0.0
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """A proof of ours that Coq refuses is a cross-check that failed."""
+        return max((_EXIT[x.word] for x in self.rulings.values()), default=ExitCode.AS_EXPECTED)
+
+    @property
+    def axioms(self) -> tuple[str, ...]:
+        return tuple(sorted({name for x in self.rulings.values() for name in x.axioms}))
+
+    def as_data(self) -> dict[str, Any]:
+        """As plain data of ``--json``."""
+        said = {"coqc": self.version, "seconds": round(self.seconds, 1), "megabytes": round(self.megabytes)}
+        return {**said, "axioms": list(self.axioms)}
+
+    def __str__(self) -> str:
+        held = f"at most {self.megabytes:.0f} MB" if self.megabytes else "nothing asked"
+        axioms = ", ".join(self.axioms) or "none"
+        return f"coqc {self.version}: {self.seconds:.1f} s of processor time, {held}; axioms: {axioms}"
+
+
+def put(asked: Sequence[Asked], jobs: int | None, progress: Progress | None = None) -> Answered:
+    """What Coq says of each; what is no certificate has no ruling. Raises ``MissingSolverError``."""
+    with ready() as coq:
+        prepared = prepare_all(asked, jobs, progress)
+        count = pool.count_workers(list(prepared), jobs) if prepared else 0
+        parts = list(accept.batches(prepared, count))
+        rulings: dict[str, Ruling] = {}
+        seconds = megabytes = 0.0
+        for judged in pool.in_order(
+            pool.work(partial(accept.judge, coq), parts, jobs, _lost, progress, "files of Coq")
+        ):
+            rulings |= judged.rulings
+            seconds += judged.seconds
+            megabytes = max(megabytes, judged.megabytes)
+        return Answered(coq.version, rulings, seconds, megabytes)
+
+
+def write(asked: Sequence[Asked], folder: Path, jobs: int | None) -> dict[str, str]:
+    """A file for each certificate, with the theories below; Coq is not asked.
+
+    Comes back with why there is no file, by name, where there is none.
+    """
+    make_folder(folder / "Roadproof")
+    for name in THEORIES:
+        source = shipped("proofs") / "kernel" / f"{name}.v"
+        write_whole(folder / "Roadproof" / source.name, source.read_bytes())
+    reasons: dict[str, str] = {}
+    for name, x in prepare_all(asked, jobs).items():
+        if x.module is None:
+            reasons[name] = x.refusal.reason if x.refusal else ""
+        else:
+            content = file([x.module]) + accept.closing([x.module])
+            write_whole(folder / f"{name}.v", content.encode("ascii"))
+    return reasons
+
+
+def names_of(paths: Iterable[Path]) -> dict[Path, str]:
+    """A name for each file that is one in Coq, too: of its own name, and of a number where that is taken."""
+    found: dict[Path, str] = {}
+    for path in paths:
+        plain = re.sub(r"\W", "_", path.stem, flags=re.ASCII)[:100]
+        plain = plain if plain[:1].isalpha() else f"claim_{plain}"
+        name, count = plain, 1
+        while name in found.values():
+            count += 1
+            name = f"{plain}_{count}"
+        found[path] = name
+    return found
+
+
+def prepare_all(
+    asked: Sequence[Asked], jobs: int | None, progress: Progress | None = None
+) -> dict[str, Prepared]:
+    made = pool.in_order(pool.work(_prepare, asked, jobs, _unprepared, progress, "claims to be printed"))
+    return {x.name: y for x, y in zip(asked, made, strict=True) if y is not None}
+
+
+def _prepare(asked: Asked) -> Prepared | None:
+    certificate = asked.certificate
+    if isinstance(certificate, Path):
+        try:
+            content = read_json(certificate)
+            if not isinstance(content, dict) or content.get("schema") not in SCHEMAS_READ:
+                return None
+            certificate = read_certificate_data(content, str(certificate))
+        except RoadproofError:
+            return None
+    home = asked.home if isinstance(asked.home, Library) else load_library(asked.home)
+    return accept.prepare(asked.name, certificate, home)
+
+
+def _unprepared(asked: Asked, reason: str) -> Prepared:
+    return Prepared(None, 0, Ruling(Word.UNKNOWN, reason))
+
+
+def _lost(part: Mapping[str, Prepared], reason: str) -> Judged:
+    return Judged({name: Ruling(Word.UNKNOWN, reason) for name in part})
+
+
+def ruled(ruling: Ruling) -> Ruled:
+    """What Coq says, for a finding."""
+    assumed = ruling.assumed
+    premises = (
+        (f"under {assumed} fact{'s' * (assumed != 1)} about motion that are premises",) if assumed else ()
+    )
+    unchecked = ("queries for solvers", *(("that these are true of motion",) * bool(assumed)))
+    return Ruled(_OUTCOMES[ruling.word], ruling.reason, str(ruling), premises, unchecked)

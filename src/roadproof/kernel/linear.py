@@ -1,0 +1,231 @@
+"""Linear constraints on moments, added and taken back: what they contradict, and by which multipliers.
+
+The simplex method for satisfiability (Dutertre and de Moura 2006) in exact rationals: each linear form has a
+variable of its own, constraints bound these, and what is strict is above by an infinitesimal. A conflict is a
+sum of constraints that is absurd (Farkas), which Coq adds up again.
+"""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TypeAlias
+
+from roadproof.evidence.times import Moment
+
+# Multipliers by constraint, all above zero; GOAL is the negation of what was asked.
+Witness: TypeAlias = tuple[tuple[int, Fraction], ...]
+GOAL = -1
+
+_Form: TypeAlias = tuple[tuple[str, Fraction], ...]
+_Value: TypeAlias = tuple[Fraction, Fraction]  # a rational and a multiple of the infinitesimal
+
+_ZERO = Fraction(0)
+_NOTHING: _Value = (_ZERO, _ZERO)
+
+
+@dataclass(frozen=True)
+class _Bound:
+    value: _Value
+    constraint: int
+    scale: Fraction  # the constraint is scale times what the bound says, scale > 0
+
+
+@dataclass
+class Linear:
+    """``0 <= m`` and ``0 < m`` for moments m, each constraint with a number."""
+
+    rows: dict[int, dict[int, Fraction]] = field(default_factory=dict)  # basic variable: over the others
+    forms: dict[_Form, int] = field(default_factory=dict)
+    lower: dict[int, _Bound] = field(default_factory=dict)
+    upper: dict[int, _Bound] = field(default_factory=dict)
+    values: dict[int, _Value] = field(default_factory=dict)
+    trail: list[tuple[bool, int, _Bound | None]] = field(default_factory=list)
+    count: int = 0
+
+    @contextmanager
+    def taken_back(self) -> Iterator[None]:
+        """Constraints that are added inside are gone afterwards."""
+        mark = len(self.trail)
+        try:
+            yield
+        finally:
+            while len(self.trail) > mark:
+                is_upper, variable, before = self.trail.pop()
+                bounds = self.upper if is_upper else self.lower
+                if before is None:
+                    del bounds[variable]
+                else:
+                    bounds[variable] = before
+
+    def add(self, constraint: int, strict: bool, moment: Moment) -> Witness | None:
+        """Add ``0 <= moment`` (``0 < moment`` where strict): multipliers of a contradiction, or None."""
+        if not moment.parts:
+            absurd = moment.constant < 0 or (strict and moment.constant == 0)
+            return ((constraint, Fraction(1)),) if absurd else None
+        first = moment.parts[0][1]
+        variable = self._variable(tuple((name, factor / first) for name, factor in moment.parts))
+        edge = -moment.constant / first
+        infinitesimal = Fraction(int(strict))
+        if first > 0:
+            bound = _Bound((edge, infinitesimal), constraint, first)
+            return self._bound(False, variable, bound)
+        return self._bound(True, variable, _Bound((edge, -infinitesimal), constraint, -first))
+
+    def entails(self, moment: Moment, strict: bool = False) -> Witness | None:
+        """Multipliers that show ``0 <= moment`` (``0 < moment``), or None where it does not follow.
+
+        What has been added must not be contradictory.
+        """
+        if not moment.parts or not self._refuted(moment, strict):
+            known = len(self.values)
+            with self.taken_back():
+                found = self.add(GOAL, not strict, Moment() - moment)
+            if len(self.values) > known:
+                self._forget(known)
+            return found
+        return None
+
+    def _refuted(self, moment: Moment, strict: bool) -> bool:
+        """Whether the values at hand, which satisfy all constraints, show that it does not follow."""
+        self._repair()
+        total, small = moment.constant, _ZERO
+        for name, factor in moment.parts:
+            place = self.forms.get(((name, Fraction(1)),))
+            if place is None:
+                return True  # nothing is known of it
+            value = self.values[place]
+            total += factor * value[0]
+            small += factor * value[1]
+        return (total, small) <= _NOTHING if strict else (total, small) < _NOTHING
+
+    # --- forms -------------------------------------------------------------------------------------
+
+    def _variable(self, form: _Form) -> int:
+        """The variable that stands for a form, with its row where it is a sum of others."""
+        if form in self.forms:
+            return self.forms[form]
+        row: dict[int, Fraction] = {}
+        if len(form) > 1 or form[0][1] != 1:
+            for name, factor in form:
+                self._add_to(row, self._variable(((name, Fraction(1)),)), factor)
+        variable = self.count
+        self.count += 1
+        self.forms[form] = variable
+        self.values[variable] = self._value_of(row)
+        if row:
+            self.rows[variable] = row
+        return variable
+
+    def _add_to(self, row: dict[int, Fraction], variable: int, factor: Fraction) -> None:
+        for place, share in self.rows.get(variable, {variable: Fraction(1)}).items():
+            total = row.get(place, _ZERO) + factor * share
+            if total:
+                row[place] = total
+            else:
+                row.pop(place, None)
+
+    def _value_of(self, row: Mapping[int, Fraction]) -> _Value:
+        return (
+            sum((q * self.values[x][0] for x, q in row.items()), _ZERO),
+            sum((q * self.values[x][1] for x, q in row.items()), _ZERO),
+        )
+
+    def _forget(self, known: int) -> None:
+        """Take out the sums that no constraint speaks of any more."""
+        self._repair()  # who becomes free to choose has to be within its bounds
+        for form in list(self.forms)[::-1][: len(self.values) - known]:
+            variable = self.forms[form]
+            if len(form) == 1:
+                continue
+            if variable not in self.rows:
+                self._pivot(next(b for b, row in self.rows.items() if variable in row), variable)
+            del self.rows[variable], self.forms[form], self.values[variable]
+
+    # --- bounds ------------------------------------------------------------------------------------
+
+    def _bound(self, is_upper: bool, variable: int, bound: _Bound) -> Witness | None:
+        bounds, others = (self.upper, self.lower) if is_upper else (self.lower, self.upper)
+        before, other = bounds.get(variable), others.get(variable)
+        if before is not None and (bound.value >= before.value if is_upper else bound.value <= before.value):
+            return None
+        self.trail.append((is_upper, variable, before))
+        bounds[variable] = bound
+        if other is not None and (other.value > bound.value if is_upper else other.value < bound.value):
+            return ((bound.constraint, 1 / bound.scale), (other.constraint, 1 / other.scale))
+        if variable not in self.rows:
+            value = self.values[variable]
+            if value > bound.value if is_upper else value < bound.value:
+                self._move(variable, bound.value)
+        return self._repair()
+
+    def _move(self, variable: int, value: _Value) -> None:
+        """Give a variable that is free to choose another value."""
+        before = self.values[variable]
+        self.values[variable] = value
+        for basic, row in self.rows.items():
+            factor = row.get(variable)
+            if factor is not None:
+                now = self.values[basic]
+                self.values[basic] = (
+                    now[0] + factor * (value[0] - before[0]),
+                    now[1] + factor * (value[1] - before[1]),
+                )
+
+    def _repair(self) -> Witness | None:
+        """Values within all bounds, or what contradicts. Bland's rule: the first variable that helps."""
+        while True:
+            broken = self._broken()
+            if broken is None:
+                return None
+            basic, bound, grow = broken
+            row = self.rows[basic]
+            for place in sorted(row):
+                if self._may_move(place, (row[place] > 0) == grow):
+                    self._pivot(basic, place)
+                    self._move(basic, bound.value)
+                    break
+            else:
+                return self._conflict(row, bound, grow)
+
+    def _broken(self) -> tuple[int, _Bound, bool] | None:
+        for basic in sorted(self.rows):
+            value = self.values[basic]
+            low, high = self.lower.get(basic), self.upper.get(basic)
+            if low is not None and value < low.value:
+                return basic, low, True
+            if high is not None and value > high.value:
+                return basic, high, False
+        return None
+
+    def _may_move(self, variable: int, up: bool) -> bool:
+        bound = (self.upper if up else self.lower).get(variable)
+        value = self.values[variable]
+        return bound is None or (value < bound.value if up else value > bound.value)
+
+    def _conflict(self, row: Mapping[int, Fraction], bound: _Bound, grow: bool) -> Witness:
+        shares = [(bound.constraint, 1 / bound.scale)]
+        for place, factor in row.items():
+            held = self.upper[place] if (factor > 0) == grow else self.lower[place]
+            shares.append((held.constraint, abs(factor) / held.scale))
+        total: dict[int, Fraction] = {}
+        for constraint, share in shares:
+            total[constraint] = total.get(constraint, _ZERO) + share
+        return tuple(total.items())
+
+    def _pivot(self, basic: int, place: int) -> None:
+        """``place`` becomes a sum of the others, and ``basic`` is free to choose."""
+        row = self.rows.pop(basic)
+        factor = row.pop(place)
+        new = {x: -q / factor for x, q in row.items()}
+        new[basic] = 1 / factor
+        for other in self.rows.values():
+            share = other.pop(place, None)
+            if share is not None:
+                for x, q in new.items():
+                    total = other.get(x, _ZERO) + share * q
+                    if total:
+                        other[x] = total
+                    else:
+                        other.pop(x, None)
+        self.rows[place] = new

@@ -1,0 +1,108 @@
+"""Files of Coq: claims with their tableaux, one module each. The text of claims is the printer's."""
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from roadproof.kernel.names import comment, literal
+from roadproof.kernel.printer import CLOSE, Printer
+from roadproof.kernel.statement import Statement
+from roadproof.kernel.tableau import Tableau, coq_tree
+from roadproof.logic.rewrite import without_names
+
+WIDTH = 110
+HEAD = """\
+From Coq Require Import QArith String List.
+From Roadproof Require Import Meaning Text Linear Tableau Named.
+Import ListNotations.
+Open Scope string_scope.
+Open Scope nat_scope.
+Open Scope term_scope.
+Open Scope formula_scope.
+"""
+
+
+@dataclass(frozen=True)
+class Module:
+    """A claim as a module of Coq, with the lines at which facts about one instant and the theorem begin."""
+
+    name: str
+    text: str
+    lemmas: tuple[int, ...]
+    theorem: int
+
+    @property
+    def lines(self) -> int:
+        return self.text.count("\n")
+
+
+def module(name: str, statement: Statement, tableau: Tableau) -> Module:
+    """The module that proves a statement. Raises ``InputError`` for what is not printed."""
+    out: list[str] = []
+    printer = Printer(statement.formals)
+    claim = printer.formula(statement.formula)
+    facts = [printer.formula(without_names(lemma)) for lemma, _ in statement.lemmas]
+    bounds = [
+        f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in statement.bounds.items()
+    ]
+    out += [f"Module {name}."]
+    out += _comment(_said(statement))
+    out += [*printer.things, ""]
+    for definition in printer.definitions:
+        out += _wrapped(definition)
+    out += ["", *_wrapped(f"Definition bounds : list bound := [{'; '.join(bounds)}].")]
+    out += [*_wrapped(f"Definition claim : formula := {claim}."), ""]
+    out += ["(* From here on it is proof: what is proved is said in the theorem at the end. *)"]
+    lemmas: list[int] = []
+    words = [printer.names.new(f"fact_{number}") for number in range(1, len(facts) + 1)]
+    proofs = [printer.names.new(f"{word}_holds") for word in words]
+    for word, proof, fact in zip(words, proofs, facts, strict=True):
+        lemmas.append(len(out) + 1)
+        out += _wrapped(f"Definition {word} : formula := {fact}.")
+        out += [f"Lemma {proof} : Roadproof.Meaning.valid_always bounds {word}.", "Proof. some_instant. Qed."]
+    held = "Forall_nil _"
+    for proof in reversed(proofs):
+        held = f"Forall_cons _ {proof} ({held})"
+    theorem = len(out) + 1
+    out += ["Definition tableau : tree := ("]
+    out += [*coq_tree(tableau), ").", ""]
+    parameters = "; ".join(map(literal, statement.parameters))
+    out += [
+        "Theorem proved : Roadproof.Meaning.valid bounds claim.",
+        "Proof.",
+        f"  refine (Roadproof.Tableau.accepted [{parameters}] bounds [{'; '.join(words)}] claim tableau",
+        f"    ({held}) _).",
+        "  vm_cast_no_check (eq_refl true).",
+        "Qed.",
+        f"End {name}.",
+    ]
+    return Module(name, "\n".join(out) + "\n", tuple(lemmas), theorem)
+
+
+def file(modules: Sequence[Module]) -> str:
+    """A file with modules, one after the other."""
+    return HEAD + "".join(x.text for x in modules)
+
+
+def _said(statement: Statement) -> Iterator[str]:
+    options = ", ".join(f"{name}={value}" for name, value in sorted(statement.options.items()))
+    yield f"{statement.label or 'A claim'}, set {statement.set_name}, options {options or 'none'}:"
+    yield statement.claim
+    if statement.assumed:
+        yield f"Under {statement.assumed} facts about motion: premises of the claim, not proved here."
+
+
+def _comment(said: Iterator[str]) -> list[str]:
+    shown = [line for words in said for line in textwrap.wrap(comment(words), WIDTH - 6)]
+    return [
+        f"(* {shown[0]}",
+        *(f"   {line}" for line in shown[1:-1]),
+        *(f"   {line}" for line in shown[-1:]),
+        "*)",
+    ]
+
+
+def _wrapped(text: str) -> list[str]:
+    """A definition in lines; names and texts have no blanks in them."""
+    lines = textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
+    return [line.replace(CLOSE, " ") for line in lines]

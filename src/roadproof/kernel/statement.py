@@ -1,0 +1,111 @@
+"""What a certificate claims, as Coq is to prove it, and the goal for a search of its tableau.
+
+The claim is read again with the library at hand. What is assumed of motion becomes a premise of what is
+proved: each fact by itself, made anew of its schema, so that a reader of the printed claim sees it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from roadproof.errors import InputError
+from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.times import bound_parameters
+from roadproof.kernel.printer import Formals
+from roadproof.kernel.search import Goal
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import parameters_of
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Library
+from roadproof.spec.motion import assumption, axiom_formula, values_said
+from roadproof.spec.query import Query
+
+
+@dataclass(frozen=True)
+class Statement:
+    """``formula`` is what Coq is to prove for all parameters within ``bounds`` (name: strictly above 0).
+
+    ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``assumed``: how many
+    facts about motion are premises, which are not proved.
+    """
+
+    label: str
+    claim: str
+    set_name: str
+    options: Mapping[str, str]
+    formula: Formula
+    bounds: Mapping[str, bool]
+    lemmas: tuple[tuple[Formula, tuple[str, ...]], ...]
+    parameters: tuple[str, ...]
+    formals: Formals
+    assumed: int
+    goal: Goal
+
+
+def state(certificate: Certificate, library: Library) -> Statement:
+    """What is to be proved. Raises ``InputError`` where the certificate does not fit the library."""
+    specification = library.select(certificate.set_name, certificate.options)
+    query = read_claim(specification, certificate.claim)
+    if certificate.pinned or values_said(specification, certificate.assumed.said):
+        raise InputError("values of parameters are put in before it is proved, which is not printed for Coq")
+    premises = _premises(certificate, library, query)
+    formula = f.implication(f.conjunction(*premises), query.formula)
+    atoms = Atoms()
+    abstracted = atoms.abstract(formula)
+    declared = specification.library.bounds
+    bounds = {name: declared[name] == ">" for name in parameters_of(formula) if declared.get(name)}
+    parameters = tuple(sorted(bound_parameters(formula)))
+    lemmas = tuple(
+        (f.disjunction(*(_literal(atoms, *x) for x in lemma.literals)), lemma.moments)
+        for lemma in certificate.lemmas
+    )
+    goal = Goal(
+        abstracted,
+        atoms,
+        bounds,
+        parameters,
+        query.lanes,
+        certificate.instances,
+        certificate.names,
+        lemmas,
+    )
+    formals = {
+        name: tuple((x.name, str(x.sort)) for x in definition.parameters)
+        for name, definition in specification.definitions.items()
+    }
+    return Statement(
+        certificate.property,
+        certificate.claim,
+        certificate.set_name,
+        dict(certificate.options),
+        formula,
+        bounds,
+        lemmas,
+        parameters,
+        formals,
+        len(premises),
+        goal,
+    )
+
+
+def _premises(certificate: Certificate, library: Library, query: Query) -> list[Formula]:
+    """The facts about motion and the limits of vehicles that are assumed, each with a name of its own."""
+    if not certificate.assumed.said:
+        return []
+    specification = library.select(certificate.set_name, certificate.options)
+    whole = assumption(specification, query, certificate.assumed)
+    axioms = [axiom_formula(specification, query, x) for x in certificate.assumed.axioms]
+    parts = list(whole.parts) if isinstance(whole, f.And) else [whole]
+    if whole == f.TRUE:
+        return []
+    limits = parts[: len(parts) - len(axioms)]
+    if parts[len(limits) :] != axioms or f.conjunction(*limits, *axioms) != whole:
+        raise InputError("what is assumed of motion cannot be told apart into facts")
+    named = [("limit", x) for x in limits] + [("motion", x) for x in axioms]
+    return [f.Named(f"{word}_{number}", (), x) for number, (word, x) in enumerate(named, 1)]
+
+
+def _literal(atoms: Atoms, name: str, positive: bool) -> Formula:
+    atom = f.Named(name, (), atoms.meaning(name))
+    return atom if positive else f.Not(atom)

@@ -1,0 +1,172 @@
+"""What Coq accepts, what it refuses, and that nothing but its word counts."""
+
+import json
+import re
+import shutil
+from dataclasses import replace
+
+import roadproof as rp
+from cli.test_schemas import validator
+from kernel.needs import needs_coq
+from roadproof.api.checking import check
+from roadproof.evidence.certificate import read_certificate, to_json
+from roadproof.evidence.finding import Acceptance
+from roadproof.kernel import accept
+from roadproof.kernel.accept import Word, judge, prepare
+from roadproof.kernel.coq import ready
+from roadproof.shipped import shipped
+from roadproof.spec.library import bundled_library
+
+PROOFS = shipped("proofs")
+SHIPPED = sorted(x for x in PROOFS.glob("P*.json") if '"tableau"' in x.read_text("utf-8"))
+ONE = PROOFS / "P1-scenario-04-base.json"
+
+
+def ruling(certificate, library=None):
+    with ready() as found:
+        return judge(found, {"one": prepare("one", certificate, library or bundled_library())}).rulings["one"]
+
+
+@needs_coq
+def test_every_shipped_proof_is_accepted_and_so_is_the_index():
+    assert len(SHIPPED) == 156
+    checked = check(PROOFS, kernel="coq")
+    assert checked.accepted, [x for x in checked.findings if x.outcome is not Acceptance.ACCEPTED]
+    assert [x.kernel for x in checked.findings if x.kind == "certificate"] == ["accepted"] * 156
+    assert checked.kernel is not None
+    assert set(checked.kernel.axioms) <= accept.AXIOMS
+    assert not [*validator("check.json").iter_errors(checked.as_data())]
+    print(checked.kernel)
+
+
+@needs_coq
+def test_a_certificate_of_the_version_before_is_searched_for_its_tableau(tmp_path):
+    data = json.loads(ONE.read_text("utf-8"))
+    data["schema"] = "roadproof/certificate/1"
+    del data["tableau"]
+    old = tmp_path / ONE.name
+    old.write_text(json.dumps(data), "utf-8")
+    assert read_certificate(old).tableau is None
+    (finding,) = check(old, kernel="coq").findings
+    assert (finding.outcome, finding.kernel) == (Acceptance.ACCEPTED, "accepted")
+
+
+@needs_coq
+def test_what_is_assumed_of_motion_is_a_premise_that_is_said():
+    claim = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
+    proved = rp.prove(claim, assume="motion", kernel="coq", jobs=1)
+    assert not [*validator("verdicts.json").iter_errors(proved.as_data())]
+    (entry,) = proved.as_data()["verdicts"]
+    assert entry["kernel"] == {"says": "accepted", "reason": "", "premises": 1}
+    certificate = proved.answers[0].settled.result.certificate
+    module = prepare("one", certificate, bundled_library()).module
+    assert "Definition claim : formula := motion_1 -> " in module.text
+    assert "Under 1 facts about motion: premises of the claim, not proved here." in module.text
+
+
+@needs_coq
+def test_a_fact_that_is_not_proved_is_named():
+    """The opposite of a fact about one instant that a proof uses."""
+    certificate = read_certificate(PROOFS / "P3-scenario-03-extA.json")
+    (lemma,) = certificate.lemmas
+    false = replace(lemma, literals=tuple((name, not positive) for name, positive in lemma.literals))
+    found = ruling(replace(certificate, lemmas=(false,)))
+    assert (found.word, found.lemma, str(found)) == (Word.UNKNOWN, 1, "unknown (lemma 1)")
+
+
+@needs_coq
+def test_one_that_is_refused_does_not_take_others_with_it():
+    library = bundled_library()
+    good = [
+        read_certificate(x) for x in (ONE, PROOFS / "P7-ahead-base.json", PROOFS / "P3-scenario-03-extA.json")
+    ]
+    bad = replace(good[0], tableau=(*good[0].tableau[:-1], "CloseTruth 0"))
+    other = replace(good[0], claim="scenario_4(SV,POV,L) -> G danger(SV,POV)")
+    broken = replace(good[0], tableau=("Alpha",))
+    order = [good[0], bad, good[1], other, broken, good[2]]
+    with ready() as found:
+        judged = judge(found, {f"n{k}": prepare(f"n{k}", x, library) for k, x in enumerate(order)})
+    words = [judged.rulings[f"n{k}"].word for k in range(len(order))]
+    assert words == ["accepted", "refused", "accepted", "refused", "refused", "accepted"]
+
+
+def test_without_coqc_it_is_said_before_any_work(monkeypatch, tmp_path, capsys):
+    from roadproof.cli.main import main
+
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["check", str(ONE), "--kernel", "coq", "--jobs", "1"]) == 4
+    assert "apt-get install -y coq" in capsys.readouterr().err
+
+
+def test_a_program_that_says_yes_to_all_is_not_enough(monkeypatch, tmp_path):
+    """An exit code of 0 without the axioms is no answer."""
+    fake = tmp_path / "coqc"
+    fake.write_text(
+        '#!/bin/sh\ncase "$1" in --print-version) echo 8.16.1 4.13;; esac\n'
+        'for f; do :; done\n: > "${f%.v}.vo"\n'
+    )
+    fake.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    assert ruling(read_certificate(ONE)).word is Word.UNKNOWN
+
+
+@needs_coq
+def test_compiled_files_among_the_evidence_are_not_loaded(tmp_path, monkeypatch):
+    """A theory in the folder that is checked, or in the one where the command runs, is not Coq's."""
+    shutil.copy(ONE, tmp_path)
+    for name in ("Meaning", "Tableau", "evidence"):
+        (tmp_path / f"{name}.vo").write_bytes(b"forged")
+        (tmp_path / f"{name}.v").write_text("Axiom absurd : False.")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COQPATH", str(tmp_path))
+    monkeypatch.setenv("COQLIB", str(tmp_path))
+    (finding,) = check(tmp_path / ONE.name, kernel="coq").findings
+    assert finding.kernel == "accepted"
+
+
+ODD = """
+# (* "
+def valid(a, b: vehicle) "is it *) Axiom x : False. (* " := v_lon(a) < v_lon(b)
+def bounds(claim: vehicle) "x" := v_lon(claim) > 0 m/s
+def Qed(some_: vehicle) := F bounds(some_)
+def proved(a, b: vehicle, forall: lane) := valid(a, b) and Qed(a) and (some l in lanelets(forall): occ(a, l))
+param Axiom = 1 s where Axiom >= 0 "x"
+"""
+
+
+@needs_coq
+def test_definitions_called_like_words_of_coq_and_comments_that_would_end(tmp_path):
+    """Names that would shadow what the printed file says, and a claim that would say more than a claim."""
+    spec = tmp_path / "odd.spec"
+    spec.write_text(ODD, "utf-8")
+    home = rp.load(specs=[spec])
+    claims = [
+        'proved(SV,POV,L) -> F[0, 0 s] valid(SV, POV) # *) Axiom absurd : False. (* "',
+        "G[0, Axiom] Qed(SV) -> G[0, Axiom] F bounds(SV)",
+    ]
+    found = rp.prove(*claims, using=home, kernel="coq", drive=False, jobs=1)
+    assert [str(x) for x in found.kernel.rulings.values()] == ["accepted", "accepted"]
+    certificate = found.answers[0].settled.result.certificate
+    text = prepare("one", certificate, found.study.library).module.text
+    said = re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL)
+    assert "absurd" in text
+    assert "absurd" not in said
+    assert "Definition valid_2 (a b : vehicle) : formula := v_lon a < v_lon b." in said
+    assert "Definition claim : formula := proved_2 SV POV L -> (F[0, 0] valid_2 SV POV)." in said
+
+
+def test_files_are_only_written(tmp_path, capsys):
+    from roadproof.cli.main import main
+
+    assert main(["check", str(ONE), "--kernel", "coq", "--write", str(tmp_path / "v"), "--jobs", "1"]) == 0
+    written = (tmp_path / "v" / "P1_scenario_04_base.v").read_text("ascii")
+    assert "Definition claim : formula := scenario_4 SV POV L -> dangerArises SV POV." in written
+    assert (tmp_path / "v" / "Roadproof" / "Tableau.v").exists()
+    assert main(["check", str(ONE), "--write", str(tmp_path / "v"), "--jobs", "1"]) == 2
+
+
+def test_a_certificate_with_its_tableau_is_read_as_it_was_written():
+    certificate = read_certificate(ONE)
+    assert certificate.tableau is not None
+    assert to_json(certificate) == ONE.read_text("utf-8")
