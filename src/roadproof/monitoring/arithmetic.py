@@ -7,7 +7,6 @@ repeated product. Comparisons are strict or not exactly as written.
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, TypeAlias, assert_never
 
 import numpy as np
@@ -68,8 +67,7 @@ class Program:
     dead: tuple[tuple[int, ...], ...]
 
 
-@lru_cache(maxsize=64)
-def truth_program(comparisons: tuple[Compare, ...]) -> Program:
+def truth_program(comparisons: Sequence[Compare]) -> Program:
     """The truth (bool) of every comparison."""
     return _program(comparisons, lambda c: (COMPARISONS[c.op], False))
 

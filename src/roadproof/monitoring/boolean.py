@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadproof.logic.formula import Compare, Formula
-from roadproof.monitoring.arithmetic import Program, run, truth_program
+from roadproof.monitoring.arithmetic import Program, run
 from roadproof.monitoring.batch import Array, Batch, Integers, inside
 from roadproof.monitoring.semantics import Lattice
 
@@ -50,10 +50,9 @@ def packed_inside(lengths: Integers, samples: int) -> NDArray[np.uint64] | None:
 
 
 def observe_truth(
-    comparisons: Sequence[Compare], batch: Batch, threads: int
+    comparisons: Sequence[Compare], program: Program, batch: Batch, threads: int
 ) -> dict[Formula, NDArray[np.uint64]]:
-    """The packed truth of every comparison at every sample of ``batch``."""
-    program = truth_program(comparisons)
+    """The packed truth of every comparison at every sample of ``batch``; ``program`` is that of them."""
     words = [np.zeros((batch.samples, words_for(batch.traces)), dtype="<u8") for _ in comparisons]
     blocks = list(_blocks(batch))
     if comparisons:

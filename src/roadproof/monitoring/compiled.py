@@ -6,7 +6,7 @@ by the name of the definition that they come from.
 
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Generic
 
@@ -33,7 +33,7 @@ from roadproof.monitoring.answers import (
     store_margin,
     views,
 )
-from roadproof.monitoring.arithmetic import Program, margin_program
+from roadproof.monitoring.arithmetic import Program, margin_program, truth_program
 from roadproof.monitoring.batch import Array, Batch, Integers
 from roadproof.monitoring.boolean import BITS, TRUTH, observe_truth, pack, packed_inside
 from roadproof.monitoring.robustness import (
@@ -75,6 +75,7 @@ class Monitor(Generic[Key]):
     named: Mapping[Named, Formula]
     states: frozenset[Formula]
     signals: tuple[SignalName | Own, ...]
+    programs: dict[tuple[Compare, ...], Program] = field(default_factory=dict, repr=False, compare=False)
 
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
         """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
@@ -84,7 +85,10 @@ class Monitor(Generic[Key]):
                 raise InputError("an observation is only taken over for traces of the same dt and lengths")
             leaves |= known.leaves
         leaves |= {g: pack(values[: batch.samples]) for g, values in _given(batch).items()}
-        leaves |= observe_truth(tuple(self._comparisons(leaves)), batch, threads)
+        comparisons = tuple(self._comparisons(leaves))
+        if comparisons not in self.programs:
+            self.programs[comparisons] = truth_program(comparisons)
+        leaves |= observe_truth(comparisons, self.programs[comparisons], batch, threads)
         return Observation(batch.dt, batch.lengths, batch.samples, leaves)
 
     def evaluate(
