@@ -58,7 +58,7 @@ def test_theories_compile_without_a_warning_and_are_kept(tmp_path, monkeypatch):
     coq.theories.chmod(0o777)
     assert not coq_module._is_sound(coq.theories)
     (tmp_path / "roadproof" / "coq").chmod(0o777)
-    assert coq_module._cache() is None
+    assert private_folder("coq") is None
 
 
 @needs_coq
