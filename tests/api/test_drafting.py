@@ -83,7 +83,17 @@ def test_mistakes_of_other_kinds(draft: Draft, where: str, words: str) -> None:
 
 
 def test_a_draft_without_mistakes_has_none() -> None:
-    assert mistakes(Draft("base", LOOSE), {"formula": "scenario_1(SV,POV,L)"}) == []
+    assert mistakes(Draft("base", LOOSE), {"formula": "scenario_1(SV,POV,L)", "watch 1": " 7 "}) == []
+    [told] = mistakes(Draft("base"), {"formula": "77"})
+    assert "this is a number" in told.message
+
+
+def test_what_is_below_an_earlier_draft_is_not_what_is_below_a_later_one() -> None:
+    """The proofreader keeps what definitions mean from one text to the next."""
+    first, later = "def far(a: vehicle) := s(a) > 1 m\n", "def far(a, b: vehicle) := s(a) > s(b)\n"
+    for text, formula, wrong in ((first, "far(SV)", 0), (later, "far(SV)", 1), (first, "far(SV)", 0)):
+        for base in ("base", "ext"):
+            assert len(mistakes(Draft(base, text), {"formula": formula})) == wrong
 
 
 def test_a_mistake_in_a_draft_is_raised_where_it_is_asked() -> None:

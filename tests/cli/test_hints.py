@@ -14,8 +14,11 @@ import roadproof
 from roadproof.cli.main import COMMANDS
 
 SOURCE = Path(roadproof.__file__).parent
-# What is raised for an option is raised only by commands that have it: these read one option each.
+# What is raised for an option is raised only by commands that have it: these read it, or what it made.
 READERS = {
+    "roadproof.cli.numbers": {"--cluster", "--jobs", "--json", "--shard"},
+    "roadproof.hands": {"--jobs"},
+    "roadproof.study.frame": {"--shard"},
     "roadproof.cli.options": {"--option", "--param", "--set"},
     "roadproof.study.pool": {"--jobs"},
     "roadproof.workers": {"--jobs"},

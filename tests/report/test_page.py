@@ -106,7 +106,44 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
             "table": [{"sector": HOSTILE, "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}],
             "detectors": {HOSTILE: 3},
         },
-        "explore": {"explored": [{"formula": HOSTILE, CLOSED: [HOSTILE]}], "note": CLOSED},
+        "explore": {"explored": [explored(named)]},
+        "order": {
+            "kinds": [["1@base", f"2@{HOSTILE}"], ["3@base"]],
+            "proved": [{"from": "1@base", "to": "3@base", "claim": HOSTILE, "certificate": CLOSED}],
+            "missing": [{"from": "3@base", "to": "1@base", "drives": [1]}],
+            "drives": [{"number": 1, "holds": HOSTILE, "fails": [CLOSED], "drive": named}],
+            "doubts": [{"from": HOSTILE, "to": CLOSED, "reason": HOSTILE}],
+        },
+        "redundancy": {
+            "verdicts": [entry | {"where": [CLOSED], "part": HOSTILE, "claim": CLOSED, "assuming": HOSTILE}]
+        },
+        "monitor": {
+            **{"verdict": HOSTILE, "formula": CLOSED, "end": HOSTILE, "trace": CLOSED, "start": HOSTILE},
+            **{"seconds": 3, "road": HOSTILE, "view": CLOSED, "robustness": [None, 1], "overruled": [CLOSED]},
+            "parts": [{"formula": HOSTILE, "true": [[0, None]], "undecided": [[1, 2]]}],
+        },
+        "other": {"things": [{"formula": HOSTILE, CLOSED: [HOSTILE]}], "note": CLOSED},
+    }
+
+
+def explored(drive: dict) -> dict:
+    """A map of two parameters, a boundary and an extreme."""
+    found = {"at": ["0", "1/3"], "verdict": "WITNESSED", "formula": HOSTILE, "reason": CLOSED, "drive": drive}
+    none = {**found, "verdict": "IMPOSSIBLE", "at": ["1", "1/3"], "drive": None, "certificate": HOSTILE}
+    limits = {
+        "best": {**found, "at": ["3"]},
+        "missed": None,
+        "surely": None,
+        "point": ["0", "1"],
+        "endless": True,
+    }
+    return {
+        "scenario": 1,
+        "formula": HOSTILE,
+        "vary": [{"name": HOSTILE, "unit": "s"}, {"name": CLOSED, "unit": "unitless"}],
+        "values": [found, none],
+        "boundaries": [{"held": found, "missed": none, "surely": {**none, "at": ["2", "1/3"]}}],
+        "extremes": [{"sense": "least", "measure": HOSTILE, "when": CLOSED, "unit": HOSTILE, **limits}],
     }
 
 
@@ -121,6 +158,17 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     assert text.count("<script") == text.count("</script") == 3 + found.drives
     assert body_of(text).count("&lt;img src=x onerror=alert(1)&gt;") > 15
     assert "Which scenarios can hold together" in text
+    led = re.findall(r'href="#([^"]*)"', body_of(text))
+    assert {x.partition("-")[0] for x in led} >= {
+        "pair",
+        "gap",
+        "value",
+        "best",
+        "implied",
+        "against",
+        "change",
+    }
+    assert all(text.count(f' id="{x}"') == 1 for x in led)
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,14 @@ from pathlib import Path
 
 import pytest
 
+import roadproof as rp
+from roadproof.evaluation.one_trace import sample_drive
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.report.viewer_data import Asked, viewer_data
 from roadproof.report.viewer_files import viewer_modules, viewer_style
 from roadproof.report.viewer_page import json_in_html, viewer_page
+from roadproof.report.viewer_recorded import recorded_data
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Source, bundled_library, load_library
 from roadproof.spec.places import nearest, places_of
@@ -146,3 +149,21 @@ def test_all_that_the_page_loads_is_at_most_600_kilobytes() -> None:
         x.stat().st_size for x in files if x.suffix in (".js", ".css", ".html") and "entry" not in x.name
     )
     assert 400_000 < total <= 600_000
+
+
+def test_samples_of_a_drive_are_shown_with_the_distances_and_margins_of_the_drive() -> None:
+    trace = sample_drive(FILE.drive, FILE.road, FILE.horizon, Fraction(1, 10), "samples")
+    home = rp.load()
+    observed = rp.monitor("danger(SV,POV)", trace, using=home, lanes={}).observed
+    recorded = recorded_data(trace, [("question", observed)], home.specification, home.all_values())
+    document = viewer_data(FILE, LIBRARY, [Asked("question", "danger(SV,POV)")])
+    assert recorded["drive"]["distances"] == document["drive"]["distances"] != []
+    margins = [
+        {x["text"]: x["margins"] for x in one["formulas"][0]["parts"] if "margins" in x}
+        for one in (recorded, document)
+    ]
+    name = "rssViolation(SV, POV)"
+    assert margins[0][name] == margins[1][name]
+    assert len(margins[0]["danger(SV,POV)"]) == 61
+    assert margins[0]["danger(SV,POV)"][-1] is None  # what comes after the samples decides
+    assert recorded["formulas"][0]["step"] == 0.1

@@ -34,7 +34,8 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def address() -> Iterator[str]:
-    with running(str(next(DRIVES.glob("*04-base.json")))) as (found, _):
+    files = [str(next(DRIVES.glob(f"*{number}-base.json"))) for number in ("04", "01")]
+    with running(*files) as (found, _):
         yield found
 
 
@@ -58,6 +59,10 @@ def test_a_drive_of_the_command_line_is_shown_with_its_parts_and_the_token_leave
     assert label is not None
     assert re.search(r"at 0\.00 s: SV: s .*km/h; POV: s", label)
     assert "deceleration ahead" in tab.see(".called").inner_text()
+    assert tab.page.locator(".drives li").count() == 2
+    tab.page.locator(".drives button[aria-pressed=false]").click()
+    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_1')")
+    assert "01-base" in tab.see(".drives button[aria-pressed=true]").inner_text()
 
 
 def test_what_is_typed_is_read_and_judged_at_once(tab: Tab) -> None:
@@ -280,6 +285,9 @@ def test_files_are_dropped(tab: Tab, tmp_path: Path) -> None:
         "() => document.querySelector('.scene')?.ariaLabel && !document.querySelector('.clock .danger')"
     )
     tab.see(".strips.question .row")
+    tab.press("e")
+    assert "Explain is about judged drives" in tab.see(".third").inner_text()
+    assert tab.page.locator(".plot figcaption", has_text="margin").count() == 1
 
 
 def test_texts_stay_texts(tab: Tab) -> None:

@@ -5,14 +5,13 @@ sets, since a set can only replace. All mistakes are told, each with its place i
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
 from roadproof.api.definitions import Definitions, values_of
 from roadproof.errors import Position, RoadproofError, TextError
-from roadproof.logic.parse import parse_library
-from roadproof.spec.elaborate import signature
+from roadproof.spec.diagnose import Lost, Proofreader, as_diagnostic, claim_errors
 from roadproof.spec.library import Library, Source, Specification, load_library
 from roadproof.spec.scenarios import read_query
 from roadproof.spec.values import Number
@@ -66,64 +65,62 @@ class Mistake:
 
 
 def mistakes(draft: Draft, formulas: Mapping[str, str]) -> list[Mistake]:
-    """All mistakes of a draft that can be told apart, then those of formulas, by the name of each.
+    """All mistakes of a draft, then those of formulas, by the name of each.
 
-    A statement that cannot be read hides only itself: the others are read without it.
+    Nothing is said of what follows from what could not be read.
     """
-    found: list[Mistake] = []
-    kept: list[tuple[int, int]] = []
-    for begin, end in _statements(draft.text):
-        try:
-            parse_library(_only(draft.text[:end].rstrip(), [(begin, end)]), DRAFT)
-            kept.append((begin, end))
-        except TextError as error:
-            found.append(_mistake(error, DRAFT))
-    readable = _only(draft.text, kept)
+    sources = sources_of(draft.base, draft.text, draft.before)
+    errors, library, lost = _proofreader(draft.base).errors_in(*sources)
+    every = dict.fromkeys(_mistake(error, DRAFT) for error in errors)
+    found = sorted(
+        every, key=lambda x: (0, 0) if x.position is None else (x.position.line, x.position.column)
+    )
     try:
-        home = Draft(draft.base, readable, draft.before, draft.options).definitions()
+        home = library.select(draft.edited, draft.options)
     except RoadproofError as error:
-        return [*found, _mistake(error, DRAFT)]
+        told = _mistake(error, DRAFT)
+        return found if any(x.message in told.message for x in found) else [*found, told]
     try:
-        values_of(home.library, draft.params)
+        values_of(library, draft.params)
     except RoadproofError as error:
         found.append(Mistake(PARAMETERS, str(error)))
-    found += _in_definitions(home.specification, readable)
     for name, formula in formulas.items():
-        try:
-            read_query(home.specification, formula, QUESTION)
-        except RoadproofError as error:
-            told = _mistake(error, name)
+        for wrong in _in_formula(home, formula, lost):
+            told = _mistake(wrong, name)
             if told.where == name or not found:
                 found.append(told)
     return found
 
 
-def _in_definitions(home: Specification, text: str) -> Iterator[Mistake]:
-    told: set[tuple[str, Position | None]] = set()
-    for name in _defined(text):
-        if name not in home.definitions:
-            continue
-        try:
-            signature(home, name)
-        except TextError as error:
-            mistake = _mistake(error, DRAFT)
-            if (mistake.message, mistake.position) not in told:
-                told.add((mistake.message, mistake.position))
-                yield mistake
+@lru_cache(maxsize=16)
+def _proofreader(base: str) -> Proofreader:
+    """One for each set below: it keeps what definitions mean in ``edit``."""
+    return Proofreader(load_library())
+
+
+def _in_formula(home: Specification, formula: str, lost: Lost) -> Sequence[RoadproofError]:
+    """What is wrong with a formula, or with the number of a scenario."""
+    try:
+        read_query(home, formula, QUESTION)
+    except TextError:
+        return claim_errors(home, formula, QUESTION, lost)
+    except RoadproofError as error:
+        return [error]
+    return []
 
 
 def _mistake(error: RoadproofError, where: str) -> Mistake:
     """What an error is told as; its place counts in the draft, whichever part of it was read."""
     if not isinstance(error, TextError):
         return Mistake(where, str(error))
-    if error.source in _HEADED and error.position is not None:
-        position = Position(max(1, error.position.line - 1), error.position.column)
-        return Mistake(DRAFT, error.message, position, error.hint)
-    if error.source == DRAFT:
-        return Mistake(DRAFT, error.message, error.position, error.hint)
-    if error.source in (QUESTION, ""):
-        return Mistake(where, error.message, error.position, error.hint)
-    return Mistake(where, str(error))
+    if error.source not in (*_HEADED, DRAFT, QUESTION, ""):
+        return Mistake(where, str(error))
+    if error.position is None:
+        return Mistake(where, error.message, None, error.hint)
+    at, above = as_diagnostic(error, error.text), int(error.source in _HEADED)
+    begin = (max(1, at.line - above), at.column)
+    position = Position(*begin, max(1, at.end_line - above), at.end_column)
+    return Mistake(where if error.source in (QUESTION, "") else DRAFT, at.message, position, at.hint)
 
 
 def place_in(source: str, at: tuple[int, int]) -> tuple[str, tuple[int, int]] | None:

@@ -66,7 +66,7 @@ def page(
     """
     one_of("solver", solver, Solver)
     if not results:
-        raise UsageError("name results: folders that --out has written, evidence, or files of --json")
+        raise UsageError("name results: folders and JSON answers that commands have written, or evidence")
     paths = [Path(x) for x in results]
     target = Path(out)
     if target.suffix.lower() not in (".html", ".htm"):

@@ -1,7 +1,7 @@
 """What a formula is on one trace: verdict, margin, and when each named part of it is true."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal, TypeAlias
 
@@ -12,7 +12,7 @@ from roadproof.judge.exact import judge
 from roadproof.judge.robust import robustness
 from roadproof.judge.truth import TruthSet
 from roadproof.logic.formula import Formula, Named, nesting
-from roadproof.monitoring.answers import Convention, TruthArrays
+from roadproof.monitoring.answers import Convention, Margin, TruthArrays
 from roadproof.monitoring.batch import Batch
 from roadproof.monitoring.compiled import compile
 from roadproof.world.drive import Drive
@@ -26,7 +26,7 @@ class Strip:
     """When a part is true, and when that depends on what comes after the trace; seconds, ends included.
 
     ``exact`` tells the same with open and closed ends where the view is dense; ``depth``: in how many others
-    the part is.
+    the part is. ``margins``: at each sample, None where it depends on what comes later or lanes alone decide.
     """
 
     name: str
@@ -34,6 +34,7 @@ class Strip:
     undecided: Spans = ()
     exact: str = ""
     depth: int = 0
+    margins: tuple[float | None, ...] = field(default=(), compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -80,17 +81,19 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
     other: Convention = "clip" if convention == "truncated" else "truncated"
     seen = monitor.observe(batch)
     verdicts = monitor.evaluate(seen, convention, named=True)
-    margin = monitor.measure(batch, convention).margins["asked"]
+    margins = monitor.measure(batch, convention, at="all", named=True)
+    margin = margins.margins["asked"]
     dt = float(batch.dt)
-    whole = Strip(text, *_spans(monitor.evaluate(seen, convention, at="all").answers["asked"], dt))
+    spans = _spans(monitor.evaluate(seen, convention, at="all").answers["asked"], dt)
+    whole = Strip(text, *spans, margins=_sampled(margin))
     return Observed(
         text,
         "recorded",
         _said(verdicts.answers["asked"]),
-        (float(margin.low[0]), float(margin.high[0])),
+        (float(margin.low[0, 0]), float(margin.high[0, 0])),
         float((batch.samples - 1) * batch.dt),
         batch.dt,
-        (whole, *_strips(formula, verdicts.named, dt)),
+        (whole, *_strips(formula, verdicts.named, margins.named, dt)),
         convention,
         _said(monitor.evaluate(seen, other).answers["asked"]),
     )
@@ -116,11 +119,23 @@ def name_of(part: Named) -> str:
     return f"{part.name}({', '.join(part.arguments)})"
 
 
-def _strips(formula: Formula, named: Mapping[Named, TruthArrays], dt: float) -> Iterator[Strip]:
+def margins_of(formula: Formula, batch: Batch) -> tuple[float | None, ...]:
+    """The margin of a formula at each sample of the one trace of ``batch``. Raises ``InputError``."""
+    return _sampled(compile({"asked": formula}).measure(batch, "clip", at="all").margins["asked"])
+
+
+def _sampled(margin: Margin) -> tuple[float | None, ...]:
+    pairs = zip(margin.low[:, 0].tolist(), margin.high[:, 0].tolist(), strict=True)
+    return tuple(low if low == high and np.isfinite(low) else None for low, high in pairs)
+
+
+def _strips(
+    formula: Formula, named: Mapping[Named, TruthArrays], margins: Mapping[Named, Margin], dt: float
+) -> Iterator[Strip]:
     depths = _depths(formula)
     for part, answer in named.items():
         if part != formula:
-            yield Strip(name_of(part), *_spans(answer, dt), depth=depths[part])
+            yield Strip(name_of(part), *_spans(answer, dt), "", depths[part], _sampled(margins[part]))
 
 
 def _depths(formula: Formula) -> dict[Named, int]:

@@ -184,13 +184,22 @@ def _margins(
     file: DriveFile, library: Library, direction: Direction, low: str, high: str
 ) -> Sequence[float] | None:
     """RSS distance less gap at each time; None where the library's definition is of another form."""
-    near = too_near_ahead if direction == "along" else too_near_left
-    formula = _bound(file, library, lambda home: near(home, low, high))
-    comparisons = [] if formula is None else [x for x in subformulas(formula) if isinstance(x, Compare)]
-    if len(comparisons) != 2:
+    formula = _bound(file, library, lambda home: too_near(home, direction, low, high))
+    nearer = None if formula is None else nearer_in(formula)
+    if nearer is None:
         return None
-    nearer: Formula = comparisons[1]
     return list(robustness(nearer, file.drive, GRAIN, times_of(file)[-1]).margins[nearer])
+
+
+def too_near(home: Specification, direction: Direction, low: str, high: str) -> Query:
+    """One vehicle is ahead, or left, of the other, and nearer than the RSS distance."""
+    return too_near_ahead(home, low, high) if direction == "along" else too_near_left(home, low, high)
+
+
+def nearer_in(formula: Formula) -> Formula | None:
+    """The comparison in ``too_near`` whose margin is RSS distance less gap; None in another form."""
+    comparisons = [x for x in subformulas(formula) if isinstance(x, Compare)]
+    return comparisons[1] if len(comparisons) == 2 else None
 
 
 def _bound(file: DriveFile, library: Library, said: Callable[[Specification], Query]) -> Formula | None:

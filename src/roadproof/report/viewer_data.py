@@ -324,4 +324,9 @@ def _margins(formula: Formula, file: DriveFile) -> tuple[float, Mapping[Formula,
 
 def _short(values: Iterable[float]) -> list[float | None]:
     """As a document has them: few digits, null where there is no number."""
-    return [float(f"{x:.{DIGITS}g}") if isfinite(x) else None for x in values]
+    return [short_number(x) if isfinite(x) else None for x in values]
+
+
+def short_number(value: float) -> float:
+    """With as many digits as a document has them."""
+    return float(f"{value:.{DIGITS}g}")

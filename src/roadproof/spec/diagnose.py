@@ -75,6 +75,7 @@ class Proofreader:
 
     What definitions below mean that a text does not touch is kept from one text to the next, and so is what
     was read of the statements of a text: a change to one statement takes about the time of that statement.
+    What a text calls a set of its own has to extend the same set in each of them.
     """
 
     below: Library
@@ -95,11 +96,20 @@ class Proofreader:
     def read(self, text: str, name: str = "text") -> Diagnosis:
         """What is wrong with a specification text. Never raises for what is in it."""
         source = Source(name, text)
-        parsed = parse_pieces(text, name)
-        gathered = gather({source: parsed}, self.below)
-        library = replace(gathered.library, files=(*self.below.files, source))
-        told = {x.name for x in parsed.statements if isinstance(x, Definition | ParameterDeclaration)}
-        homes = _homes(library, [source])
+        errors, library, lost = self.errors_in(source)
+        found = [as_diagnostic(error, text) for error in errors if error.source == name]
+        replaced = [x for x in library.definitions.values() if source_of(library, x) == source]
+        found += [_replaces(x, text) for x in replaced if x.name in self.below.definitions]
+        return Diagnosis(tuple(sorted(found, key=lambda x: (x.line, x.column))), library, lost)
+
+    def errors_in(self, *sources: Source) -> tuple[list[TextError], Library, Lost]:
+        """What is wrong with texts that belong together; what could be read of them, and what is lost."""
+        parsed = {source: parse_pieces(source.text, source.name) for source in sources}
+        gathered = gather(parsed, self.below)
+        library = replace(gathered.library, files=(*self.below.files, *sources))
+        said = (x for one in parsed.values() for x in one.statements)
+        told = {x.name for x in said if isinstance(x, Definition | ParameterDeclaration)}
+        homes = _homes(library, sources)
         changed = self._reached(told | {x.name for _, definitions in homes for x in definitions})
         errors = list(gathered.errors)
         for specification, definitions in homes:
@@ -110,10 +120,7 @@ class Proofreader:
             errors += _errors_in_all(walk, definitions)
             if not (gathered.errors or errors):
                 kept |= {x: made for x, made in walk.known.items() if x[0] not in changed}
-        found = [_diagnostic(error, text) for error in once_each(errors) if error.source == name]
-        replaced = [x for x in library.definitions.values() if source_of(library, x) == source]
-        found += [_replaces(x, text) for x in replaced if x.name in self.below.definitions]
-        return Diagnosis(tuple(sorted(found, key=lambda x: (x.line, x.column))), library, gathered.lost)
+        return once_each(errors), library, gathered.lost
 
     def _reached(self, changed: set[str]) -> set[str]:
         """Names that mean something else where ``changed`` ones do."""
@@ -132,7 +139,7 @@ def diagnose(text: str, below: Library, name: str = "text") -> Diagnosis:
 
 def diagnose_claim(text: str, specification: Specification, lost: Lost = ()) -> tuple[Diagnostic, ...]:
     """What is wrong with a formula in the definitions of a specification. Never raises for what is in it."""
-    return tuple(_diagnostic(error, text) for error in claim_errors(specification, text, "claim", lost))
+    return tuple(as_diagnostic(error, text) for error in claim_errors(specification, text, "claim", lost))
 
 
 def claim_errors(
@@ -230,7 +237,8 @@ def _errors_with(walk: Elaborator, definition: Definition, size: int) -> list[Te
     return errors
 
 
-def _diagnostic(error: TextError, text: str) -> Diagnostic:
+def as_diagnostic(error: TextError, text: str) -> Diagnostic:
+    """An error as a remark about the text that it is in; without an end it is about the word there."""
     lines = text.splitlines() or [""]
     line, column = (1, 1) if error.position is None else (error.position.line, error.position.column)
     line = min(line, len(lines))
@@ -245,5 +253,5 @@ def _diagnostic(error: TextError, text: str) -> Diagnostic:
 
 def _replaces(definition: Definition, text: str) -> Diagnostic:
     message = f"it replaces the definition of '{definition.name}' below, wherever that is used"
-    made = _diagnostic(TextError(message, definition.at), text)
+    made = as_diagnostic(TextError(message, definition.at), text)
     return replace(made, severity="info")

@@ -89,7 +89,7 @@ def _monitored(ask: Mapping[str, Any], trace: OneTrace) -> dict[str, Any]:
             observed.append((role, rp.monitor(formula, trace, using=home).observed))
         except RoadproofError as error:
             refused.append({"role": role, "formula": formula, "set": home.sets[0], "error": str(error)})
-    document = recorded_data(trace, observed, home.sets[0])
+    document = recorded_data(trace, observed, home.specification, home.all_values())
     document["formulas"] += refused
     return document
 

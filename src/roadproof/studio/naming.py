@@ -98,8 +98,12 @@ def read(ask: Mapping[str, Any], say: object) -> dict[str, Any]:
             "where": x.where,
             "message": x.message,
             "hint": x.hint,
-            "line": None if x.position is None else x.position.line,
-            "column": None if x.position is None else x.position.column,
+            "at": None
+            if x.position is None
+            else [
+                [x.position.line, x.position.column],
+                [x.position.end_line, x.position.end_column],
+            ],
         }
         for x in found
     ]

@@ -60,7 +60,7 @@ def claims(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
             refuted.append(folded((verdict("REFUTED"), f" {_label(x)} ", claim), _against(x, result, book)))
     told = f"; the evidence of {accepted} was accepted when this page was made" if accepted else ""
     head = ("verdict", "property", "set", "claim", "evidence")
-    line = tag("p", f"{len(entries)} claims: ", counts(entries), told)
+    line = tag("p", f"{len(entries)} claim{'s' if len(entries) != 1 else ''}: ", counts(entries), told)
     return joined([line, filtered(table(head, rows)), *refuted])
 
 

@@ -74,28 +74,41 @@ def coverage(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
         parts.append(
             folded((tag("b", f"gap {x['number']}"), where), *inside, id=_id(result, "gap", x["number"]))
         )
-    doubts = [(x.get("scenario"), x.get("description"), x["reason"]) for x in classes if x.get("reason")]
-    parts += [table(("scenario", "what", "note"), doubts)] if doubts else []
+    noted = [x for x in classes if x.get("reason") and x.get("gaps")]
+    notes = [(x.get("scenario"), x.get("description"), x["reason"]) for x in noted]
+    parts += [table(("scenario", "what", "note"), notes)] if notes else []
+    parts += [_no_gap(result, k, x, book) for k, x in enumerate(classes) if not x.get("gaps")]
     return joined(parts)
+
+
+def _no_gap(result: Result, place: int, x: Mapping[str, Any], book: Book) -> Markup:
+    """A class without a drive: what was proved of it, or why it is not known."""
+    scenario = x.get("scenario")
+    told = f" scenario {scenario}, {x.get('component')}: " if scenario is not None else " "
+    inside: list[Content] = [tag("p", tag("code", x.get("claim")))] if x.get("claim") else []
+    inside += [tag("p", x["reason"])] if x.get("reason") else []
+    summary = (verdict(x.get("verdict")), told, x.get("condition") or x.get("description"))
+    return folded(summary, *inside, *behind(x, result, book), id=_id(result, "class", place))
 
 
 def _classes(result: Result, classes: Any, words: Mapping[int, str]) -> Markup:
     scenarios = list(dict.fromkeys(x.get("scenario") for x in classes))
     kinds = list(dict.fromkeys((x.get("component"), x.get("condition")) for x in classes))
-    known = {(x.get("scenario"), x.get("component"), x.get("condition")): x for x in classes}
+    places = {(x.get("scenario"), x.get("component"), x.get("condition")): k for k, x in enumerate(classes)}
     rows: list[list[Content]] = []
     for kind in kinds:
         cells: list[Content] = [tag("th", " ".join(str(x) for x in kind if x), scope="row")]
         for scenario in scenarios:
-            x = known.get((scenario, *kind))
-            cells.append(tag("td") if x is None else _gap_cell(result, x))
+            k = places.get((scenario, *kind))
+            cells.append(tag("td") if k is None else _gap_cell(result, k, classes[k]))
         rows.append(cells)
-    columns = [tag("th", x, scope="col", title=words.get(x or -1)) for x in scenarios]
-    told = "What of which scenario is false: ■ a danger that is missed so, · proved that there is none."
+    columns = [tag("th", x or "other", scope="col", title=words.get(x or -1)) for x in scenarios]
+    told = "What of which scenario is false: ■ a danger that is missed so, · proved that there is none. "
+    told += "Each cell leads to its drive, or to what was proved."
     return joined([tag("p", told), matrix(columns, rows)])
 
 
-def _gap_cell(result: Result, x: Mapping[str, Any]) -> Markup:
+def _gap_cell(result: Result, place: int, x: Mapping[str, Any]) -> Markup:
     numbers = x.get("gaps") or ()
-    target = _id(result, "gap", numbers[0]) if numbers else None
+    target = _id(result, "gap", numbers[0]) if numbers else _id(result, "class", place)
     return cell(x.get("verdict"), f"{x.get('description')}: {x.get('verdict')}", target)

@@ -57,7 +57,9 @@ def read_results(paths: Sequence[Path]) -> Given:
             raise InputError(f"{path} does not exist: name a file or a folder that a command has written")
         found = [*_in_folder(path)] if path.is_dir() else [path]
         if not found:
-            raise InputError(f"{path} holds no result: name a folder of --out, or a file of --json")
+            raise InputError(
+                f"{path} holds no result: name a folder or a JSON answer that a command has written"
+            )
         for file in found:
             schema, data = _read(file)
             if schema in EVIDENCE:

@@ -2,8 +2,10 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
+from roadproof.report.explore import show
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
 from roadproof.report.page.pieces import bar, behind, folded, matrix, short, verdict
@@ -20,9 +22,8 @@ def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
         share = (
             "" if count is None or not total else bar(count / total, f"{count}, {100 * count / total:.1f} %")
         )
-        rows.append(
-            (verdict(x.get("verdict")), tag("b", x["name"]), x.get("description"), x.get("traces"), share)
-        )
+        shares = (x.get("traces"), share) if total else ()
+        rows.append((verdict(x.get("verdict")), tag("b", x["name"]), x.get("description"), *shares))
     counted = Counter((str(x.get("kind")), str(x.get("verdict"))) for x in result.data.get("claims", ()))
     told = joined([joined([f"{kind}: {n} ", verdict(word)]) for (kind, word), n in counted.items()], "; ")
     text = result.data.get("text")
@@ -31,7 +32,7 @@ def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     for x in entries:
         inside = (tag("p", tag("code", x.get("formula"))), *behind(x, result, book))
         drives.append(folded((verdict(x.get("verdict")), " ", tag("b", x["name"])), *inside))
-    head = ("verdict", "class", "what happens", "traces", "share of situations")
+    head = ("verdict", "class", "what happens", *(("traces", "share of situations") if total else ()))
     return joined([tag("p", told), table(head, rows), file, *drives])
 
 
@@ -48,14 +49,17 @@ def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
         word = tag("span", said, class_=f"verdict-word {'against' if lacks else 'proof'}")
         rows.append((word, x.get("name"), x.get("words"), short(tested), short(x.get("possible"))))
     head = ("", "what", "in words", "tests that show it", "some of whose drives do")
-    told = f"{len(tests)} tests; {len(missing)} of {len(targets)} situations are tested by none."
+    counted = f"{len(tests)} test{'s' if len(tests) != 1 else ''}"
+    told = f"{counted}; {len(missing)} of {len(targets)} situations are tested by none."
     parts: list[Content] = [tag("p", told), table(head, rows)]
     names = [str(x.get("name")) for x in targets]
     columns = [tag("th", tag("span", name), scope="col", class_="turned") for name in names]
     cells = [[tag("th", x.get("id"), scope="row", title=x.get("title")), *_marks(x, names)] for x in tests]
     parts.append(folded(("Each test and what it shows",), matrix(columns, cells)))
     odd = ("faults", "doubts", "contradictions", "notes")
-    parts += [tag("p", tag("b", f"{name}: "), short(data[name], 2000)) for name in odd if data.get(name)]
+    for name in odd:
+        listed = tag("ul", *(tag("li", short(x, 2000)) for x in data.get(name) or ()))
+        parts += [joined([tag("p", tag("b", name)), listed])] if data.get(name) else []
     facts = [x for x in data.get("facts", ()) if x.get("drive") or x.get("certificate")]
     for x in facts:
         summary = (verdict(x.get("verdict")), f" {x.get('test')} ", tag("code", short(x.get("formula"))))
@@ -89,7 +93,7 @@ _FACTS = {
 def traffic(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """The results table of recordings, with recall as bars, and what detectors of earlier works report."""
     data = result.data
-    told = "; ".join(f"{data[key]} {name}" for key, name in _FACTS.items() if key in data)
+    told = "; ".join(f"{name}: {data[key]}" for key, name in _FACTS.items() if key in data)
     entries = data.get("table", ())
     numbers = list(dict.fromkeys(n for x in entries for n in x.get("scenarios", {})))
     named = [tag("span", n, title=words.get(int(n))) for n in numbers]
@@ -114,4 +118,11 @@ def _row(x: Mapping[str, Any], numbers: Sequence[str]) -> list[Content]:
     share = bar(recall, f"{100 * recall:.1f} %") if isinstance(recall, int | float) else "–"
     counts = [x.get(key) for key in ("traces", "matching")]
     found = [x.get("scenarios", {}).get(n) for n in numbers]
-    return [x.get("sector"), f"{x.get('min_danger')} s", x.get("set"), *counts, share, *found]
+    return [
+        x.get("sector"),
+        f"{show(Fraction(x.get('min_danger', 0)))} s",
+        x.get("set"),
+        *counts,
+        share,
+        *found,
+    ]

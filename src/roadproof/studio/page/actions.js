@@ -95,6 +95,15 @@ export function showDrive(drive, view, compared = false) {
   });
 }
 
+/** A drive of a file, with the formula that the file is about as the question. */
+export function showFile(drive, view) {
+  batch(() => {
+    state.recording.value = null;
+    state.kept.formula.value = drive.formula ?? state.kept.formula.value;
+    showDrive(drive, view);
+  });
+}
+
 let found = { text: "", count: 0 };
 
 /** Find a drive; `negated`: one without it; `next`: one that differs clearly from those before. */
@@ -114,6 +123,9 @@ export function explain() {
   const { formula, id } = state.look.selected.value;
   const doc = state.view.value;
   if (!doc) return say("Explain is about a drive that is shown: find one first.");
+  if (state.kept.drive.value === null) {
+    return say("Explain is about judged drives: a recording is only known at its samples. See its strips.");
+  }
   const at = state.look.time.value;
   const same = state.explain.value;
   const part = formula === 0 ? id : 0;
@@ -233,11 +245,7 @@ export async function open(list) {
   const answer = await askLong(title, "drop", { ...state.question.value, files });
   if (!answer) return;
   if (answer.drive) {
-    batch(() => {
-      state.recording.value = null;
-      state.kept.formula.value = answer.drive.formula;
-      showDrive(answer.drive, answer.view);
-    });
+    showFile(answer.drive, answer.view);
   } else if (answer.view) {
     showRecorded(answer.view);
   } else if (answer.recording) {

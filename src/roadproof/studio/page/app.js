@@ -102,14 +102,12 @@ async function begin() {
   document.documentElement.dataset.theme = dark ? "dark" : "light";
   state.theme.value = dark ? "dark" : "light";
   const begun = await start();
+  state.drives.value = begun.drives;
   const said = await fromAddress();
   if (said) state.takeOver(said);
   else {
     if (begun.text) state.kept.text.value = begun.text;
-    if (begun.drives.length) {
-      state.kept.drive.value = begun.drives[0].drive;
-      state.kept.formula.value = begun.drives[0].drive.formula ?? state.kept.formula.value;
-    }
+    if (begun.drives.length) actions.showFile(begun.drives[0].drive);
   }
   const app = document.getElementById("app");
   app.textContent = "";

@@ -149,14 +149,6 @@ function placeAt(doc, [row, column]) {
   return Math.min(line.to, line.from + Math.max(0, column - 1));
 }
 
-/** The word that begins at a line and column. */
-function spanAt(doc, at) {
-  const from = placeAt(doc, [at.line, at.column]);
-  const line = doc.lineAt(from);
-  const word = line.text.slice(from - line.from).match(/^(\w+|.)/);
-  return [from, Math.min(line.to, from + (word ? word[0].length : 1))];
-}
-
 // --- the editor ------------------------------------------------------------------------------
 
 function oneLine(onEnter) {
@@ -223,9 +215,9 @@ export function Editor({ read, onChange, where, label, line = false, onEnter = (
     const diagnostics = mistakes
       .filter((x) => x.where === where)
       .map((x) => {
-        const [from, to] = spanAt(doc, { line: x.line ?? 1, column: x.column ?? 1 });
+        const [from, to] = (x.at ?? [[1, 1], [1, 2]]).map((at) => placeAt(doc, at));
         const message = x.hint ? `${x.message}\n${x.hint}` : x.message;
-        return { from, to, severity: "error", message };
+        return { from: Math.min(from, to), to, severity: "error", message };
       });
     view.current.dispatch(cm.setDiagnostics(view.current.state, diagnostics));
   }, [mistakes, where]);

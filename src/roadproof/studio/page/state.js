@@ -26,6 +26,7 @@ export const job = signal(null); // what runs: {title, stage, seconds, stop}
 export const trouble = signal(""); // what went wrong with the page itself
 export const said = signal(""); // a word for the user, such as "copied"
 export const help = signal(false);
+export const drives = signal([]); // those of the command line: {name, drive}
 export const recording = signal(null); // a recording that was dropped: its pairs, matches and files
 export const pair = signal(null); // the vehicles of it that are shown
 export const explain = signal(null); // {part, at}: what is to be explained
