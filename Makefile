@@ -36,7 +36,7 @@ demo: $(READY)
 
 # The studio in a real browser: Debian's Chromium (apt-get install chromium), or CHROMIUM=/path/to/it.
 browser: $(READY)
-	$(BIN)/python -m pytest -q -rs tests/studio $(ARGS)
+	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/studio tests/report/test_page.py $(ARGS)
 
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)
