@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from kernel.needs import needs_coq
+from roadproof.cache import private_folder
 from roadproof.kernel import coq as coq_module
 from roadproof.kernel.accept import AXIOMS, axioms_of
 from roadproof.kernel.coq import THEORIES, ready

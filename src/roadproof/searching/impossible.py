@@ -1,7 +1,7 @@
 """No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from roadproof.effort import Effort
@@ -36,7 +36,8 @@ class Impossibility:
 
     def as_data(self) -> dict[str, Any]:
         """Core and certificate as plain data."""
-        return {"core": list(self.told), "certificate": certificate_data(self.certificate)}
+        plain = replace(self.certificate, tableau=None)  # which files alone have
+        return {"core": list(self.told), "certificate": certificate_data(plain)}
 
 
 def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
