@@ -1,5 +1,6 @@
 """Every command takes every format: one traffic in several of them gives one answer."""
 
+import csv
 import dataclasses
 import json
 from pathlib import Path
@@ -62,10 +63,10 @@ def test_evaluate(folders: dict[str, Path], tmp_path: Path) -> None:
 
 def test_monitor(folders: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A match of scenario 1 and one of 4, and what is not one, as an evaluation has them."""
-    rows = [row.split(",") for row in evaluated(folders["highD"], tmp_path / "o")[1:]]
+    rows = list(csv.reader(evaluated(folders["highD"], tmp_path / "o")[1:]))
     chosen = [next(row for row in rows if row[6:9] == ["0.6", "base", number]) for number in ("1", "4")]
     capsys.readouterr()
-    for sv, pov, _, lane, first, last, _, _, number in chosen:
+    for sv, pov, _, lane, first, last, _, _, number, _ in chosen:
         for name, file in FORMATS.items():
             trace = f"{folders[name] / file}:{sv},{pov}"
             for asked, code in ((number, 0), (str(5 - int(number)), 10)):

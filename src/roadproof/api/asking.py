@@ -7,12 +7,13 @@ from typing import Any, Protocol, TypeVar
 from roadproof.analysis.basis import Basis
 from roadproof.api.answer import Row
 from roadproof.api.definitions import Among, Definitions, load
-from roadproof.api.settings import basis_of
+from roadproof.api.settings import Vehicles, basis_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.kinds import Evidence
+from roadproof.hands import Jobs
 from roadproof.spec.scenarios import numbers_of
 from roadproof.study.frame import Study
 from roadproof.study.pool import Progress, Say
@@ -81,10 +82,11 @@ def ask(
     about: Callable[[Basis, tuple[int, ...]], Listing[A]],
     among: Among = None,
     using: Definitions | None = None,
+    vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
-    jobs: int | None = None,
+    jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
 ) -> Answers[A]:
@@ -96,7 +98,7 @@ def ask(
     """
     home = using or load()
     numbers = home.among(among) or numbers_of(home.specification)
-    study = about(basis_of(home, effort, timeout), numbers)
+    study = about(basis_of(home, effort, timeout, vehicles), numbers)
     if not study.names:
         raise UsageError(f"--among {among} leaves nothing to ask: name other scenarios")
     return Answers[A].asked(study, out, jobs, progress, say)

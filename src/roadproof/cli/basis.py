@@ -53,7 +53,7 @@ def asking(args: argparse.Namespace, folder: Path | None) -> Asking:
         "timeout": args.timeout,
         "jobs": read_hands(args),
         "out": folder,
-        "vehicles": dict(named(args.vehicles, "")),
+        "vehicles": dict(named(getattr(args, "vehicles", ()), "")),
         "progress": Counter(),
         "say": warn,
     }

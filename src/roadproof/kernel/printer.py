@@ -4,6 +4,7 @@ Definitions stay functions of their vehicles and lanes, as in the specification;
 function is applied only where its body, with the names replaced, is what the claim means there.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -19,8 +20,8 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename, rename_vehicles, vehicles_of
 from roadproof.logic.terms import Term
 
-# Words of Text.v, which are those of the language.
-_SAID_OF_VEHICLES = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "length", "width")
+# Words of Text.v, which are those of the language; a new signal has none there.
+_SAID_OF_VEHICLES = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat length width"))
 _ZONES = ("main", "merge", "depart")
 _COMPARED = {"<": "<", "<=": "<=", ">": ">", ">=": ">="}
 

@@ -9,7 +9,7 @@ from roadproof.evaluation.observed import Observed, Strip, margins_of
 from roadproof.evaluation.one_trace import OneTrace
 from roadproof.report.drive_data import Direction, nearer_in, too_near
 from roadproof.report.viewer_data import SCHEMA, short_number, shown_road
-from roadproof.signals import SizeName
+from roadproof.signals import SIGNALS, SizeName
 from roadproof.spec.bind import bind
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import SUBJECT
@@ -63,7 +63,7 @@ def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> dict[st
     def column(signal: Any) -> list[float]:
         return [round(float(x), 4) for x in batch.signals[signal, name][:count, 0]]
 
-    columns = [column(x) for x in ("s", "d", "v_lon", "v_lat")]
+    columns = [column(x) for x, about in SIGNALS.items() if about.kept == "start"]
     knots = [[round(k * dt, 6), *row, 0.0, 0.0] for k, row in enumerate(zip(*columns, strict=True))]
     length, width = (float(batch.sizes[x, name][0]) for x in ("length", "width"))
     return {"length": length, "width": width, "knots": knots}
