@@ -20,6 +20,7 @@ from roadproof.evaluation.questions import default_settings
 from roadproof.formats.highd import SAMPLE_KINDS
 from roadproof.formats.table import read_columns
 from roadproof.formats.write_highd import write_highd
+from roadproof.hands import Hands
 from roadproof.simulation.simulate import Traffic
 from roadproof.simulation.synthetic import simulate
 
@@ -59,7 +60,7 @@ def main() -> None:
 
         def experiment() -> None:
             nonlocal outcome
-            outcome = run_experiment(Experiment(folder, out, default_settings(), jobs=args.jobs))
+            outcome = run_experiment(Experiment(folder, out, default_settings(), Hands(args.jobs)))
 
         running = seconds(experiment)
         again = seconds(lambda: [read_columns(path, list(SAMPLE_KINDS)) for path in paths])

@@ -20,6 +20,7 @@ from roadproof.evaluation.questions import default_settings
 from roadproof.evaluation.results import add_findings, as_json, begin_totals
 from roadproof.formats.sources import find_sources
 from roadproof.formats.write_highd import write_highd
+from roadproof.hands import Hands
 from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
 
@@ -112,12 +113,12 @@ def test_two_jobs_give_the_same_bytes(
     workers = []
     true_answers = module.answers_of
 
-    def answers_of(work: Any, jobs: Any, count: int, **more: Any) -> Any:
-        workers.append(count)
-        return true_answers(work, jobs, count, **more)
+    def answers_of(work: Any, jobs: Any, hands: Hands, **more: Any) -> Any:
+        workers.append(hands.processes)
+        return true_answers(work, jobs, hands, **more)
 
     monkeypatch.setattr(module, "answers_of", answers_of)
-    run_experiment(Experiment(folder, tmp_path, default_settings(), jobs=2))
+    run_experiment(Experiment(folder, tmp_path, default_settings(), Hands(2)))
     assert contents(tmp_path) == undisturbed
     assert workers == [2]
 

@@ -54,7 +54,8 @@ def test_both_directions_get_a_drive(recording: Recording, drive: Drive, scenari
         assert from_behind == sorted(drive.vehicles, key=lambda name: merged.s[row[name]][0])
     row = next(rows_of(truths))
     assert len(row) == len(PLANTED_COLUMNS)
-    assert row[7:] == ["0.6", "base", scenario]
+    assert row[7:10] == ["0.6", "base", scenario]
+    assert row[10].endswith("lane keep")
 
 
 @pytest.mark.parametrize(
