@@ -105,7 +105,8 @@ class Checked:
 
 def _entry(finding: Finding) -> dict[str, Any]:
     """A finding as plain data; of the kernel only where it was asked."""
-    data = {**asdict(finding), "accepted": finding.outcome is Acceptance.ACCEPTED}
+    plain = {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(finding).items()}
+    data = {**plain, "accepted": finding.outcome is Acceptance.ACCEPTED}
     if not finding.kernel:
         del data["kernel"]
     return data
