@@ -24,6 +24,7 @@ from roadproof.errors import RoadproofError
 from roadproof.searching import ask
 from roadproof.searching.compare import compare
 from roadproof.shipped import shipped
+from roadproof.studio.server import serve
 from roadproof.study import pool
 from roadproof.verdict import ExitCode
 
@@ -238,6 +239,7 @@ def test_no_command_line_is_our_fault(name: str, tmp_path: Path, monkeypatch: py
     replace_everywhere(monkeypatch, pool.work, begin)
     replace_everywhere(monkeypatch, compare, begin_at_once)
     replace_everywhere(monkeypatch, ask.answer, begin_at_once)
+    replace_everywhere(monkeypatch, serve, begin_at_once)
     files = make_files(tmp_path)
     monkeypatch.chdir(tmp_path / "inside")
     for seed in SEEDS:
