@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test demo browser findings interop mutants fuzz lint unit format clean
+.PHONY: test long demo browser findings interop mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -18,7 +18,11 @@ lint: $(READY)
 	$(BIN)/lint-imports
 
 unit: $(READY)
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs -m "not long"
+
+# The tests that take long (tests/lengthy.py), which make test leaves out; CI runs both.
+long: $(READY)
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs -m long
 
 # Proofs, drives, a matrix, an evaluated recording, and one page about all of it; at most 3 minutes.
 DEMO := out/demo

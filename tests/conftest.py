@@ -1,4 +1,5 @@
-"""All of the package is imported before the first test, and random cases are the same in every run.
+"""All of the package is imported before the first test, random cases are the same in every run, and tests that
+take long (``lengthy.py``) are marked ``long``.
 
 A module that is imported while a test has replaced something would keep the replacement for good. New
 random cases are for ``make fuzz``.
@@ -7,9 +8,11 @@ random cases are for ``make fuzz``.
 import pkgutil
 from importlib import import_module
 
+import pytest
 from hypothesis import settings
 
 import roadproof
+from lengthy import LENGTHY
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")
@@ -17,3 +20,9 @@ settings.load_profile("same")
 for _each in pkgutil.walk_packages(roadproof.__path__, "roadproof."):
     if not _each.name.endswith("__main__"):
         import_module(_each.name)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if item.nodeid.startswith(LENGTHY):
+            item.add_marker("long")
