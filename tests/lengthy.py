@@ -1,7 +1,7 @@
 """Tests that take long: ``make test`` leaves them to ``make long``, and CI runs both.
 
-A test is here when it takes more than about eight seconds of an idle core, and a quicker one beside it asks the
-same of less: what it adds is breadth. Entries are beginnings of node ids.
+A test is here when it takes more than about eight seconds of an idle core, and a quicker one beside it
+asks the same of less: what it adds is breadth. Entries are beginnings of node ids.
 """
 
 LENGTHY = (
