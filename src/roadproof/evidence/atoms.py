@@ -13,6 +13,7 @@ from itertools import combinations
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Named
+from roadproof.logic.node import once
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import rename, road_names, terms_of, without_names
 from roadproof.logic.show import text
@@ -95,6 +96,7 @@ def _is_open(formula: Formula) -> bool:
             return False
 
 
+@once
 def is_rigid(formula: Formula) -> bool:
     """Whether time cannot change ``formula``: it speaks of parameters and variables only."""
     if any(isinstance(part, f.Occupies | f.Some | f.Every) for part in f.subformulas(formula)):

@@ -11,7 +11,7 @@ Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dens
 from collections.abc import Callable, Iterator
 from typing import Literal, TypeAlias, assert_never
 
-from roadproof.logic.node import node
+from roadproof.logic.node import node, once
 from roadproof.logic.terms import Number, Term, number
 
 Comparison: TypeAlias = Literal["<", "<=", ">", ">="]
@@ -276,6 +276,7 @@ def nesting(formula: Formula) -> dict[Named, int]:
     return found
 
 
+@once
 def is_state(formula: Formula) -> bool:
     """Whether ``formula`` speaks about one instant only: no temporal operator inside."""
     return not any(isinstance(f, Temporal) for f in subformulas(formula))

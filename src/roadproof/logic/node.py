@@ -6,9 +6,11 @@ Formulas share sub-trees, so without the remembered hash every look-up would wal
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import wraps
 from typing import Any, TypeVar, dataclass_transform
 
 T = TypeVar("T")
+N = TypeVar("N")
 
 
 @dataclass_transform(frozen_default=True)
@@ -26,8 +28,8 @@ def node(cls: type[T]) -> type[T]:
         return known
 
     def state(self: Any) -> dict[str, Any]:
-        """What is pickled: all but the hash, which another process would compute differently."""
-        return {name: value for name, value in self.__dict__.items() if name != "_hash"}
+        """What is pickled: all but what is remembered; another process would compute another hash."""
+        return {name: value for name, value in self.__dict__.items() if name[0] != "_"}
 
     def equals(self: Any, other: object) -> bool:
         """Structural, but settled at once for the same object and for different hashes."""
@@ -41,3 +43,18 @@ def node(cls: type[T]) -> type[T]:
     made.__getstate__ = state  # type: ignore[method-assign]
     made.__hash__ = remembered  # type: ignore[method-assign]
     return made
+
+
+def once(fact: Callable[[N], T]) -> Callable[[N], T]:
+    """``fact`` of a node, worked out once per object. It must depend on nothing but the node."""
+    key = f"_{fact.__module__}.{fact.__name__}"
+
+    @wraps(fact)
+    def known(of: N) -> T:
+        kept = of.__dict__
+        if key not in kept:
+            kept[key] = fact(of)
+        found: T = kept[key]
+        return found
+
+    return known
