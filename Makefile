@@ -38,9 +38,9 @@ demo: $(READY)
 		--title 'roadproof: 162 claims, 24 drives, a matrix and a recording' --out $(DEMO)/demo.html
 	@echo "Open $(CURDIR)/$(DEMO)/demo.html in a browser; it needs no network."
 
-# The studio in a real browser: Debian's Chromium (apt-get install chromium), or CHROMIUM=/path/to/it.
+# The studio in a real browser: Debian's Chromium (apt-get install chromium fonts-dejavu-core), or CHROMIUM=/path/to/it.
 browser: $(READY)
-	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/studio tests/report/test_page.py $(ARGS)
+	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/studio/test_browser.py tests/report/test_page.py $(ARGS)
 
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)

@@ -112,3 +112,71 @@ def test_places_in_the_set_count_as_they_stand_in_the_draft() -> None:
                 assert written[place[1][0] - 1][place[1][1] - 1 :].startswith("def ")
     assert place_in("iso34502.spec", (3, 1)) is None
     assert isinstance(mistakes(Draft("base", "def"), {})[0], Mistake)
+
+
+EACH = "each i in 1..3 { def roadSector_{i}(SV: vehicle, POV: vehicles) := true }\n"
+
+
+def test_an_each_block_is_of_the_edit_alone() -> None:
+    """It replaces in ``edit``, and what is below stays what it is; one of before is of before."""
+    home = Draft("ext", EACH).definitions()
+    alone = Draft("ext", "def roadSector_2(SV: vehicle, POV: vehicles) := true\n").definitions()
+    assert mistakes(Draft("ext", EACH), {"formula": "2"}) == []
+    assert home.read("2").formula == alone.read("2").formula != rp.load("ext").read("2").formula
+    file = Draft("ext", EACH).file()
+    assert rp.load("ext", specs=[file]).read("2").formula == rp.load("ext").read("2").formula
+    assert rp.load("edit", specs=[file]).read("2").formula == home.read("2").formula
+    both = Draft("ext", "def laneKeep(a: vehicle, L: lane) := true\n", EACH)
+    assert both.definitions("before").read("2").formula == home.read("2").formula
+    assert both.definitions("edit").read("roadSector_2(SV,POV)") != both.definitions("before").read(
+        "roadSector_2(SV,POV)"
+    )
+    new = "each k in 1..2 { def late_{k}(a: vehicle) := F[0, 1] v_lon(a) > 1 m/s }\n"
+    assert Draft("base", new).definitions().read("late_2(SV)").vehicles == ("SV",)
+    [told] = mistakes(Draft("base", EACH.replace("true", "fals(SV)")), {})
+    assert told.where == "definitions"
+    assert told.position == Position(1, 68)
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "line"),
+    [
+        ("option lateral_sign = literal | rss\n", "option lateral_sign is the library's", 1),
+        (
+            "option my = a | b\n\nwhen my = b {\n  def danger(a, b: vehicle) := true\n}\n",
+            "in all sets: danger",
+            3,
+        ),
+        ("set base { def danger(a, b: vehicle) := true }\n", "there is a set base already", 1),
+        (
+            "# x\neach i in 24..25 { def roadSector_{i}(SV: vehicle, POV: vehicles) := true }",
+            "Write two blocks",
+            2,
+        ),
+    ],
+)
+def test_what_would_change_other_sets_is_refused_at_its_place(text: str, words: str, line: int) -> None:
+    found = mistakes(Draft("base", text), {})
+    assert any(words in f"{x.message} {x.hint}" and x.position and x.position.line == line for x in found)
+    with pytest.raises(InputError, match="line"):
+        Draft("base", text).definitions()
+
+
+def test_options_signals_and_parameters_of_a_draft_and_of_the_one_before() -> None:
+    text = (
+        "signal jerk(a: vehicle): m/s^3 in [-10, 10]\n"
+        "def laneKeep(a: vehicle, L: lane) := calm(a)\n"
+        "option calmness = strict | lax\n"
+        "def calm(a: vehicle) := jerk(a) < soft\n"
+        "param soft = 2 m/s^3\n"
+        "when calmness = lax { def calm(a: vehicle) := true }\n"
+    )
+    assert mistakes(Draft("base", text), {"formula": "laneKeep(SV,L)"}) == []
+    lax = Draft("base", text, options={"calmness": "lax"}).definitions()
+    assert lax.read("calm(SV)").formula != Draft("base", text).definitions().read("calm(SV)").formula
+    later = Draft("base", "def laneKeep(a: vehicle, L: lane) := true\n", text)
+    assert "soft" in later.definitions("before").library.parameters
+    changed = Draft("base", text.replace("soft = 2", "soft = 3"), text)
+    assert changed.definitions().read("calm(SV)")
+    with pytest.raises(rp.RoadproofError, match="param soft: is declared for all sets, and not alike"):
+        changed.definitions("before", "edit")

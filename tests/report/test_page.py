@@ -233,6 +233,43 @@ def test_a_browser_opens_it_without_a_word_and_asks_nobody(tmp_path, drives):
     assert "Content Security Policy" in opened(tmp_path / "wrong.html")[1]
 
 
+def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
+    """Of one that does not show what is said, the page says so; of one that is not there, where it was."""
+    drive = next((Path(__file__).parents[2] / "examples" / "traffic" / "drives").glob("*04-base.json"))
+
+    def test(name: str, what: str, file: object) -> dict:
+        shown = [{"what": what, "vehicles": ["SV", "POV"], "lane": "main-1", "at": 0.0}]
+        return {"id": name, "file": str(file), "claims": [what], "dense": True, "shown": shown, "fault": ""}
+
+    answer = {
+        "schema": "roadproof/catalogue/1",
+        "set": "base",
+        "tests": [
+            test("right", "scenario_4", drive),
+            test("wrong", "scenario_1", drive),
+            test("away", "scenario_4", tmp_path / "away.json"),
+            {"id": "all", "title": "", "formula": "scenario_4(SV,POV,L)", "claims": ["scenario_1"]},
+        ],
+        "targets": [
+            {"name": "scenario_1", "words": "one", "tested": ["wrong"], "possible": []},
+            {"name": "scenario_4", "words": "four", "tested": ["right", "away", "all"], "possible": []},
+        ],
+        "alike": [{"tests": ["right", "away"], "told": "show the same"}],
+    }
+    (tmp_path / "tests.json").write_text(json.dumps(answer), "utf-8")
+    found, text = made(tmp_path / "tests.json", out=tmp_path / "page.html")
+    seen = body_of(text)
+    right, wrong, away, means = re.findall(r'<details id="test-0-\d">.*?</details>', seen)
+    assert found.drives == 2
+    assert "is false" not in right
+    assert "the formula is false on this drive, judged for this page" in wrong
+    assert "away.json, which is not there" in away
+    assert 'href="#test-0-3" title="all drives of all show scenario_4: that is proved"' in seen
+    assert 'title="all says that it is scenario_1, and does not show it"' in seen
+    assert "<li>right and away: show the same</li>" in seen
+    assert "scenario_4(SV,POV,L)" in means
+
+
 def test_the_shipped_proofs_are_a_page(tmp_path):
     folder = tmp_path / "some"
     folder.mkdir()

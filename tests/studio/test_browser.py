@@ -125,14 +125,20 @@ def test_all_of_it_by_keyboard_alone(tab: Tab) -> None:
 
 
 def test_next_is_another_drive_and_without_it_is_one_where_it_does_not_hold(tab: Tab) -> None:
+    at_the_start = "document.querySelector('.scene').ariaLabel"
     tab.write("asked", "scenario_4(SV,POV,L)")
     tab.press("f")
     tab.answered("WITNESSED")
-    first = tab.page.url
+    first = tab.page.evaluate(at_the_start)
     tab.press("n")
     tab.answered("WITNESSED", 2)
-    tab.until("(former) => location.href !== former", first)
-    assert "--count 2" in tab.see(".verdict .command code").inner_text()
+    tab.until(f"(former) => {at_the_start} !== former", first)
+    newest = tab.page.locator(".verdict").first
+    assert "--count 2" in newest.locator(".command code").inner_text()
+    offered = newest.locator(".downloads button").all_inner_texts()
+    assert offered == ["Show 1", "Show 2", "↓ drive-1.json", "↓ drive-2.json"]
+    newest.get_by_text("Show 1", exact=True).click()
+    tab.until(f"(first) => {at_the_start} === first", first)
     tab.press("w")
     tab.answered("WITNESSED", 3)
     tab.holds("false")
@@ -257,10 +263,13 @@ def test_a_page_of_its_own_needs_no_server(tab: Tab, browser: Any, tmp_path: Pat
 
 
 def test_files_are_dropped(tab: Tab, tmp_path: Path) -> None:
-    tab.drop(next(DRIVES.glob("*01-base.json")))
-    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_1')")
-    tab.drop(next((ROOT / "proofs").glob("*.json")))
+    proof = next((ROOT / "proofs").glob("*.json"))
+    other = ROOT / "examples" / "catalogue" / "tests" / "drives" / "braking.json"
+    tab.drop(next(DRIVES.glob("*01-base.json")), other, proof)
     tab.answered("PROVED")
+    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_1')")
+    tab.page.locator(".drives button", has_text="braking").click()
+    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_4')")
     assert (
         main(
             [

@@ -1,7 +1,9 @@
 """Definitions as they are being written: a draft becomes a spec set on top of another one.
 
-What a draft defines replaces definitions of the set below; what is new to the library is declared for all
-sets, since a set can only replace. All mistakes are told, each with its place in the draft.
+What a draft defines replaces definitions of the set below, one by one or in ``each`` blocks; what is new to
+the library is declared for all sets, since a set can only replace. What would change other sets under the
+hand of their readers (``when``, options and sets of the library) is a mistake. All mistakes are told, each
+with its place in the draft.
 """
 
 import re
@@ -10,7 +12,10 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from roadproof.api.definitions import Definitions, values_of
-from roadproof.errors import Position, RoadproofError, TextError
+from roadproof.errors import Position, RoadproofError, TextError, UsageError, raise_all
+from roadproof.logic.each import instances
+from roadproof.logic.parse import parse_library
+from roadproof.logic.syntax import EachBlock
 from roadproof.spec.diagnose import Lost, Proofreader, as_diagnostic, claim_errors
 from roadproof.spec.library import Library, Source, Specification, load_library
 from roadproof.spec.scenarios import read_query
@@ -18,7 +23,10 @@ from roadproof.spec.values import Number
 
 EDIT, BEFORE = "edit", "before"
 DRAFT, QUESTION, PARAMETERS = "definitions", "formula", "parameters"
-_WORDS = re.compile(r'"[^"\n]*"|#[^\n]*|[{}]|(?<![\w@])(def|param|option|each|set|when|lane|title)\s+(\w+)')
+_COMMENT = re.compile(r"#[^\n]*")
+_WORDS = re.compile(
+    r'"[^"\n]*"|#[^\n]*|[{}]|(?<![\w@])(def|param|signal|option|each|set|when|lane|title)\s+(\w+)'
+)
 
 
 @dataclass(frozen=True)
@@ -42,6 +50,11 @@ class Draft:
         Raises ``TextError`` for the first mistake, ``InputError``.
         """
         library = _library(self.base, self.text, self.before)
+        if BEFORE in sets and (names := sorted(_told_otherwise(self.text, self.before or ""))):
+            raise UsageError(
+                f"{', '.join(names)}: is declared for all sets, and not alike before and after the edit, so "
+                "the two cannot be compared; keep the present text as before, or give it another name"
+            )
         chosen = tuple(self.edited if name == EDIT else name for name in sets or (EDIT,))
         for name in chosen:
             library.select(name, self.options)
@@ -71,6 +84,7 @@ def mistakes(draft: Draft, formulas: Mapping[str, str]) -> list[Mistake]:
     """
     sources = sources_of(draft.base, draft.text, draft.before)
     errors, library, lost = _proofreader(draft.base).errors_in(*sources)
+    errors = [*refused(draft.text), *errors]
     every = dict.fromkeys(_mistake(error, DRAFT) for error in errors)
     found = sorted(
         every, key=lambda x: (0, 0) if x.position is None else (x.position.line, x.position.column)
@@ -142,6 +156,7 @@ _HEADED = (_source_name(EDIT), _source_name(BEFORE))
 
 @lru_cache(maxsize=16)
 def _library(base: str, text: str, before: str | None) -> Library:
+    raise_all(refused(text))
     return load_library(sources_of(base, text, before))
 
 
@@ -150,26 +165,77 @@ def sources_of(base: str, text: str, before: str | None) -> list[Source]:
 
     A set begins on a line of its own above the text, so lines in it are one further down.
     """
-    known = load_library().definitions
+    known = {*load_library().definitions}
+    declared = {_head(text, span)[:2] for span in _statements(text)}
     sources: list[Source] = []
-    shared: set[str] = set()
     for name, written in ((EDIT, text), (BEFORE, before)):
         if written is None:
             continue
-        declared = [
-            span
-            for span in _statements(written)
-            if (defined := _defined_in(written, span)) is None
-            or (defined not in known and defined not in shared)
-        ]
-        if name == BEFORE:
-            declared = [span for span in declared if _defined_in(written, span) is not None]
-        shared |= {x for span in declared if (x := _defined_in(written, span)) is not None}
-        sources.append(Source(DRAFT, _only(written, declared)))
-        inside = [span for span in _statements(written) if _defined_in(written, span) is not None]
+        shared, inside = list[tuple[int, int]](), list[tuple[int, int]]()
+        for span in _statements(written):
+            names = _defined_in(written, span)
+            if names is not None and names <= known:
+                inside.append(span)
+            elif name == EDIT or names is not None or _head(written, span)[:2] not in declared:
+                shared.append(span)
+        known |= {x for span in shared for x in _defined_in(written, span) or ()}
+        sources.append(Source(DRAFT, _only(written, shared)))
         head = f"set {name} extends {base} {{\n"
         sources.append(Source(_source_name(name), f"{head}{_only(written, inside)}\n}}\n"))
     return sources
+
+
+def refused(text: str) -> list[TextError]:
+    """What cannot be of the set ``edit`` alone, and would change others that it is compared with."""
+    library = load_library()
+    found: list[TextError] = []
+    for span in _statements(text):
+        word, name, start = _head(text, span)
+        names = _defined_in(text, span) or set()
+        inner = (
+            {x[2] for x in _WORDS.finditer(text, start, span[1]) if x[1] == "def"}
+            if word == "when"
+            else set()
+        )
+        if word == "option" and name in library.options:
+            told = f"option {name} is the library's: it would change every set"
+            hint = "Choose its value below Parameters and readings."
+        elif word == "set" and name in (*library.sets, EDIT, BEFORE):
+            told, hint = (
+                f"there is a set {name} already, and it would be another one",
+                "Give it another name.",
+            )
+        elif replaced := sorted(inner & library.definitions.keys()):
+            told = f"what an option says holds in all sets: {replaced[0]} would be replaced below {EDIT} too"
+            hint = "Replace it by a definition with a name of its own, and let the option replace that one."
+        elif names & library.definitions.keys() and names - library.definitions.keys():
+            new, known = (
+                sorted(names - library.definitions.keys()),
+                sorted(names & library.definitions.keys()),
+            )
+            told = f"a block either replaces or adds: {known[0]} is in the library, {new[0]} is not"
+            hint = "Write two blocks."
+        else:
+            continue
+        line = text.count("\n", 0, start) + 1
+        at = Position(line, start - text.rfind("\n", 0, start))
+        found.append(TextError(told, at, hint).locate(DRAFT, text))
+    return found
+
+
+def _told_otherwise(text: str, before: str) -> list[str]:
+    """What both texts declare for all sets, and not alike, such as ``param near``."""
+
+    def declared(written: str) -> dict[str, str]:
+        heads = {span: _head(written, span) for span in _statements(written)}
+        return {
+            f"{word} {name}": " ".join(_COMMENT.sub("", written[start : span[1]]).split())
+            for span, (word, name, start) in heads.items()
+            if word not in ("", "def", "each")
+        }
+
+    now, was = declared(text), declared(before)
+    return [name for name in now.keys() & was.keys() if now[name] != was[name]]
 
 
 def _statements(text: str) -> list[tuple[int, int]]:
@@ -199,16 +265,35 @@ def _says_something(text: str) -> bool:
     return any(line.partition("#")[0].strip() for line in text.splitlines())
 
 
-def _defined_in(text: str, span: tuple[int, int]) -> str | None:
-    """The name that a statement defines, None where it is another one."""
+def _defined_in(text: str, span: tuple[int, int]) -> set[str] | None:
+    """The names that a statement defines, in an ``each`` block several; None where it is another one."""
     for found in _WORDS.finditer(text, *span):
+        if found[1] == "def":
+            return {found[2]}
+        if found[1] == "each":
+            return _instances_in(text[found.start() : span[1]])
         if found[1] is not None:
-            return found[2] if found[1] == "def" else None
+            return None
     return None
 
 
-def _defined(text: str) -> list[str]:
-    return [name for span in _statements(text) if (name := _defined_in(text, span)) is not None]
+def _head(text: str, span: tuple[int, int]) -> tuple[str, str, int]:
+    """The first word of a statement, the name after it, and where it begins."""
+    found = next((x for x in _WORDS.finditer(text, *span) if x[1] is not None), None)
+    return ("", "", span[0]) if found is None else (found[1], found[2], found.start())
+
+
+def _instances_in(block: str) -> set[str] | None:
+    """The names that an ``each`` block defines; None where it cannot be read."""
+    try:
+        return {
+            x.name
+            for each in parse_library(block, DRAFT)
+            if isinstance(each, EachBlock)
+            for x in instances(each)
+        }
+    except TextError:
+        return None
 
 
 def _only(text: str, spans: Sequence[tuple[int, int]]) -> str:

@@ -24,6 +24,7 @@ from lark.visitors import Transformer_NonRecursive
 from roadproof.cache import remembered
 from roadproof.errors import Position, TextError
 from roadproof.logic import syntax
+from roadproof.logic.each import instances
 from roadproof.logic.foreign import find_foreign
 from roadproof.logic.syntax import Expression, Statement
 from roadproof.units import UNITS
@@ -253,6 +254,12 @@ def _integer(token: Token, greatest: int) -> int:
     return int(value)
 
 
+def _written_out(items: list[Any]) -> tuple[syntax.Definition, ...]:
+    """The definitions of a block; those of ``each`` blocks in it once for every index."""
+    several = (instances(x) if isinstance(x, syntax.EachBlock) else [x] for x in items)
+    return tuple(definition for some in several for definition in some)
+
+
 def _doc(token: Token | None) -> str:
     return "" if token is None else str(token)[1:-1]
 
@@ -448,12 +455,12 @@ class _Build(Transformer_NonRecursive[Token, Any]):
     def set(self, meta: Meta, items: list[Any]) -> Statement:
         name, parent, doc, *definitions = items
         return syntax.SetBlock(
-            str(name), "" if parent is None else str(parent), _doc(doc), tuple(definitions), _at(meta)
+            str(name), "" if parent is None else str(parent), _doc(doc), _written_out(definitions), _at(meta)
         )
 
     def when(self, meta: Meta, items: list[Any]) -> Statement:
         option, value, *definitions = items
-        return syntax.WhenBlock(str(option), str(value), tuple(definitions), _at(meta))
+        return syntax.WhenBlock(str(option), str(value), _written_out(definitions), _at(meta))
 
     def lane(self, meta: Meta, items: list[Any]) -> Statement:
         vehicle, *ranges, doc = items

@@ -16,11 +16,11 @@ from roadproof.logic.syntax import EachBlock, SetBlock, Statement, WhenBlock
 
 _BLOCKS = ("each", "set", "when")
 _START = re.compile(
-    r"^[ \t]*(def|param|option|each|set|when|lane(?=\s+of\b)|title(?=\s+of\b))\b", re.MULTILINE
+    r"^[ \t]*(def|param|signal|option|each|set|when|lane(?=\s+of\b)|title(?=\s+of\b))\b", re.MULTILINE
 )
 _HIDDEN = re.compile(r'"[^"\n]*"|#[^\n]*')
 _COMMENT = re.compile(r"[ \t]*#[^\n]*")
-_DECLARED = re.compile(r"^[ \t]*(?:def|param)[ \t]+((?:[A-Za-z0-9_]|\{[^{}\n]*\})+)", re.MULTILINE)
+_DECLARED = re.compile(r"^[ \t]*(?:def|param|signal)[ \t]+((?:[A-Za-z0-9_]|\{[^{}\n]*\})+)", re.MULTILINE)
 _INDEX = re.compile(r"\\\{[^{}]*\\\}")
 
 
@@ -48,29 +48,38 @@ def parse_pieces(text: str, source: str) -> Parsed:
             errors.append(_placed(read, text, piece))
             lost += _names_in(piece.text)
         else:
-            joined = block is not None and piece.head == block.head and block.line < piece.line
+            joined = block is not None and piece.outer == block.outer and block.line < piece.line
             statements = _join(statements, read) if joined else [*statements, *read]
-        block = piece if piece.opens else block if piece.head else None
+        block = (block if piece.inner else piece) if piece.opens else block if piece.heads else None
     return Parsed(tuple(statements), tuple(errors), tuple(lost))
 
 
 @dataclass(frozen=True)
 class _Piece:
-    """A statement, at which line and column it begins, and the head of the block that it is in or opens."""
+    """A statement, at which line and column it begins, and the heads of blocks that it is in or opens."""
 
     text: str
     line: int
     column: int
-    head: str = ""
+    heads: tuple[str, ...] = ()
     opens: bool = False
+
+    @property
+    def outer(self) -> str:
+        """The head of the outermost block."""
+        return self.heads[0] if self.heads else ""
+
+    @property
+    def inner(self) -> bool:
+        """Whether it is in a block that it does not open itself."""
+        return len(self.heads) > self.opens
 
     @property
     def alone(self) -> str:
         """The statement with nothing around it but its block, at its own line and column."""
         place = "\n" * (self.line - 1) + " " * (self.column - 1)
-        if self.opens or not self.head:
-            return f"{place}{self.text}{'}' * self.opens}"
-        return f"{self.head}{place}{self.text}{'}' if self.text else ''}"
+        above = self.heads[: len(self.heads) - self.opens]
+        return f"{''.join(above)}{place}{self.text}{'}' * len(self.heads) if self.text else ''}"
 
 
 @lru_cache(maxsize=1024)
@@ -97,51 +106,54 @@ def _pieces(text: str) -> Iterator[_Piece]:
     starts = [found.start() for found in _START.finditer(plain)]
     if plain[: starts[0] if starts else len(text)].strip():
         starts = [0, *starts]
-    head = ""
+    heads: tuple[str, ...] = ()
     for start, end in pairwise([*starts, len(text)]):
         found = _START.match(plain, start)
         word = "" if found is None else found[1]
-        if head and word != "def":
-            yield _unclosed(text, plain, start, head)
-            head = ""
-        if word in _BLOCKS:
-            brace = plain.find("{", start, end)
-            opens = brace >= 0 and not plain[brace + 1 : end].strip()
-            head = " ".join(text[start : brace + 1].split()) if opens else ""
-            yield _piece(text, start, end, head, opens)
-        elif head:
-            closing = _closing(plain[start:end])
-            last = end if closing is None else start + closing
-            yield _piece(text, start, last, head)
-            if closing is not None:
-                head = ""
-                if plain[last + 1 : end].strip():
-                    yield _piece(text, last + 1, end)
-        else:
-            yield _piece(text, start, end)
-    if head:
-        yield _unclosed(text, plain, len(text), head)
+        while heads and not _may_stand_in(word, heads):
+            yield _unclosed(text, plain, start, heads)
+            heads = heads[:-1]
+        brace = plain.find("{", start, end) if word in _BLOCKS else -1
+        if brace >= 0 and not plain[brace + 1 : end].strip():
+            heads = (*heads, " ".join(text[start : brace + 1].split()))
+            yield _piece(text, start, end, heads, True)
+            continue
+        ends = [start + x for x in _closings(plain[start:end])[: len(heads)]]
+        yield _piece(text, start, ends[0] if ends else end, heads)
+        for closing, last in pairwise([*ends, end]):
+            heads = heads[:-1]
+            if plain[closing + 1 : last].strip():
+                yield _piece(text, closing + 1, last, heads)
+    while heads:
+        yield _unclosed(text, plain, len(text), heads)
+        heads = heads[:-1]
 
 
-def _unclosed(text: str, plain: str, before: int, head: str) -> _Piece:
+def _may_stand_in(word: str, heads: tuple[str, ...]) -> bool:
+    """Definitions in any block; ``each`` in a set and in what an option says."""
+    return word == "def" or (word == "each" and not heads[-1].startswith("each"))
+
+
+def _unclosed(text: str, plain: str, before: int, heads: tuple[str, ...]) -> _Piece:
     """Nothing, where the end of a block is missing."""
     end = len(plain[:before].rstrip())
-    return _piece(text, end, end, head)
+    return _piece(text, end, end, heads)
 
 
-def _piece(text: str, start: int, end: int, head: str = "", opens: bool = False) -> _Piece:
+def _piece(text: str, start: int, end: int, heads: tuple[str, ...] = (), opens: bool = False) -> _Piece:
     column = start - text.rfind("\n", 0, start)
-    return _Piece(text[start:end], text.count("\n", 0, start) + 1, column, head, opens)
+    return _Piece(text[start:end], text.count("\n", 0, start) + 1, column, heads, opens)
 
 
-def _closing(plain: str) -> int | None:
-    """Where the block ends that a definition stands in; None where the definition is not its last."""
-    depth = 0
-    for found in re.finditer(r"[{}]", plain):
-        depth += 1 if found[0] == "{" else -1
+def _closings(plain: str) -> list[int]:
+    """Where the blocks end that a definition stands in, the inner one first; nowhere where it is not last."""
+    depth, found = 0, list[int]()
+    for brace in re.finditer(r"[{}]", plain):
+        depth += 1 if brace[0] == "{" else -1
         if depth < 0:
-            return found.start()
-    return None
+            found.append(brace.start())
+            depth = 0
+    return found
 
 
 def _placed(error: TextError, text: str, piece: _Piece) -> TextError:
@@ -152,7 +164,7 @@ def _placed(error: TextError, text: str, piece: _Piece) -> TextError:
         piece.line + said.count("\n"), len(below) + (1 if above or "\n" in said else piece.column)
     )
     if not piece.text:
-        shown = TextError(f"'{piece.head}' is not closed", last, "Write } where it ends.")
+        shown = TextError(f"'{piece.heads[-1]}' is not closed", last, "Write } where it ends.")
         return shown.locate(error.source, text)
     at, message = error.position, error.message
     if at is not None and (at.line, at.column) >= (last.line, last.column):

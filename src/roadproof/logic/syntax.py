@@ -190,7 +190,7 @@ class EachBlock:
 
 @dataclass(frozen=True)
 class SetBlock:
-    """``set name extends parent "doc" { … }``: definitions that replace those of the parent."""
+    """``set name extends parent "doc" { … }``: definitions in place of the parent's, ``each`` written out."""
 
     name: str
     parent: str
@@ -201,7 +201,7 @@ class SetBlock:
 
 @dataclass(frozen=True)
 class WhenBlock:
-    """``when option = value { … }``: definitions that hold for that value of the option."""
+    """``when option = value { … }``: definitions, ``each`` written out, for that value."""
 
     option: str
     value: str

@@ -6,11 +6,14 @@ its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth``
 """
 
 import math
+import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from importlib import import_module
 from importlib.util import find_spec
+from types import ModuleType
 from typing import Any, Literal, TypeAlias, assert_never
 
 import numpy as np
@@ -31,6 +34,7 @@ NODES_A_UNIT = 300
 # The only words of cvxpy that say no. It has others, such as infeasible_inaccurate, for solvers that reach
 # a limit without a solution.
 INFEASIBLE = ("infeasible", "infeasible_or_unbounded")
+_STATISTICS = "scipy.stats"
 TOLERANCE = 1e-4  # of a row or a bound, relative to its size
 
 
@@ -251,7 +255,7 @@ class _Tableau:
 def _run(
     tableau: _Tableau, wanted: int, cost: Cost, known: SolverFacts, meter: Meter, gap: float
 ) -> Solution:
-    import cvxpy
+    cvxpy = modelling()
     from scipy.sparse import csr_array
 
     sizes = {c: len(tableau.box) + k for k, c in enumerate(cost.absolute)}
@@ -297,8 +301,7 @@ def _run(
 
 def _solve(program: Any, known: SolverFacts, allowed: Limits) -> str:
     """cvxpy's status: only those of ``INFEASIBLE`` say that there is no solution; "" is any failure."""
-    import cvxpy
-
+    cvxpy = modelling()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an answer that may be inaccurate is judged anyway
@@ -334,7 +337,29 @@ def _fits(x: Any, limits: Any, matrix: Any, low: Any, high: Any) -> bool:
 def prepare() -> None:
     """Import cvxpy now rather than at the first question, for processes that are about to be forked."""
     if find_spec("cvxpy") is not None:
-        import cvxpy  # noqa: F401
+        modelling()
+
+
+def modelling() -> Any:
+    """cvxpy, without all of scipy.stats: that is most of its import, for one function that nobody here needs.
+
+    cvxpy gets a function in its place that imports scipy.stats when it is called.
+    """
+    if "cvxpy" not in sys.modules and _STATISTICS not in sys.modules:
+        known = {*sys.modules}
+        stand_in: Any = ModuleType(_STATISTICS)
+        stand_in.entropy = lambda *args, **more: import_module(_STATISTICS).entropy(*args, **more)
+        sys.modules[_STATISTICS] = stand_in
+        try:
+            import_module("cvxpy")
+        except ImportError:  # another version of cvxpy, which needs more of it
+            for name in sys.modules.keys() - known:
+                del sys.modules[name]
+        finally:
+            sys.modules.pop(_STATISTICS, None)
+    import cvxpy
+
+    return cvxpy
 
 
 def box_of(problem: Problem) -> list[tuple[float, float]]:

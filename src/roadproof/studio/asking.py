@@ -57,7 +57,7 @@ def find(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
         if outcome.impossibility is None
         else certificate_data(outcome.impossibility.certificate),
         "drive": None,
-        "count": len(outcome.drives),
+        "drives": [x.as_data() for x in outcome.drives],
         "spec": draft.file(),
         "command": command("witness", [query.text], draft, home, options),
     }

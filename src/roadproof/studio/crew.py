@@ -80,9 +80,12 @@ class Crew:
     waiting: int = 0
     closed: bool = False
 
-    async def start(self) -> None:
+    async def start(self, one_by_one: bool = False) -> None:
+        """Start its workers; ``one_by_one``: each when the one before is warm, for others to work."""
         for _ in range(self.limits.workers):
             await self._add()
+            if one_by_one and self.every:
+                await asyncio.wait({self.every[-1].warm})
 
     async def _add(self) -> None:
         if self.closed:

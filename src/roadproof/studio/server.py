@@ -46,14 +46,20 @@ class Studio:
 
     @contextlib.asynccontextmanager
     async def run(self, app: object) -> AsyncIterator[None]:
-        """Workers, for as long as the server runs."""
+        """Workers, for as long as the server runs; they become warm while the page is loaded already."""
         self.crews = {"live": Crew(self.live), "long": Crew(self.long)}
-        for crew in self.crews.values():
-            await crew.start()
+        starting = asyncio.create_task(self._start())
         try:
             yield
         finally:
-            await asyncio.gather(*(crew.end() for crew in self.crews.values()))
+            starting.cancel()
+            await asyncio.gather(
+                starting, *(crew.end() for crew in self.crews.values()), return_exceptions=True
+            )
+
+    async def _start(self) -> None:
+        for crew in self.crews.values():
+            await crew.start(one_by_one=True)
 
     async def ask(self, scope: Message, receive: Receive, send: Send, most: int) -> None:
         """Answer one question with JSON lines; it ends with the request, whoever breaks that off."""

@@ -1,19 +1,20 @@
 """What a page shows once and refers to: drives with their viewers, and what was found of evidence."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from roadproof.errors import RoadproofError
-from roadproof.evidence.drive_file import read_drive
+from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.strict import read_json
 from roadproof.report.page.markup import Markup, tag
-from roadproof.report.viewer_data import viewer_data
+from roadproof.report.viewer_data import Asked, viewer_data
 from roadproof.spec.library import Library
 
 MOST_STRIPS = 14
+_NEARLY = 1e-6  # s: instants are told with so many digits
 _NAMES, _CLOCK, _ROW = 250, 420, 16  # pixels of names and of the clock, and between two strips
 
 
@@ -29,25 +30,32 @@ class Book:
     inside: Mapping[str, Finding] = field(default_factory=dict)
     documents: list[Mapping[str, Any]] = field(default_factory=list)
 
-    def drive(self, file: Path | Mapping[str, Any], verdict: Mapping[str, Any] | None = None) -> Markup:
-        """A drive: its strips as a picture, and the viewer once it is asked for; or why it is not shown."""
+    def drive(
+        self,
+        file: Path | Mapping[str, Any],
+        asked: Sequence[Asked] = (),
+        since: Sequence[float] = (0.0,),
+        put: Callable[[DriveFile], DriveFile] = lambda file: file,
+    ) -> Markup:
+        """A drive: its strips as a picture, and the viewer once it is asked for; or why it is not shown.
+
+        ``asked``: other formulas than its own, of which the k-th has to hold at the instant (s) that is
+        k-th of ``since``; ``put``: what the drive is read as.
+        """
         try:
             content = read_json(file) if isinstance(file, Path) else file
             drive = read_drive(content, str(file) if isinstance(file, Path) else "the drive")
-            document = viewer_data(drive, self.library, verdict=verdict)
+            document = viewer_data(put(drive), self.library, asked)
         except (RoadproofError, OSError) as error:
             return tag("p", f"The drive cannot be shown: {error}", class_="wrong")
         self.documents.append(document)
-        shown, number = document["formulas"][0], len(self.documents) - 1
-        wrong = None
-        if shown.get("error") or not shown.get("holds"):
-            reason = shown.get("error") or "the formula is false on this drive, judged for this page"
-            wrong = tag("p", reason, class_="wrong")
+        number = len(self.documents) - 1
+        wrong = [_wrong(x, at) for x, at in zip(document["formulas"], since, strict=False)]
         begun = document["drive"]["dangers"]
         danger = f", danger from {begun[0]['begins']:.2f} s on" if begun else ""
         told = f"{document['drive']['horizon']:g} s on {document['drive']['road']['name']}{danger}"
         opening = tag("button", "Show the drive", type="button", class_="open")
-        parts = [wrong, tag("p", told, " ", opening), strips(document)]
+        parts = [*wrong, tag("p", told, " ", opening), strips(document)]
         return tag("div", *parts, class_="place", data_document=str(number))
 
     def finding(self, folder: Path | None, name: object) -> Finding | None:
@@ -67,6 +75,19 @@ class Book:
             *(f"not checked: {', '.join(finding.unchecked)}",) * bool(finding.unchecked),
         ]
         return tag("p", "Accepted: ", "; ".join(notes) or "queries derived again, each answered unsat", ".")
+
+
+def _wrong(shown: Mapping[str, Any], at: float) -> Markup | None:
+    """What is said of a formula that cannot be read, or is false at an instant; None where it is true."""
+    if shown.get("error"):
+        return tag("p", shown["error"], class_="wrong")
+    if at == 0 and shown["holds"]:
+        return None
+    spans = shown["parts"][0]["true"] if at else ()
+    if any(begin <= at + _NEARLY and (end is None or at <= end + _NEARLY) for begin, end, *_ in spans):
+        return None
+    when = f" at {at:g} s" if at else ""
+    return tag("p", f"the formula is false{when} on this drive, judged for this page", class_="wrong")
 
 
 def strips(document: Mapping[str, Any]) -> Markup:

@@ -82,9 +82,7 @@ def redundancy(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     kept = sum(x.get("redundant") is False for x in entries)
     spare = sum(x.get("redundant") is True for x in entries)
     doubt = len(entries) - kept - spare
-    told = (
-        f"{len(entries)} changes: {spare} are proved to change nothing, {kept} are needed, {doubt} in doubt."
-    )
+    told = f"{len(entries)} changes: {spare} proved to change nothing, {kept} needed, {doubt} in doubt."
     rows, shown = [], []
     for k, x in enumerate(entries):
         target = f"change-{result.id}-{k}"

@@ -63,10 +63,16 @@ def coverage(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """Which disturbances a set misses: classes of gaps by scenario, and behind each cell a drive."""
     data = result.data
     classes, gaps, claims = (data.get(x) or () for x in ("classes", "gaps", "claims"))
-    told = f": {len(gaps)} gap{'s' if len(gaps) != 1 else ''}, each with a judged drive."
+    told = (
+        f": {len(gaps)} gap{'s' if len(gaps) != 1 else ''}, each with a judged drive."
+        if gaps
+        else ": no gap was found."
+    )
     parts: list[Content] = [tag("p", verdict(data.get("verdict")), told)]
-    said = [(verdict(x.get("verdict")), tag("code", x.get("claim")), x.get("reason")) for x in claims]
-    parts += [table(("verdict", "claim", ""), said)] if said else []
+    for x in claims:
+        inside: list[Content] = [tag("p", x["reason"])] if x.get("reason") else []
+        summary = (verdict(x.get("verdict")), " ", tag("code", x.get("claim")))
+        parts.append(folded(summary, *inside, *behind(x, result, book)))
     parts += [_classes(result, classes, words)] if classes else []
     for x in gaps:
         where = f" on {short(x.get('road'))}, caught by {short(x.get('caught_by'))}"
@@ -111,4 +117,5 @@ def _classes(result: Result, classes: Any, words: Mapping[int, str]) -> Markup:
 def _gap_cell(result: Result, place: int, x: Mapping[str, Any]) -> Markup:
     numbers = x.get("gaps") or ()
     target = _id(result, "gap", numbers[0]) if numbers else _id(result, "class", place)
-    return cell(x.get("verdict"), f"{x.get('description')}: {x.get('verdict')}", target)
+    drives = f", gap {', '.join(map(str, numbers))}" if numbers else ""
+    return cell(x.get("verdict"), f"{x.get('description')}: {x.get('verdict')}{drives}", target)

@@ -44,13 +44,18 @@ for (const box of document.querySelectorAll("input.filter")) {
   });
 }
 
-// On paper nothing is folded.
+// On paper nothing is folded, and it is light.
+const root = document.documentElement;
 let folded = [];
+let theme = "light";
 addEventListener("beforeprint", () => {
+  theme = root.dataset.theme;
+  root.dataset.theme = "light";
   folded = [...document.querySelectorAll("details:not([open])")];
   for (const part of folded) part.open = true;
 });
 addEventListener("afterprint", () => {
+  root.dataset.theme = theme;
   for (const part of folded) part.open = false;
 });
 

@@ -1,4 +1,4 @@
-"""Classes with their shares, catalogues of tests, recordings: tables, bars, and what each test shows."""
+"""Classes with their shares, and recordings: tables and bars."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,7 @@ from typing import Any
 from roadproof.report.explore import show
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import bar, behind, folded, matrix, short, verdict
+from roadproof.report.page.pieces import bar, behind, folded, short, verdict
 from roadproof.report.page.results import Result
 
 
@@ -34,51 +34,6 @@ def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
         drives.append(folded((verdict(x.get("verdict")), " ", tag("b", x["name"])), *inside))
     head = ("verdict", "class", "what happens", *(("traces", "share of situations") if total else ()))
     return joined([tag("p", told), table(head, rows), file, *drives])
-
-
-def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
-    """What tests show: a row for each situation, a matrix of tests, and what is odd about them."""
-    data = result.data
-    targets, tests = data.get("targets", ()), data.get("tests", ())
-    missing = {*data.get("not_tested", ())}
-    rows = []
-    for x in targets:
-        tested = x.get("tested", ())
-        lacks = x.get("name") in missing
-        said = "✗ not tested" if lacks else f"✓ {len(tested)} test{'s' if len(tested) != 1 else ''}"
-        word = tag("span", said, class_=f"verdict-word {'against' if lacks else 'proof'}")
-        rows.append((word, x.get("name"), x.get("words"), short(tested), short(x.get("possible"))))
-    head = ("", "what", "in words", "tests that show it", "some of whose drives do")
-    counted = f"{len(tests)} test{'s' if len(tests) != 1 else ''}"
-    told = f"{counted}; {len(missing)} of {len(targets)} situations are tested by none."
-    parts: list[Content] = [tag("p", told), table(head, rows)]
-    names = [str(x.get("name")) for x in targets]
-    columns = [tag("th", tag("span", name), scope="col", class_="turned") for name in names]
-    cells = [[tag("th", x.get("id"), scope="row", title=x.get("title")), *_marks(x, names)] for x in tests]
-    parts.append(folded(("Each test and what it shows",), matrix(columns, cells)))
-    odd = ("faults", "doubts", "contradictions", "notes")
-    for name in odd:
-        listed = tag("ul", *(tag("li", short(x, 2000)) for x in data.get(name) or ()))
-        parts += [joined([tag("p", tag("b", name)), listed])] if data.get(name) else []
-    facts = [x for x in data.get("facts", ()) if x.get("drive") or x.get("certificate")]
-    for x in facts:
-        summary = (verdict(x.get("verdict")), f" {x.get('test')} ", tag("code", short(x.get("formula"))))
-        parts.append(folded(summary, *behind(x, result, book)))
-    return joined(parts)
-
-
-def _marks(test: Mapping[str, Any], names: Sequence[str]) -> list[Markup]:
-    shown = {x.get("what") for x in test.get("shown", ())}
-    cells = []
-    for name in names:
-        if name in shown:
-            cells.append(tag("td", "■", class_="drive", title=f"{test.get('id')} shows {name}"))
-        elif name in (test.get("claims") or ()) and "shown" in test:
-            told = f"{test.get('id')} says that it is {name}, and does not show it"
-            cells.append(tag("td", "✗", class_="against", title=told))
-        else:
-            cells.append(tag("td"))
-    return cells
 
 
 _FACTS = {

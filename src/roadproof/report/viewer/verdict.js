@@ -24,8 +24,8 @@ const KINDS = {
   "PROVED-BOUNDED": "open",
 };
 
-/** One answer; `downloads` are {name, content} with texts, `onCopy` copies a text, `onShow` shows its drive. */
-export function Verdict({ answer, downloads = [], onCopy = null, onShow = null }) {
+/** One answer; `downloads` are {name, content} with texts, `onCopy` copies a text, `shows` are {name, show}, its drives. */
+export function Verdict({ answer, downloads = [], onCopy = null, shows = [] }) {
   if (!answer) return null;
   return html`<section class=${`verdict ${KINDS[answer.verdict] ?? ""}`} aria-label="Verdict" aria-live="polite">
     <h3><span class="word">${answer.verdict}</span> <code class="claim">${answer.formula}</code></h3>
@@ -39,8 +39,8 @@ export function Verdict({ answer, downloads = [], onCopy = null, onShow = null }
     ${answer.command
       ? html`<p class="command"><code>${answer.command}</code>${onCopy ? html`<button onClick=${() => onCopy(answer.command)}>Copy</button>` : null}</p>`
       : null}
-    ${downloads.length || onShow
-      ? html`<p class="downloads">${onShow ? html`<button onClick=${onShow}>Show</button>` : null}${downloads.map((x) => html`<button onClick=${() => save(x)}>↓ ${x.name}</button>`)}</p>`
+    ${downloads.length || shows.length
+      ? html`<p class="downloads">${shows.map((x) => html`<button onClick=${x.show}>${x.name}</button>`)}${downloads.map((x) => html`<button onClick=${() => save(x)}>↓ ${x.name}</button>`)}</p>`
       : null}
   </section>`;
 }

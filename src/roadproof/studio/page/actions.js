@@ -241,11 +241,25 @@ export async function open(list) {
     rewrite(spec.content);
     return;
   }
+  if (!files.every((x) => x.name.endsWith(".json"))) return openTogether(files);
+  const troubles = [];
+  let isShown = false;
+  for (const file of files) {
+    isShown = (await openTogether([file], !isShown)) || isShown;
+    if (state.trouble.value) troubles.push(state.trouble.value);
+  }
+  if (troubles.length) state.trouble.value = troubles.join("\n");
+}
+
+/** Files that belong together; whether a drive is among them, which is shown where `show` says so. */
+async function openTogether(files, show = true) {
   const title = `Open ${files.map((x) => x.name).join(", ")}`;
   const answer = await askLong(title, "drop", { ...state.question.value, files });
-  if (!answer) return;
+  if (!answer) return false;
   if (answer.drive) {
-    showFile(answer.drive, answer.view);
+    const [{ name }] = files;
+    state.drives.value = [...state.drives.value.filter((x) => x.name !== name), { name, drive: answer.drive }];
+    if (show) showFile(answer.drive, answer.view);
   } else if (answer.view) {
     showRecorded(answer.view);
   } else if (answer.recording) {
@@ -256,6 +270,7 @@ export async function open(list) {
       : "It does not show what it says.";
     take({ ...answer.checked, promise, reason: answer.checked.told });
   }
+  return Boolean(answer.drive);
 }
 
 /** A pair of the recording that was dropped, with the question, or with a scenario by its number. */

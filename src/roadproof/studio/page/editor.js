@@ -5,7 +5,7 @@ import * as cm from "vendor/edit";
 import { ask } from "studio/server";
 import * as state from "studio/state";
 
-const WORDS = /^(?:def|param|option|each|set|extends|when|lane|title|of|for|where|in)\b/;
+const WORDS = /^(?:def|param|signal|option|each|set|extends|when|lane|title|of|for|where|in|derived|by)\b/;
 const LOGIC = /^(?:not|and|or|some|every|given|true|false|inf|F|G|U)(?![A-Za-z0-9_])/;
 const UNIT = /^(?:km\/h|m\/s\^2|m\/s|ms|s|m|unitless)(?![A-Za-z0-9_^(])/;
 const SORTS = /^(?:vehicles|vehicle|lanelet|lane)\b/;

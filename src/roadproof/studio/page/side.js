@@ -39,7 +39,7 @@ export function Side() {
       <h2>Answers</h2>
       ${state.answers.value.map(
         (x) => html`<${Verdict} key=${x.key} answer=${x} downloads=${downloadsOf(x)} onCopy=${actions.copy}
-          onShow=${x.drive ? () => actions.showDrive(x.drive, x.view, x.sets !== undefined) : null} />`,
+          shows=${showsOf(x)} />`,
       )}
       ${state.answers.value.length ? null : html`<p class="faint">None yet: press Find a drive.</p>`}
     </section>
@@ -75,13 +75,13 @@ function Readings() {
   </details>`;
 }
 
-/** The drives that the studio was started with, where there are several: which one is shown, and the others. */
+/** The drives that the studio was started with and those that were dropped, where there are several. */
 function Drives() {
   const list = state.drives.value;
   if (list.length < 2) return null;
   const shown = JSON.stringify(state.kept.drive.value);
   return html`<section class="pane drives" aria-label="Drives">
-    <h2>Drives <small>${list.length} files of the command line</small></h2>
+    <h2>Drives <small>${list.length} files</small></h2>
     <ul>${list.map(
       (x) => html`<li><button aria-pressed=${JSON.stringify(x.drive) === shown} title=${x.drive.formula ?? ""} onClick=${() => actions.showFile(x.drive)}>${x.name}</button></li>`,
     )}</ul>
@@ -139,9 +139,22 @@ export function addWatch() {
   state.kept.watches.value = [...state.kept.watches.value, ""];
 }
 
+const drivesOf = (answer) => answer.drives ?? (answer.drive ? [answer.drive] : []);
+
+/** Its drives to be shown, all of them where there are several; the view at hand is that of `drive`. */
+function showsOf(answer) {
+  const isCompared = answer.sets !== undefined;
+  return drivesOf(answer).map((drive, k, { length }) => ({
+    name: length > 1 ? `Show ${k + 1}` : "Show",
+    show: () => actions.showDrive(drive, length === 1 || k === length - 1 ? answer.view : null, isCompared),
+  }));
+}
+
 function downloadsOf(answer) {
-  const made = [];
-  if (answer.drive) made.push({ name: "drive.json", content: text(answer.drive) });
+  const made = drivesOf(answer).map((drive, k, { length }) => ({
+    name: length > 1 ? `drive-${k + 1}.json` : "drive.json",
+    content: text(drive),
+  }));
   if (answer.certificate) made.push({ name: "certificate.json", content: text(answer.certificate) });
   if (answer.command?.includes("edit.spec") && answer.spec) {
     made.push({ name: "edit.spec", content: answer.spec, kind: "text/plain" });
