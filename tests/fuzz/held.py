@@ -198,7 +198,7 @@ def bound_to_the_road(formula: Formula) -> Formula:
 
 def judged(formula: Formula, traces: list[Held], answers: list[bool]):
     for i, trace in enumerate(traces):
-        if judge(formula, _abstract(trace)).holds != answers[i]:
+        if judge(formula, abstract(trace)).holds != answers[i]:
             yield i, "the judge says otherwise"
 
 
@@ -241,7 +241,7 @@ def monitored(formula: Formula, traces: list[Held], answers: list[bool]):
             yield i, f"the recursive margin is {ends}, the monitor's {margin.low[i], margin.high[i]}"
 
 
-def _abstract(trace: Held) -> AbstractSignals:
+def abstract(trace: Held) -> AbstractSignals:
     times = [k * DT for k in range(trace.samples)]
     signals = {
         _signal(name): tuple(zip(times, values, strict=True)) for name, values in trace.signals.items()

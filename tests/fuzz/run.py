@@ -11,7 +11,7 @@ from hypothesis.errors import HypothesisWarning
 
 from fuzz.case import FOUND, Disagreement, save
 
-READERS = ("held", "truths", "drives", "claims", "search", "texts")
+READERS = ("held", "truths", "drives", "claims", "search", "texts", "printed", "steps")
 CHUNK = 250  # cases for one seed of the generator
 
 
@@ -50,7 +50,7 @@ def _chunk(reader: ModuleType, number: int, most: int) -> tuple[int, Disagreemen
         max_examples=getattr(reader, "CHUNK", CHUNK),
         deadline=None,
         database=None,
-        phases=[Phase.generate, Phase.shrink],
+        phases=[Phase.generate, Phase.shrink] if getattr(reader, "SHRINKS", True) else [Phase.generate],
         suppress_health_check=list(HealthCheck),
         print_blob=False,
         report_multiple_bugs=False,

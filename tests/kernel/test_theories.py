@@ -17,7 +17,7 @@ GAPS = re.compile(
 )
 
 
-@pytest.mark.parametrize("name", [*THEORIES, "Sane"])
+@pytest.mark.parametrize("name", [*THEORIES, "Sane", "Steps"])
 def test_each_file_says_what_it_is_for_and_whether_it_is_trusted(name):
     text = (SOURCES / f"{name}.v").read_text("ascii")
     opening = text[: text.index("*)")]
@@ -30,24 +30,24 @@ def test_each_file_says_what_it_is_for_and_whether_it_is_trusted(name):
 
 
 def test_no_other_theory_is_there():
-    assert {x.stem for x in SOURCES.glob("*.v")} == {*THEORIES, "Sane"}
+    assert {x.stem for x in SOURCES.glob("*.v")} == {*THEORIES, "Sane", "Steps"}
 
 
 @needs_coq
 def test_theories_compile_without_a_warning_and_are_kept(tmp_path, monkeypatch):
-    """Into a new cache; Sane too, on which nothing else depends. What is changed there counts no more."""
+    """Into a new cache; Sane and Steps too, which nothing needs. What is changed there counts no more."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     said = []
     run = coq_module._run
     monkeypatch.setattr(coq_module, "_run", lambda *args: said.append(run(*args)) or said[-1])
     with ready() as coq:
-        sane = coq.run((SOURCES / "Sane.v").read_text("ascii"))
-    assert len(said) == len(THEORIES) + 2  # the version, and Sane
-    assert sane.code == 0
+        others = [coq.run((SOURCES / f"{name}.v").read_text("ascii")) for name in ("Sane", "Steps")]
+    assert len(said) == len(THEORIES) + 3  # the version, and the two others
+    assert [ran.code for ran in others] == [0, 0]
     assert [ran.complained for ran in said] == [""] * len(said)
     with ready() as again:
         assert again.theories == coq.theories
-    assert len(said) == len(THEORIES) + 3
+    assert len(said) == len(THEORIES) + 4
     assert coq_module._is_sound(coq.theories)
     for change in (
         lambda: (coq.theories / "Other.vo").write_bytes(b"one more"),
@@ -64,12 +64,13 @@ def test_theories_compile_without_a_warning_and_are_kept(tmp_path, monkeypatch):
 
 @needs_coq
 def test_theorems_stand_on_known_axioms_alone():
-    theorems = ["accepted", "envelopes", "motions", "inverse_agrees", "minus_as_written"]
+    theorems = ["accepted", "envelopes", "motions", "settled", "answer_right", "minus_as_written"]
     with ready() as coq:
         whole = (
             "Definition whole := (" + ", ".join(f"@{x}" for x in theorems) + ").\nPrint Assumptions whole."
         )
-        ran = coq.run(f"From Roadproof Require Import {' '.join(THEORIES)}.\n{whole}")
+        steps = (SOURCES / "Steps.v").read_text("ascii")
+        ran = coq.run(f"{steps}\nFrom Roadproof Require Import {' '.join(THEORIES)}.\n{whole}")
     found = axioms_of(ran.said)
     assert ran.code == 0
     assert found is not None

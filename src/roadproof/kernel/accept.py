@@ -12,8 +12,9 @@ from typing import Any
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.certificate import Certificate
+from roadproof.kernel.branch import NotFoundError
 from roadproof.kernel.coq import Coq, Ran
-from roadproof.kernel.search import NotFoundError, find
+from roadproof.kernel.search import find
 from roadproof.kernel.source import Module, file, module
 from roadproof.kernel.statement import Statement, state
 from roadproof.kernel.tableau import Tableau, lines, read_lines

@@ -24,8 +24,10 @@ F G U and or not some every inf max min inverse true false
 s d v_lon v_lat a_lon a_lat length width occ lanes adjacentLanes lanelets zone main merge depart
 vehicle road term formula side bound at_least_0 above_0 Par Var Num Free Bound Truth Some None list nil cons
 claim bounds tableau proved string accepted valid valid_always tree eq_refl Forall_nil Forall_cons conj I
+Absurd Untrue Opposed Both Either Plain Reads Sized Largest Smallest Over Sign Length Width add_ mul_
+given_ square_ times_ product_ sum_ number_ c_ x_
 q by_ CloseTruth Close CloseLinear CloseRoad CloseRoads CloseZones Alpha Beta Timing New Inst InstUntil
-NewRoad InstRoad Cut Fact Roadproof Coq Meaning Text Linear Tableau Rss Instant Named Sane
+NewRoad InstRoad Cut Fact Roadproof Coq Meaning Text Linear Tableau Products Rss Instant Named Sane
 """
 WORDS = frozenset(_SAID.split())
 

@@ -4,16 +4,18 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from roadproof.kernel.instant import reason
 from roadproof.kernel.names import comment, literal
 from roadproof.kernel.printer import CLOSE, Printer
 from roadproof.kernel.statement import Statement
 from roadproof.kernel.tableau import Tableau, coq_tree
+from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 
 WIDTH = 110
 HEAD = """\
 From Coq Require Import QArith String List.
-From Roadproof Require Import Meaning Text Linear Tableau Named.
+From Roadproof Require Import Meaning Text Linear Tableau Products Named.
 Import ListNotations.
 Open Scope string_scope.
 Open Scope nat_scope.
@@ -56,10 +58,10 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     lemmas: list[int] = []
     words = [printer.names.new(f"fact_{number}") for number in range(1, len(facts) + 1)]
     proofs = [printer.names.new(f"{word}_holds") for word in words]
-    for word, proof, fact in zip(words, proofs, facts, strict=True):
+    for (lemma, _), word, proof, fact in zip(statement.lemmas, words, proofs, facts, strict=True):
         lemmas.append(len(out) + 1)
         out += _wrapped(f"Definition {word} : formula := {fact}.")
-        out += [f"Lemma {proof} : Roadproof.Meaning.valid_always bounds {word}.", "Proof. some_instant. Qed."]
+        out += _proved(printer, statement, lemma, word, proof)
     held = "Forall_nil _"
     for proof in reversed(proofs):
         held = f"Forall_cons _ {proof} ({held})"
@@ -77,6 +79,20 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
         f"End {name}.",
     ]
     return Module(name, "\n".join(out) + "\n", tuple(lemmas), theorem)
+
+
+def _proved(printer: Printer, statement: Statement, fact: Formula, word: str, proof: str) -> Iterator[str]:
+    """A fact about one instant with its proof: by a reason that is found, else by what Coq's tactics find."""
+    yield f"Lemma {proof} : Roadproof.Meaning.valid_always bounds {word}."
+    found = reason(fact, statement.bounds, printer.term)
+    if found is None:
+        yield "Proof. some_instant. Qed."
+        return
+    yield "Proof."
+    atoms = "; ".join(f"({printer.term(x)})%term" for x in found.atoms)
+    yield from _wrapped(f"  refine (Roadproof.Products.settled bounds [{atoms}] {word} {found.written} _).")
+    yield "  vm_cast_no_check (eq_refl true)."
+    yield "Qed."
 
 
 def file(modules: Sequence[Module]) -> str:

@@ -11,8 +11,8 @@ from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.times import bound_parameters
+from roadproof.kernel.branch import Goal
 from roadproof.kernel.printer import Formals
-from roadproof.kernel.search import Goal
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
