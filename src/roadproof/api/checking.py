@@ -125,7 +125,7 @@ def check(
     """Check certificates, drive files and folders of them, as ``roadproof check`` does.
 
     ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
-    certificates are put to Coq instead, and accepted by its word alone. Raises ``InputError`` for a path
+    certificates are put to Coq instead, and drives as well, and accepted only by its word. Raises ``InputError`` for a path
     that holds nothing, ``MissingSolverError``.
     """
     one_of("solver", solver, Solver)

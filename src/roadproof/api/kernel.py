@@ -1,4 +1,4 @@
-"""Certificates put to Coq, many at once: each process has one file for its share."""
+"""Certificates and drives put to Coq, many at once: each process has one file for its share."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -8,7 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import RoadproofError
+from roadproof.deriving.prepare import prepare as prepare_drive
+from roadproof.evidence import drive_file
 from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certificate_data
+from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Acceptance, Ruled
 from roadproof.evidence.strict import read_json
 from roadproof.files import make_folder, write_whole
@@ -36,7 +39,7 @@ _EXIT = {
 
 @dataclass(frozen=True)
 class Asked:
-    """A certificate, or the file that it is in; ``home`` is its library, or the files of that."""
+    """A certificate, or the file that it or a drive is in; ``home`` is its library, or the files of that."""
 
     name: str
     certificate: Certificate | Path
@@ -73,7 +76,7 @@ class Answered:
 
 
 def put(asked: Sequence[Asked], jobs: int | None, progress: Progress | None = None) -> Answered:
-    """What Coq says of each; what is no certificate has no ruling. Raises ``MissingSolverError``."""
+    """What Coq says of each; what is neither certificate nor drive has no ruling. Raises ``MissingSolverError``."""
     with ready() as coq:
         prepared = prepare_all(asked, jobs, progress)
         count = pool.count_workers(list(prepared), jobs) if prepared else 0
@@ -90,7 +93,7 @@ def put(asked: Sequence[Asked], jobs: int | None, progress: Progress | None = No
 
 
 def write(asked: Sequence[Asked], folder: Path, jobs: int | None) -> dict[str, str]:
-    """A file for each certificate, with the theories below; Coq is not asked.
+    """A file for each certificate and drive, with the theories below; Coq is not asked.
 
     Comes back with why there is no file, by name, where there is none.
     """
@@ -130,17 +133,25 @@ def prepare_all(
 
 
 def _prepare(asked: Asked) -> Prepared | None:
-    certificate = asked.certificate
-    if isinstance(certificate, Path):
+    content: object = asked.certificate
+    if isinstance(content, Path):
         try:
-            content = read_json(certificate)
-            if not isinstance(content, dict) or content.get("schema") not in SCHEMAS_READ:
-                return None
-            certificate = read_certificate_data(content, str(certificate))
+            content = _read(content)
         except RoadproofError:
             return None
     home = asked.home if isinstance(asked.home, Library) else load_library(asked.home)
-    return accept.prepare(asked.name, certificate, home)
+    if isinstance(content, DriveFile):
+        return prepare_drive(asked.name, content, home)
+    return accept.prepare(asked.name, content, home) if isinstance(content, Certificate) else None
+
+
+def _read(path: Path) -> Certificate | DriveFile | None:
+    """Raises ``InputError`` for a file that is damaged."""
+    content = read_json(path)
+    schema = content.get("schema") if isinstance(content, dict) else None
+    if schema == drive_file.SCHEMA:
+        return read_drive(content, str(path))
+    return read_certificate_data(content, str(path)) if schema in SCHEMAS_READ else None
 
 
 def _unprepared(asked: Asked, reason: str) -> Prepared:

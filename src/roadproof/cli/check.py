@@ -16,7 +16,7 @@ examples:
   roadproof check proofs/                          every claim of a folder, with its index
   roadproof check proofs/ --solver cvc5            ask another solver
   roadproof check drives/scenario-04-base.json     judge a drive again, exactly
-  roadproof check proofs/ --kernel coq             certificates are put to Coq, and to no solver
+  roadproof check proofs/ --kernel coq             certificates and drives are put to Coq, and to no solver
   roadproof check proofs/ --kernel coq --write v/  what would be put to Coq, to be read
   roadproof check mine/ --spec mine.spec           claims that were made with definitions of yours
 
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--kernel",
         choices=("coq",),
-        help="put certificates to the kernel of Coq, with coqc, in place of a solver",
+        help="put certificates and drives to the kernel of Coq, with coqc, in place of a solver",
     )
     parser.add_argument(
         "--write", type=Path, metavar="DIR", help="with --kernel: only write the files for Coq"

@@ -32,7 +32,8 @@ _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before 
 class Checker:
     """``ask`` answers sat, unsat or unknown to a script; ``find_label`` knows the template properties.
 
-    ``ruled``: what was said of a certificate elsewhere, in place of asking for its queries.
+    ``ruled``: what was said of it elsewhere: of a certificate in place of asking for its queries, of a drive
+    beside judging it.
     """
 
     library: Library
@@ -93,10 +94,24 @@ class Checker:
             outcome, reason = Acceptance.UNREADABLE, with_hint(reason, file.formula)
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
         checked, unchecked = ((), ()) if reason else said_of(file, self.library)
+        word = ""
+        if self.ruled is not None:
+            word = self.ruled.word
+            if outcome is Acceptance.ACCEPTED:
+                outcome, reason = self.ruled.outcome, self.ruled.reason
         if not reason and "natural" in Fields(content, str(path)).mapping("verdict"):
             unchecked = (*unchecked, "whether it is natural")
         return Finding(
-            str(path), "drive", outcome, reason, "WITNESSED", label, file.formula, checked, unchecked
+            str(path),
+            "drive",
+            outcome,
+            reason,
+            "WITNESSED",
+            label,
+            file.formula,
+            checked,
+            unchecked,
+            kernel=word,
         )
 
     def _untold(self, file: DriveFile, content: object, judgement: Judgement | None) -> str:

@@ -40,7 +40,7 @@ class Finding:
 
     ``verdict``, ``label`` and ``claim`` are those that the evidence itself gives. ``checked`` and
     ``unchecked`` say in words what was looked at, and what was not. ``kernel``: what Coq says of a
-    certificate, where it was asked.
+    certificate or drive, where it was asked.
     """
 
     where: str
@@ -71,7 +71,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Ruled:
-    """What another than a solver says of a certificate: ``word`` in its own word."""
+    """What another than solver and judge says: ``word`` in its own word."""
 
     outcome: Acceptance
     reason: str

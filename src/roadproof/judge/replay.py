@@ -13,6 +13,7 @@ from roadproof.errors import UsageError
 from roadproof.judge.algebraic import Point, decimal
 from roadproof.judge.exact import judge
 from roadproof.judge.truth import Cut, TruthSet, complement
+from roadproof.logic.boxes import boxes_overlap
 from roadproof.logic.formula import Compare, Comparison, Formula, conjunction
 from roadproof.logic.terms import (
     SIGNAL_DIMENSIONS,
@@ -20,7 +21,6 @@ from roadproof.logic.terms import (
     Product,
     Signal,
     SignalName,
-    Size,
     Term,
     number,
     subtract,
@@ -117,15 +117,6 @@ def first_breach(drive: Drive, limits: Mapping[str, Limits], horizon: Fraction |
         return None
     begin, name, rule = min(found)
     return Breach(name, rule, *begin)
-
-
-def boxes_overlap(a: str, b: str) -> Formula:
-    """The boxes of ``a`` and ``b`` overlap with positive area."""
-    parts: list[Formula] = []
-    for one, other in ((a, b), (b, a)):
-        parts.append(Compare(subtract(Signal("s", one), Size("length", one)), "<", Signal("s", other)))
-        parts.append(Compare(subtract(Signal("d", one), Size("width", one)), "<", Signal("d", other)))
-    return conjunction(*parts)
 
 
 def _rules(name: str, limits: Limits) -> Iterator[tuple[str, Formula]]:

@@ -23,7 +23,10 @@ from roadproof.cache import is_ours, private_folder
 from roadproof.errors import MissingSolverError, RoadproofError
 from roadproof.shipped import shipped
 
-THEORIES = ("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named")
+THEORIES = (
+    *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named"),
+    *("Drive", "Signs", "Shown", "Guarantee"),
+)
 APT = "apt-get install -y coq"
 PATIENCE = 1800.0  # seconds for one file; a backstop only
 SUMS = "sums.json"

@@ -27,7 +27,10 @@ claim bounds tableau proved string accepted valid valid_always tree eq_refl Fora
 Absurd Untrue Opposed Both Either Plain Reads Sized Largest Smallest Over Sign Length Width add_ mul_
 given_ square_ times_ product_ sum_ number_ c_ x_
 q by_ CloseTruth Close CloseLinear CloseRoad CloseRoads CloseZones Alpha Beta Timing New Inst InstUntil
-NewRoad InstRoad Cut Fact Roadproof Coq Meaning Text Linear Tableau Products Rss Instant Named Sane
+NewRoad InstRoad Cut Fact the_drive drive reasons derivation shows shown bodies first_rectangle other_rectangles
+beside lanes_named values long wide long_above_0 wide_above_0 along across starts_at starts_with pieces finally
+lane lies_in from_s to_s right_d left_d Turn One Split Element Each Whole Moment Reach Break
+Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant Named Sane
 """
 WORDS = frozenset(_SAID.split())
 
@@ -96,6 +99,13 @@ def literal(text: str) -> str:
     if not _PLAIN.fullmatch(text) or len(text) > LONGEST:
         raise InputError(f"'{text[:60]}' is no name: letters, digits and _ make one")
     return f'"{text}"'
+
+
+def quoted(text: str) -> str:
+    """Any text of printable ASCII as one of Coq. Raises ``InputError`` for others."""
+    if not (text.isascii() and text.isprintable()) or len(text) > LONGEST:
+        raise InputError(f"'{text[:60]}' is not printed for Coq: a name there is printable ASCII")
+    return '"' + text.replace('"', '""') + '"'
 
 
 def comment(words: str) -> str:

@@ -1,7 +1,7 @@
 """Files of Coq: claims with their tableaux, one module each. The text of claims is the printer's."""
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from roadproof.kernel.instant import reason
@@ -16,6 +16,7 @@ WIDTH = 110
 HEAD = """\
 From Coq Require Import QArith String List.
 From Roadproof Require Import Meaning Text Linear Tableau Products Named.
+From Roadproof Require Drive Shown.
 Import ListNotations.
 Open Scope string_scope.
 Open Scope nat_scope.
@@ -48,19 +49,19 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
         f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in statement.bounds.items()
     ]
     out += [f"Module {name}."]
-    out += _comment(_said(statement))
+    out += comment_lines(_said(statement))
     out += [*printer.things, ""]
     for definition in printer.definitions:
-        out += _wrapped(definition)
-    out += ["", *_wrapped(f"Definition bounds : list bound := [{'; '.join(bounds)}].")]
-    out += [*_wrapped(f"Definition claim : formula := {claim}."), ""]
+        out += wrapped(definition)
+    out += ["", *wrapped(f"Definition bounds : list bound := [{'; '.join(bounds)}].")]
+    out += [*wrapped(f"Definition claim : formula := {claim}."), ""]
     out += ["(* From here on it is proof: what is proved is said in the theorem at the end. *)"]
     lemmas: list[int] = []
     words = [printer.names.new(f"fact_{number}") for number in range(1, len(facts) + 1)]
     proofs = [printer.names.new(f"{word}_holds") for word in words]
     for (lemma, _), word, proof, fact in zip(statement.lemmas, words, proofs, facts, strict=True):
         lemmas.append(len(out) + 1)
-        out += _wrapped(f"Definition {word} : formula := {fact}.")
+        out += wrapped(f"Definition {word} : formula := {fact}.")
         out += _proved(printer, statement, lemma, word, proof)
     held = "Forall_nil _"
     for proof in reversed(proofs):
@@ -90,7 +91,7 @@ def _proved(printer: Printer, statement: Statement, fact: Formula, word: str, pr
         return
     yield "Proof."
     atoms = "; ".join(f"({printer.term(x)})%term" for x in found.atoms)
-    yield from _wrapped(f"  refine (Roadproof.Products.settled bounds [{atoms}] {word} {found.written} _).")
+    yield from wrapped(f"  refine (Roadproof.Products.settled bounds [{atoms}] {word} {found.written} _).")
     yield "  vm_cast_no_check (eq_refl true)."
     yield "Qed."
 
@@ -108,7 +109,8 @@ def _said(statement: Statement) -> Iterator[str]:
         yield f"Under {statement.assumed} facts about motion: premises of the claim, not proved here."
 
 
-def _comment(said: Iterator[str]) -> list[str]:
+def comment_lines(said: Iterable[str]) -> list[str]:
+    """Words as a comment of Coq."""
     shown = [line for words in said for line in textwrap.wrap(comment(words), WIDTH - 6)]
     return [
         f"(* {shown[0]}",
@@ -118,7 +120,7 @@ def _comment(said: Iterator[str]) -> list[str]:
     ]
 
 
-def _wrapped(text: str) -> list[str]:
+def wrapped(text: str) -> list[str]:
     """A definition in lines; names and texts have no blanks in them."""
     lines = textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)
     return [line.replace(CLOSE, " ") for line in lines]

@@ -1,0 +1,102 @@
+"""Random formulas and drives with a derivation, as terms of Coq."""
+
+from fractions import Fraction
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from judge.cases import comparisons, drives, formulas
+from kernel import raw
+from roadproof.deriving.derive import NoDerivationError, derive
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.judge import judge
+from roadproof.kernel.derivation import coq_derivation
+from roadproof.kernel.drive import Shown, drive_lines
+from roadproof.logic import formula as f
+from roadproof.spec.bind import bind
+from roadproof.world.road import Lanelet, Road, pairs
+
+ROAD = Road(
+    "three",
+    (
+        Lanelet("x1", "x", "main", "main", (None, Fraction(3)), (Fraction(-1), Fraction(2))),
+        Lanelet("x2", "x", "merge", "merge", (Fraction(3), Fraction(9)), (Fraction(-1), Fraction(2))),
+        Lanelet("y1", "y", "main", "main", (Fraction(1), None), (Fraction(2), Fraction(4))),
+        Lanelet("z1", "z", "depart", "departure", (Fraction(0), Fraction(5)), (Fraction(4), Fraction(6))),
+    ),
+    pairs([("x", "y"), ("y", "z")]),
+)
+LANES = {"L": "y"}
+HEAD = """\
+From Coq Require Import QArith String List.
+From Roadproof Require Import Meaning Drive Shown.
+Import ListNotations.
+Open Scope string_scope.
+Open Scope Q_scope.
+"""
+
+inside = st.builds(f.Occupies, st.sampled_from("AB"), st.just("l"))
+within = st.builds(
+    lambda kind, vehicle: kind("m", f.Domain("lanelets", "l"), f.Occupies(vehicle, "m")),
+    st.sampled_from([f.Some, f.Every]),
+    st.sampled_from("AB"),
+)
+
+
+def quantified(domains, atoms):
+    return st.builds(
+        lambda kind, where, body: kind("l", where, body),
+        st.sampled_from([f.Some, f.Every]),
+        st.sampled_from(domains),
+        formulas(st.one_of(comparisons, atoms, atoms), leaves=3),
+    )
+
+
+of_road = st.one_of(
+    quantified([f.Domain("zone", "main"), f.Domain("zone", "merge"), f.Domain("lanelets", "L")], inside),
+    quantified([f.Domain("lanes"), f.Domain("adjacent", "L")], within),
+)
+asked = formulas(st.one_of(comparisons, of_road), leaves=4)
+
+
+def cases(count):
+    """Pairs of a formula that is true and a drive, the same in every run."""
+    found = []
+
+    @settings(
+        max_examples=count,
+        derandomize=True,
+        database=None,
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(asked, drives)
+    def collect(formula, drive):
+        bound = bind(formula, ROAD, LANES, {})
+        found.append((formula if judge(bound, drive).holds else f.Not(formula), drive))
+
+    collect()
+    return found
+
+
+def derived(formula, drive):
+    """The derivation, None where there is none for an irrational instant."""
+    try:
+        return derive(formula, drive, ROAD, LANES, {})
+    except NoDerivationError:
+        return None
+
+
+def example(name, formula, drive, derivation, answer):
+    """That Coq's checker answers so."""
+    file = DriveFile(None, "base", "", Fraction(0), LANES, {}, {}, ROAD, drive, overlaps_allowed=True)
+    lines = [
+        f"Definition {name} : drive :=",
+        *drive_lines(Shown(file, formula, {}, {}, {})),
+        ".",
+        f"Example {name}_is : accepts {name} [] {raw.formula(formula)}",
+        *coq_derivation(derivation),
+        f"= {str(answer).lower()}.",
+        "Proof. vm_compute. reflexivity. Qed.",
+    ]
+    return "\n".join(lines) + "\n"
