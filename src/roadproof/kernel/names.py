@@ -27,10 +27,11 @@ claim bounds tableau proved string accepted valid valid_always tree eq_refl Fora
 Absurd Untrue Opposed Both Either Plain Reads Sized Largest Smallest Over Sign Length Width add_ mul_
 given_ square_ times_ product_ sum_ number_ c_ x_
 q by_ CloseTruth Close CloseLinear CloseRoad CloseRoads CloseZones Alpha Beta Timing New Inst InstUntil
-NewRoad InstRoad Cut Fact the_drive drive reasons derivation shows shown bodies first_rectangle other_rectangles
-beside lanes_named values long wide long_above_0 wide_above_0 along across starts_at starts_with pieces finally
-lane lies_in from_s to_s right_d left_d Turn One Split Element Each Whole Moment Reach Break
-Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant Named Sane
+NewRoad InstRoad Cut Fact the_drive drive reasons derivation shows shown bodies first_rectangle
+other_rectangles beside lanes_named values long wide long_above_0 wide_above_0 along across starts_at
+starts_with pieces finally lane lies_in from_s to_s right_d left_d Turn One Split Element Each Whole Moment
+Reach Break Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant
+Named Sane
 """
 WORDS = frozenset(_SAID.split())
 
