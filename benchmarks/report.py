@@ -2,12 +2,15 @@
 
 The drives are those of ``roadproof witness --all`` in base, extA and ext, found anew in a folder of its own.
 What is told is the time from the start of loading until the page's scripts have run, by the browser's own
-clock, of five openings; and how long it took to make the page.
+clock, of five openings; and how long it took to make the page. With ``--picture FILE`` the picture of
+docs/report.md is made again.
 """
 
+import argparse
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -28,9 +31,34 @@ def ready(page: Path) -> int:
     return int(found[1])
 
 
+def draw(target: Path) -> None:
+    """The matrix of scenarios 1, 4, 5 and 6, and the drive behind the cell of 1 and 5."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+    from studio.browser import browsing
+
+    with tempfile.TemporaryDirectory() as name, browsing() as browser:
+        folder = Path(name)
+        rp.overlap("1,4-6", out=folder / "overlap")
+        made = rp.page(
+            folder / "overlap", out=folder / "page.html", title="Scenarios 1, 4, 5 and 6 of ISO 34502"
+        )
+        page = browser.new_page(viewport={"width": 1280, "height": 1560}, color_scheme="light")
+        page.goto(f"{made.path.as_uri()}#pair-0-1")
+        page.wait_for_selector(".viewer .uplot")
+        page.evaluate("scrollTo(0, 0)")
+        page.wait_for_timeout(1000)
+        page.screenshot(path=target)
+
+
 def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--picture", type=Path)
+    args = parser.parse_args()
     if CHROMIUM is None:
         raise SystemExit("there is no chromium here: install it, for instance apt-get install chromium")
+    if args.picture:
+        draw(args.picture)
+        return
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         rp.witness(using=rp.load("base", "extA", "ext"), out=folder / "drives", pictures=False)

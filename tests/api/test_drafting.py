@@ -147,6 +147,7 @@ def test_an_each_block_is_of_the_edit_alone() -> None:
             "in all sets: danger",
             3,
         ),
+        ("option my = a | b\nwhen my = b { " + EACH.strip() + " }\n", "in all sets: roadSector_1", 2),
         ("set base { def danger(a, b: vehicle) := true }\n", "there is a set base already", 1),
         (
             "# x\neach i in 24..25 { def roadSector_{i}(SV: vehicle, POV: vehicles) := true }",

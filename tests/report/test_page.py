@@ -99,8 +99,15 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
         },
         "catalogue": {
             "targets": [{"name": HOSTILE, "words": CLOSED, "tested": [HOSTILE]}],
-            "tests": [{"id": HOSTILE, "title": CLOSED, "claims": [HOSTILE], "shown": []}],
+            "tests": [
+                {"id": HOSTILE, "title": CLOSED, "claims": [HOSTILE], "shown": []},
+                {"id": CLOSED, "file": HOSTILE, "dense": True, "shown": [{"what": CLOSED, "lane": HOSTILE}]},
+            ],
             "notes": [CLOSED],
+            "alike": [{"tests": [HOSTILE], "told": CLOSED}],
+            "ranges": [{"target": HOSTILE, "term": CLOSED, "tested": [HOSTILE], "share": 0.5}],
+            "facts": [{"test": HOSTILE, "other": CLOSED, "relation": HOSTILE, "verdict": CLOSED}],
+            "gaps": {"targets": [{"name": CLOSED}], "classes": [{"claim": HOSTILE, "description": CLOSED}]},
         },
         "traffic-results": {
             "table": [{"sector": HOSTILE, "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}],
@@ -248,12 +255,19 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
             test("right", "scenario_4", drive),
             test("wrong", "scenario_1", drive),
             test("away", "scenario_4", tmp_path / "away.json"),
-            {"id": "all", "title": "", "formula": "scenario_4(SV,POV,L)", "claims": ["scenario_1"]},
+            {
+                "id": "all",
+                "title": "",
+                "formula": "scenario_4(SV,POV,L)",
+                "claims": ["scenario_1", "scenario_5"],
+            },
         ],
         "targets": [
             {"name": "scenario_1", "words": "one", "tested": ["wrong"], "possible": []},
+            {"name": "scenario_5", "words": "five", "tested": [], "possible": []},
             {"name": "scenario_4", "words": "four", "tested": ["right", "away", "all"], "possible": []},
         ],
+        "facts": [{"test": "all", "other": "scenario_1", "relation": "excludes", "verdict": "PROVED"}],
         "alike": [{"tests": ["right", "away"], "told": "show the same"}],
     }
     (tmp_path / "tests.json").write_text(json.dumps(answer), "utf-8")
@@ -266,6 +280,7 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
     assert "away.json, which is not there" in away
     assert 'href="#test-0-3" title="all drives of all show scenario_4: that is proved"' in seen
     assert 'title="all says that it is scenario_1, and does not show it"' in seen
+    assert 'title="all says that it is scenario_5, and nobody knows whether it can"' in seen
     assert "<li>right and away: show the same</li>" in seen
     assert "scenario_4(SV,POV,L)" in means
 

@@ -15,7 +15,7 @@ from roadproof.api.definitions import Definitions, values_of
 from roadproof.errors import Position, RoadproofError, TextError, UsageError, raise_all
 from roadproof.logic.each import instances
 from roadproof.logic.parse import parse_library
-from roadproof.logic.syntax import EachBlock
+from roadproof.logic.syntax import EachBlock, WhenBlock
 from roadproof.spec.diagnose import Lost, Proofreader, as_diagnostic, claim_errors
 from roadproof.spec.library import Library, Source, Specification, load_library
 from roadproof.spec.scenarios import read_query
@@ -188,31 +188,23 @@ def sources_of(base: str, text: str, before: str | None) -> list[Source]:
 def refused(text: str) -> list[TextError]:
     """What cannot be of the set ``edit`` alone, and would change others that it is compared with."""
     library = load_library()
+    there = library.definitions.keys()
     found: list[TextError] = []
     for span in _statements(text):
         word, name, start = _head(text, span)
         names = _defined_in(text, span) or set()
-        inner = (
-            {x[2] for x in _WORDS.finditer(text, start, span[1]) if x[1] == "def"}
-            if word == "when"
-            else set()
-        )
+        inner = (_names_in(text[start : span[1]]) or set()) if word == "when" else set[str]()
         if word == "option" and name in library.options:
             told = f"option {name} is the library's: it would change every set"
             hint = "Choose its value below Parameters and readings."
         elif word == "set" and name in (*library.sets, EDIT, BEFORE):
-            told, hint = (
-                f"there is a set {name} already, and it would be another one",
-                "Give it another name.",
-            )
-        elif replaced := sorted(inner & library.definitions.keys()):
+            told = f"there is a set {name} already, and it would be another one"
+            hint = "Give it another name."
+        elif replaced := sorted(inner & there):
             told = f"what an option says holds in all sets: {replaced[0]} would be replaced below {EDIT} too"
             hint = "Replace it by a definition with a name of its own, and let the option replace that one."
-        elif names & library.definitions.keys() and names - library.definitions.keys():
-            new, known = (
-                sorted(names - library.definitions.keys()),
-                sorted(names & library.definitions.keys()),
-            )
+        elif names & there and names - there:
+            new, known = sorted(names - there), sorted(names & there)
             told = f"a block either replaces or adds: {known[0]} is in the library, {new[0]} is not"
             hint = "Write two blocks."
         else:
@@ -271,7 +263,7 @@ def _defined_in(text: str, span: tuple[int, int]) -> set[str] | None:
         if found[1] == "def":
             return {found[2]}
         if found[1] == "each":
-            return _instances_in(text[found.start() : span[1]])
+            return _names_in(text[found.start() : span[1]])
         if found[1] is not None:
             return None
     return None
@@ -283,17 +275,15 @@ def _head(text: str, span: tuple[int, int]) -> tuple[str, str, int]:
     return ("", "", span[0]) if found is None else (found[1], found[2], found.start())
 
 
-def _instances_in(block: str) -> set[str] | None:
-    """The names that an ``each`` block defines; None where it cannot be read."""
+def _names_in(block: str) -> set[str] | None:
+    """The names that an ``each`` or a ``when`` block defines; None where it cannot be read."""
     try:
-        return {
-            x.name
-            for each in parse_library(block, DRAFT)
-            if isinstance(each, EachBlock)
-            for x in instances(each)
-        }
+        read = parse_library(block, DRAFT)
     except TextError:
         return None
+    blocks = (x for x in read if isinstance(x, EachBlock | WhenBlock))
+    several = (instances(x) if isinstance(x, EachBlock) else x.definitions for x in blocks)
+    return {definition.name for some in several for definition in some}
 
 
 def _only(text: str, spans: Sequence[tuple[int, int]]) -> str:

@@ -23,7 +23,7 @@ from roadproof.studio.showing import view
 
 MOST_FILES = 12
 MOST_PAIRS = 2000
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,60}\.(json|csv|xosc|xodr|xml|toml)")
+_NAME = re.compile(r"\w[\w .()+-]{0,80}\.(json|csv|xosc|xodr|xml|toml)")
 
 
 def drop(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
@@ -118,7 +118,10 @@ def _laid_out(ask: Mapping[str, Any]) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="roadproof-studio-") as place:
         for name, content in _files(ask):
             (Path(place) / name).write_text(content, "utf-8")
-        yield Path(place)
+        try:
+            yield Path(place)
+        except RoadproofError as error:
+            raise InputError(str(error).replace(f"{place}/", "")) from None
 
 
 def _whole(value: object) -> int:

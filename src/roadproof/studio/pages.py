@@ -31,9 +31,11 @@ def served() -> dict[str, Served]:
 
 
 def page_of(nonce: str) -> str:
-    """The page, whose scripts and styles carry ``nonce``."""
-    names = json.dumps({"imports": {name: f"/page/{name}.js" for name in _modules()}})
-    return _read("index.html").replace("{{nonce}}", nonce).replace("{{imports}}", names)
+    """The page, whose scripts carry ``nonce``; all are asked for at once, not when they are met."""
+    addresses = {name: f"/page/{name}.js" for name in _modules()}
+    early = "\n".join(f'<link rel="modulepreload" href="{x}" nonce="{nonce}">' for x in addresses.values())
+    page = _read("index.html").replace("{{early}}", early).replace("{{nonce}}", nonce)
+    return page.replace("{{imports}}", json.dumps({"imports": addresses}))
 
 
 @cache

@@ -1,7 +1,8 @@
 """A catalogue of tests on the page: what is tested, a matrix, and behind each cell what a test shows."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +21,11 @@ def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """What tests show: a row for each situation, a matrix of tests, and what is odd about them."""
     data = result.data
     gaps = data.get("gaps") or {}
-    targets, tests = [*data.get("targets", ()), *(gaps.get("targets") or ())], data.get("tests", ())
+    wanted, others = [*data.get("targets", ())], [*(gaps.get("targets") or ())]
+    targets, tests = [*wanted, *others], data.get("tests", ())
     missing = {*data.get("not_tested", ())}
-    rows = [_situation(x, x.get("name") in missing, gaps) for x in targets]
-    asked = [x for x in targets if not x.get("name", "").startswith("gap_") or gaps.get("asked")]
+    rows = [_situation(x, x.get("name") in missing) for x in targets]
+    asked = targets if gaps.get("asked") else wanted
     lacking = sum(x.get("name") in missing for x in asked)
     told = f"{_counted(len(tests), 'test')}; {lacking} of {len(asked)} situations are tested by none."
     some = any(x.get("possible") for x in targets)
@@ -31,7 +33,8 @@ def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     parts: list[Content] = [tag("p", told), table(head, [row[: len(head)] for row in rows])]
     names = [str(x.get("name")) for x in targets]
     columns = [tag("th", tag("span", name), scope="col", class_="turned") for name in names]
-    cells = [_row(result, k, x, targets) for k, x in enumerate(tests)]
+    facts = data.get("facts", ())
+    cells = [_row(result, k, x, targets, facts) for k, x in enumerate(tests)]
     said = (
         "■ it shows the situation, ✓ all of its drives do, by proof, ○ some of them do, ✗ it claims it and "
     )
@@ -42,7 +45,6 @@ def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
         parts += [tag("h3", heading), listed] if data.get(name) else []
     parts += _ranges(data.get("ranges") or ())
     parts += [tag("h3", "The tests")] if tests else []
-    facts = data.get("facts", ())
     for k, x in enumerate(tests):
         parts.append(_test(result, k, x, [y for y in facts if y.get("test") == x.get("id")], book))
     known = {x.get("id") for x in tests}
@@ -64,7 +66,7 @@ def _counted(count: int, word: str) -> str:
     return f"{count} {word}{'s' if count != 1 else ''}"
 
 
-def _situation(x: Mapping[str, Any], lacks: bool, gaps: Mapping[str, Any]) -> list[Content]:
+def _situation(x: Mapping[str, Any], lacks: bool) -> list[Content]:
     tested = x.get("tested", ())
     needless = not tested and not lacks
     said = "✗ not tested" if lacks else "– none" if needless else f"✓ {_counted(len(tested), 'test')}"
@@ -84,10 +86,16 @@ def _id(result: Result, place: int) -> str:
 
 
 def _row(
-    result: Result, place: int, test: Mapping[str, Any], targets: Iterable[Mapping[str, Any]]
+    result: Result,
+    place: int,
+    test: Mapping[str, Any],
+    targets: Sequence[Mapping[str, Any]],
+    facts: Sequence[Mapping[str, Any]],
 ) -> list[Content]:
     """The cells of a test, which lead to what is behind it."""
     name, link = test.get("id"), _id(result, place)
+    excluded = {x.get("other") for x in facts if x.get("test") == name and x.get("relation") == "excludes"}
+    empty = any(x.get("test") == name and x.get("relation") == "empty" for x in facts)
     shown = {x.get("what") for x in test.get("shown", ())}
     claims = test.get("claims") or ()
     head = tag("th", tag("a", name, href=f"#{link}"), scope="row", title=test.get("title"))
@@ -100,8 +108,12 @@ def _row(
             cells.append(cell("PROVED", f"all drives of {name} show {what}: that is proved", link))
         elif name in x.get("possible", ()):
             cells.append(cell("NONE-WITHIN", f"some drives of {name} show {what}", link))
-        elif what in claims:
+        elif what in claims and ("file" in test or what in excluded or empty):
             cells.append(cell("REFUTED", f"{name} says that it is {what}, and does not show it", link))
+        elif what in claims:
+            cells.append(
+                cell("UNKNOWN", f"{name} says that it is {what}, and nobody knows whether it can", link)
+            )
         else:
             cells.append(tag("td"))
     return cells
@@ -138,8 +150,13 @@ def _drive(result: Result, x: Mapping[str, Any], book: Book) -> Markup:
     lanes = {str(y.get("lane")): f"L{k}" for k, y in enumerate(scenarios)}
     set_name = str(result.data.get("set") or "base").partition(",")[0]
 
+    readings = {str(k): str(v) for k, v in (result.data.get("options") or {}).items()}
+    values = {str(k): Fraction(v) for k, v in (result.data.get("parameters") or {}).items()}
+
     def put(file: DriveFile) -> DriveFile:
-        return replace(file, set_name=set_name, lanes={**file.lanes, **{v: k for k, v in lanes.items()}})
+        """The drive in the definitions and at the values of the catalogue."""
+        named = {**file.lanes, **{v: k for k, v in lanes.items()}}
+        return replace(file, set_name=set_name, options=readings, values=values, lanes=named)
 
     since = [float(y.get("at") or 0) for y in scenarios]
     asked = []

@@ -43,7 +43,8 @@ def _exploration(place: str, x: Finding, result: Result, book: Book, words: Mapp
         for name in ("best", "missed", "surely"):
             found = one.get(name)
             if found:
-                said = f"{one['sense']} {one['measure']} = {_measured(found, one)}"
+                where = "".join(f", {y}" for y in _values_at(one.get("point") or (), vary))
+                said = f"{one['sense']} {one['measure']} = {_measured(found, one)}{where}"
                 parts.append(_behind(f"{name}-{place}-x{k}", said, found, result, book))
     return joined(parts)
 

@@ -8,7 +8,7 @@ import * as state from "studio/state";
 const LARGEST = 60_000_000; // bytes of files that are dropped together
 let running = null;
 
-/** The definitions as they are now; what was explained of the former ones is no longer shown. */
+/** The definitions as they are now; what was explained, or went wrong, of the former ones is gone. */
 export function rewrite(text) {
   batch(() => {
     forgetMarks();
@@ -27,6 +27,7 @@ export function askAnother(text) {
 function forgetMarks() {
   if (state.explain.peek() !== null) state.explain.value = null;
   if (state.clashes.peek().length) state.clashes.value = [];
+  if (state.trouble.peek()) state.trouble.value = "";
 }
 
 /** End what runs. The server ends the worker of a job that nobody listens to. */
@@ -238,6 +239,7 @@ export async function open(list) {
   if (!files.length) return;
   const spec = files.find((x) => x.name.endsWith(".spec"));
   if (spec) {
+    state.trouble.value = "";
     rewrite(spec.content);
     return;
   }

@@ -31,8 +31,8 @@ export function Bar() {
       <button class="icon" title="Keys (?)" aria-label="Keys" onClick=${() => (state.help.value = true)}>?</button>
     </div>
     <div class="second">
-      <div class="called" title=${called?.sentence ?? ""}>
-        ${wrong ? html`<span class="wrong">${wrong.message}</span>` : html`<b>${called?.name ?? ""}</b> ${called?.sentence ?? ""}`}
+      <div class="called" title=${wrong ? `${wrong.message} ${wrong.hint}` : (called?.sentence ?? "")}>
+        ${wrong ? html`<span class="wrong">${wrong.message}</span> <span class="faint">${wrong.hint}</span>` : html`<b>${called?.name ?? ""}</b> ${called?.sentence ?? ""}`}
       </div>
       <div class="buttons">
         <button class="main" title="f" onClick=${() => actions.find()}>Find a drive</button>
