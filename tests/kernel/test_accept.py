@@ -12,7 +12,7 @@ from roadproof.api.checking import check
 from roadproof.evidence.certificate import read_certificate, to_json
 from roadproof.evidence.finding import Acceptance
 from roadproof.kernel import accept
-from roadproof.kernel.accept import Word, judge, prepare
+from roadproof.kernel.accept import Word, find_tableau, judge, prepare
 from roadproof.kernel.coq import ready
 from roadproof.shipped import shipped
 from roadproof.spec.library import bundled_library
@@ -123,6 +123,26 @@ def test_compiled_files_among_the_evidence_are_not_loaded(tmp_path, monkeypatch)
     monkeypatch.setenv("COQLIB", str(tmp_path))
     (finding,) = check(tmp_path / ONE.name, kernel="coq").findings
     assert finding.kernel == "accepted"
+
+
+AT = "at minDanger = 0.6 s: F G[0, minDanger] rssViolation(SV,POV) -> F G[0, 0.5 s] rssViolation(SV,POV)"
+PREMISED = "minDanger = 0.6 s -> (scenario_4(SV,POV,L) -> F danger(SV,POV))"
+
+
+@needs_coq
+def test_proofs_at_values_are_accepted_with_the_values_put_in():
+    """Not at another value, at which the claim is false; what its own premise puts in is unknown."""
+    proved = rp.prove(AT, PREMISED, kernel="coq", drive=False, jobs=1)
+    assert [x["kernel"]["says"] for x in proved.as_data()["verdicts"]] == ["accepted", "unknown"]
+    certificate = proved.answers[0].settled.result.certificate
+    text = prepare("one", certificate, bundled_library()).module.text
+    assert "At minDanger = 0.6 s: numbers in place of these parameters." in text
+    assert "G[0, 3 # 5] rssViolation SV POV" in " ".join(text.split()).replace("(", "").replace(")", "")
+    other = replace(certificate, assumed=replace(certificate.assumed, said=("minDanger = 0.4 s",)))
+    tableau = find_tableau(certificate, bundled_library())
+    assert ruling(replace(certificate, tableau=tableau)).word is Word.ACCEPTED
+    assert ruling(replace(other, tableau=tableau)).word is Word.REFUSED
+    assert ruling(other).word is Word.UNKNOWN
 
 
 ODD = """

@@ -8,7 +8,7 @@ there, and their multipliers are computed exactly. Not trusted: Coq adds the pro
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations, combinations_with_replacement
+from itertools import combinations, combinations_with_replacement, islice
 from typing import Literal, TypeAlias
 
 from roadproof.kernel.polynomials import Monomial, Polynomial, constant, coq, times
@@ -59,12 +59,17 @@ class Sum:
         return found
 
 
-def contradiction(constraints: Sequence[Constraint], level: int) -> Sum | None:
-    """A sum of products of at most ``level`` constraints that is absurd; None where none is found."""
-    columns = list(_columns(constraints, level))
+def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | None, int]:
+    """A sum of products of at most ``level`` constraints that is absurd, None where none is found; and the
+    number of products that were looked at, which is the work that it took.
+    """
+    columns = list(islice(_columns(constraints, level), MOST_COLUMNS + 1))
     if len(columns) > MOST_COLUMNS:
-        return None
-    return _solved(columns)
+        return None, len(columns)
+    try:
+        return _solved(columns), len(columns)
+    except OverflowError:  # a number that no float has
+        return None, len(columns)
 
 
 def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[_Column]:

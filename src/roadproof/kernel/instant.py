@@ -1,16 +1,17 @@
 """The search for a reason of a fact about one instant, as proofs/kernel/Products.v checks it. Not trusted.
 
 The fact is taken to be false and taken apart; maxima and minima by cases, quotients as numbers of their own;
-then a contradiction of polynomial constraints is looked for (``cone.py``), at last with a number above or
-below 0.
+then a contradiction of polynomial constraints is looked for (``cone.py``), at last with quotients taken to
+be at least 0, or below.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
-from roadproof.kernel.cone import Constraint, contradiction
+from roadproof.kernel.cone import Constraint, Sum, contradiction
+from roadproof.kernel.plain import atoms_of, binary, comparisons, extrema, plain
 from roadproof.kernel.polynomials import Polynomial, constant, coq, variable
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -18,6 +19,8 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
 
 MOST_CASES = 400
+MOST_WORK = 100_000  # products that are looked at
+MOST_PARTS = 400  # of a polynomial
 MOST_CUTS = 2
 LEVELS = (1, 2, 3)
 
@@ -65,42 +68,8 @@ def reason(fact: Formula, strict: Mapping[str, bool], term: Callable[[Term], str
     try:
         search = _Search(binary(fact), strict, term)
         return Reason(search.run(), tuple(search.atoms))
-    except (NoReasonError, InputError):
+    except (NoReasonError, InputError, RecursionError):
         return None
-
-
-def binary(formula: Formula) -> Formula:
-    """A formula as Coq has it: conjunctions of two, without names and without conjunctions of one or none."""
-    match formula:
-        case f.Named(_, _, body):
-            return binary(body)
-        case f.Not(body):
-            return f.Not(binary(body))
-        case f.And(parts) | f.Or(parts):
-            if not parts:
-                return f.Truth(isinstance(formula, f.And))
-            *others, found = map(binary, parts)
-            for x in reversed(others):
-                found = type(formula)((x, found))
-            return found
-        case f.Compare(left, op, right):
-            return f.Compare(_of_two(left), op, _of_two(right))
-        case _:
-            return formula
-
-
-def _of_two(term: Term) -> Term:
-    """A term as Coq has it: ((x + y) + z), numbers without units."""
-    match term:
-        case t.Number(value, _):
-            return t.Number(value)
-        case t.Sum(parts) | t.Product(parts) | t.Maximum(parts) | t.Minimum(parts) if parts:
-            found, *others = map(_of_two, parts)
-            for x in others:
-                found = type(term)((found, x))
-            return found
-        case _:
-            return t.with_children(term, tuple(map(_of_two, t.children(term))))
 
 
 @dataclass
@@ -110,11 +79,12 @@ class _Search:
     term: Callable[[Term], str]
     atoms: dict[Term, int] = field(default_factory=dict)
     left: int = MOST_CASES
+    work: int = MOST_WORK
 
     def run(self) -> str:
-        for x in _comparisons(self.fact):
+        for x in comparisons(self.fact):
             for side in (x.left, x.right):
-                for atom in _atoms(side):
+                for atom in atoms_of(side):
                     self.atoms.setdefault(atom, len(self.atoms) + 1)
         table = {x: variable(number) for x, number in self.atoms.items()}
         bounds = [
@@ -149,10 +119,17 @@ class _Search:
 
     def _closed(self, state: _State, levels: Sequence[int]) -> str | None:
         for level in levels:
-            found = contradiction(state.constraints, level)
+            found = self._contradiction(state.constraints, level)
             if found is not None:
                 return f"(Absurd {found.written(len(state.constraints))})"
         return None
+
+    def _contradiction(self, constraints: Sequence[Constraint], level: int) -> Sum | None:
+        found, work = contradiction(constraints, level)
+        self.work -= work
+        if found is None and self.work < 0:
+            raise NoReasonError
+        return found
 
     # --- facts -------------------------------------------------------------------------------------
 
@@ -175,8 +152,8 @@ class _Search:
                 return self._prove(replace(state, waiting=left, choices=(*state.choices, place)))
             case f.Compare(left, op, right):
                 if isinstance(left, t.Inverse) or isinstance(right, t.Inverse):
-                    plain = _plain(formula)
-                    return f"(Plain {number} {self._prove(state.told(place, (sign, plain)))})"
+                    without = plain(formula)
+                    return f"(Plain {number} {self._prove(state.told(place, (sign, without)))})"
                 one_side, other = self._polynomial(state, left), self._polynomial(state, right)
                 if one_side is None or other is None:
                     return None
@@ -193,12 +170,13 @@ class _Search:
                 return self._prove(state.told(place))
 
     def _divide(self, state: _State) -> str | None:
-        for place in state.choices:
-            sign, formula = state.facts[place]
-            assert isinstance(formula, f.And | f.Or)
-            one, two = (self._prove(state.told(place, (sign, x))) for x in formula.parts)
-            return f"(Either {len(state.facts) - 1 - place} {one} {two})"
-        return None
+        if not state.choices:
+            return None
+        place = state.choices[0]
+        sign, formula = state.facts[place]
+        assert isinstance(formula, f.And | f.Or)
+        one, two = (self._prove(state.told(place, (sign, x))) for x in formula.parts)
+        return f"(Either {len(state.facts) - 1 - place} {one} {two})"
 
     # --- terms -------------------------------------------------------------------------------------
 
@@ -215,11 +193,16 @@ class _Search:
                 for x in parts:
                     if x is None:
                         return None
-                    found = found + x if isinstance(term, t.Sum) else found * x
+                    found = _small(found + x if isinstance(term, t.Sum) else found * x)
                 return found
             case t.Power(base, exponent):
                 inner = self._polynomial(state, base)
-                return None if inner is None else inner**exponent
+                if inner is None:
+                    return None
+                found = constant(Fraction(1))
+                for _ in range(exponent):
+                    found = _small(found * inner)
+                return found
             case t.Quotient(above, t.Number(value, _)) if value:
                 inner = self._polynomial(state, above)
                 return None if inner is None else inner * constant(1 / value)
@@ -237,7 +220,7 @@ class _Search:
             for up in (True, False):
                 other = constant(Fraction(0)) - below if up else below
                 asked = (*state.constraints, Constraint("at least", other))
-                shown = next((y for level in LEVELS[:2] if (y := contradiction(asked, level))), None)
+                shown = next((y for level in LEVELS[:2] if (y := self._contradiction(asked, level))), None)
                 if shown is not None:
                     new = Constraint("zero", state.table[x] * below - above)
                     inside = self._prove(replace(state, divided=state.divided | {x}).constrained(new))
@@ -250,7 +233,7 @@ class _Search:
         for place in state.waiting:
             _, formula = state.facts[place]
             assert isinstance(formula, f.Compare)
-            for x in _extrema((formula.left, formula.right)):
+            for x in extrema((formula.left, formula.right)):
                 one, two = x.terms
                 p, q = self._polynomial(state, one), self._polynomial(state, two)
                 if x in state.table or p is None or q is None:
@@ -266,7 +249,7 @@ class _Search:
         return None
 
     def _cut(self, state: _State) -> str:
-        """A quotient, else any number, above or below 0."""
+        """A quotient of which no sign is known, at least 0 or below; else no reason is found."""
         if state.cuts >= MOST_CUTS:
             raise NoReasonError
         signs = {v for x in state.constraints for v in x.polynomial.variables if len(x.polynomial.parts) == 1}
@@ -287,59 +270,8 @@ class _Search:
         return "Length" + shown[len("length") :] if size.name == "length" else "Width" + shown[len("width") :]
 
 
-def _comparisons(formula: Formula) -> Iterator[f.Compare]:
-    for x in f.subformulas(formula):
-        if isinstance(x, f.Compare):
-            plain = _plain(x) if isinstance(x.left, t.Inverse) or isinstance(x.right, t.Inverse) else x
-            yield from (y for y in f.subformulas(plain) if isinstance(y, f.Compare))
-
-
-def _atoms(term: Term) -> Iterator[Term]:
-    """What is a variable of polynomials, inner quotients first."""
-    match term:
-        case t.Number() | t.Own():
-            return
-        case t.Parameter() | t.Variable() | t.Signal() | t.Size():
-            yield term
-        case t.Quotient(above, t.Number(value, _)) if value:
-            yield from _atoms(above)
-        case _:
-            for x in t.children(term):
-                yield from _atoms(x)
-            if isinstance(term, t.Quotient):
-                yield term
-
-
-def _extrema(terms: Sequence[Term]) -> Iterator[t.Maximum | t.Minimum]:
-    """Maxima and minima of two, as Coq has them: max(max(x, y), z); inner ones first."""
-    for term in terms:
-        yield from _extrema(t.children(term))
-        if isinstance(term, t.Maximum | t.Minimum) and len(term.terms) == 2:
-            yield term
-
-
-def _plain(compare: f.Compare) -> Formula:
-    """As ``plain`` of Products.v."""
-    if compare.op in (">", ">="):
-        return _lower("<" if compare.op == ">" else "<=", compare.right, compare.left)
-    return _lower(compare.op, compare.left, compare.right)
-
-
-def _lower(op: f.Comparison, a: Term, b: Term) -> Formula:
-    below = f.Compare(_inverted(a), op, _inverted(b))
-    zero, other = (_is_zero(x.term) if isinstance(x, t.Inverse) else None for x in (b, a))
-    if other is None:
-        return below if zero is None else f.Or((zero, below))
-    if zero is None:
-        return f.And((f.Not(other), below))
-    if op == "<=":
-        return f.Or((zero, f.And((f.Not(other), below))))
-    return f.And((f.Not(other), f.Or((zero, below))))
-
-
-def _inverted(term: Term) -> Term:
-    return t.Quotient(t.number(1), term.term) if isinstance(term, t.Inverse) else term
-
-
-def _is_zero(term: Term) -> Formula:
-    return f.And((f.Compare(t.number(0), "<=", term), f.Compare(term, "<=", t.number(0))))
+def _small(polynomial: Polynomial) -> Polynomial:
+    """Raises ``NoReasonError`` for what is too large to be looked at."""
+    if len(polynomial.parts) > MOST_PARTS:
+        raise NoReasonError
+    return polynomial

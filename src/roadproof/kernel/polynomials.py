@@ -40,12 +40,6 @@ class Polynomial:
                 found[monomial] = found.get(monomial, Fraction(0)) + p * q
         return Polynomial({m: q for m, q in found.items() if q})
 
-    def __pow__(self, exponent: int) -> "Polynomial":
-        found = constant(Fraction(1))
-        for _ in range(exponent):
-            found = found * self
-        return found
-
     @property
     def variables(self) -> set[int]:
         return {variable for m in self.parts for variable, _ in m}

@@ -105,6 +105,8 @@ def _said(statement: Statement) -> Iterator[str]:
     options = ", ".join(f"{name}={value}" for name, value in sorted(statement.options.items()))
     yield f"{statement.label or 'A claim'}, set {statement.set_name}, options {options or 'none'}:"
     yield statement.claim
+    if statement.values:
+        yield f"At {', '.join(statement.values)}: numbers in place of these parameters."
     if statement.assumed:
         yield f"Under {statement.assumed} facts about motion: premises of the claim, not proved here."
 

@@ -11,14 +11,14 @@ from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.times import bound_parameters
-from roadproof.kernel.branch import Goal
+from roadproof.kernel.branch import Goal, NotFoundError
 from roadproof.kernel.printer import Formals
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.rewrite import parameters_of, with_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
-from roadproof.spec.motion import assumption, axiom_formula, values_said
+from roadproof.spec.motion import assumption, axiom_formula, value_texts, values_said
 from roadproof.spec.query import Query
 
 
@@ -27,7 +27,7 @@ class Statement:
     """``formula`` is what Coq is to prove for all parameters within ``bounds`` (name: strictly above 0).
 
     ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``assumed``: how many
-    facts about motion are premises, which are not proved.
+    facts about motion are premises, which are not proved. ``values`` of parameters, as words, are put in.
     """
 
     label: str
@@ -40,17 +40,23 @@ class Statement:
     parameters: tuple[str, ...]
     formals: Formals
     assumed: int
+    values: tuple[str, ...]
     goal: Goal
 
 
 def state(certificate: Certificate, library: Library) -> Statement:
-    """What is to be proved. Raises ``InputError`` where the certificate does not fit the library."""
+    """What is to be proved, values of parameters that are assumed put in.
+
+    Raises ``InputError`` where the certificate does not fit the library, and ``NotFoundError`` where the
+    search puts in what the claim has as a premise.
+    """
     specification = library.select(certificate.set_name, certificate.options)
     query = read_claim(specification, certificate.claim)
-    if certificate.pinned or values_said(specification, certificate.assumed.said):
-        raise InputError("values of parameters are put in before it is proved, which is not printed for Coq")
+    if certificate.pinned:
+        raise NotFoundError("values that its own premise demands are put in before it is proved")
     premises = _premises(certificate, library, query)
-    formula = f.implication(f.conjunction(*premises), query.formula)
+    here = values_said(specification, certificate.assumed.said)
+    formula = with_values(f.implication(f.conjunction(*premises), query.formula), here)
     atoms = Atoms()
     abstracted = atoms.abstract(formula)
     declared = specification.library.bounds
@@ -85,6 +91,7 @@ def state(certificate: Certificate, library: Library) -> Statement:
         parameters,
         formals,
         len(premises),
+        value_texts(specification, here),
         goal,
     )
 
