@@ -1,8 +1,9 @@
-(* The longitudinal RSS guarantee for drives.  NOT TRUSTED: proved.
+(* The RSS guarantees for drives.  NOT TRUSTED: proved.
 
-   Rss.v proves the guarantee for positions that have speeds, and speeds with bounds on their change.  Here it is
-   proved of what drives are (Drive.v): accelerations that are constant in pieces and within bounds.  The theorem
-   `drives_keep_apart` is at the end. *)
+   Rss.v proves the longitudinal guarantee for positions that have speeds, and speeds with bounds on their change.
+   Here it is proved of what drives are (Drive.v): accelerations that are constant in pieces and within bounds
+   (`drives_keep_apart`).  The lateral guarantee follows, for motions (`motions_across`) and for drives
+   (`drives_keep_apart_across`), with what fails where velocities keep the sign that the paper gives them. *)
 From Coq Require Import Reals QArith Qreals List Lra Psatz.
 From Roadproof Require Import Drive Rss.
 Import ListNotations.
@@ -192,3 +193,159 @@ Section Guarantee.
       intros t T. apply Br. lra.
   Qed.
 End Guarantee.
+
+(* --- across the road ------------------------------------------------------------------------------------ *)
+(* Vehicle 1 is left of vehicle 2.  Places and speeds are to the right, as in the paper's equation: v1 > 0 and
+   v2 < 0 are towards each other.  `signed` counts the braking of those who move towards the other, as ad-rss does;
+   `paper` squares whatever the speed is, which is no less. *)
+Section Lateral.
+  Variables a b rho : R.
+  Hypotheses (Ha : 0 <= a) (Hb : 0 < b) (Hr : 0 <= rho).
+
+  Definition signed v1 v2 :=
+    Rmax 0 ((v1 - v2) * rho + a * rho ^ 2 + (Rmax 0 (v1 + rho * a) ^ 2 + Rmin 0 (v2 - rho * a) ^ 2) / (2 * b)).
+  Definition paper v1 v2 :=
+    Rmax 0 ((v1 - v2) * rho + a * rho ^ 2 + ((v1 + rho * a) ^ 2 + (v2 - rho * a) ^ 2) / (2 * b)).
+
+  Lemma signed_below_paper v1 v2 : signed v1 v2 <= paper v1 v2.
+  Proof.
+    unfold signed, paper. apply Rle_max_compat_l, Rplus_le_compat_l.
+    apply Rmult_le_compat_r; [left; apply Rinv_0_lt_compat; lra|].
+    apply Rplus_le_compat; unfold Rmax, Rmin; destruct (Rle_dec _ _); nra.
+  Qed.
+
+  (* from place x c on, with a speed of at most w that is braked by b *)
+  Lemma brakes_within x v c t w : 0 <= w -> c <= t -> (forall s, c <= s <= t -> derivable_pt_lim x s (v s)) ->
+    (forall s, c <= s <= t -> v s <= Rmax 0 (w - b * (s - c))) -> x t - x c <= w ^ 2 / (2 * b).
+  Proof.
+    intros W C D H. pose proof (times_over w b Hb) as Q'. set (q := w / b) in *. assert (0 <= q) by nra.
+    assert (E : w ^ 2 / (2 * b) = w * q / 2) by (unfold q; field; lra). rewrite E.
+    assert (first : forall u, c <= u <= t -> u - c <= q -> x u - x c <= w * (u - c) - b * (u - c) ^ 2 / 2).
+    { intros u U B. pose proof (gains x v (fun s => w * (s - c) + - b * (s - c) ^ 2 / 2)
+        (fun s => w + - b * (s - c)) c u) as G. cbv beta in G.
+      assert (K : x u - x c <= w * (u - c) + - b * (u - c) ^ 2 / 2 - (w * (c - c) + - b * (c - c) ^ 2 / 2)).
+      { apply G; [lra|intros s S; apply D; lra|intros s _; apply shifted|].
+        intros s S. assert (T : c <= s <= t) by lra. specialize (H s T).
+        rewrite Rmax_right in H by nra. lra. }
+      replace (c - c) with 0 in K by ring. lra. }
+    destruct (Rle_lt_dec (t - c) q) as [B|B].
+    - specialize (first t (conj C (Rle_refl t)) B). set (z := t - c) in *.
+      assert (0 <= b * (q - z) ^ 2) by (apply Rmult_le_pos; [lra|apply pow2_ge_0]).
+      assert (w * q / 2 - (w * z - b * z ^ 2 / 2) = b * (q - z) ^ 2 / 2) by (rewrite <- Q'; field). lra.
+    - assert (U : c <= c + q <= t) by lra. specialize (first (c + q) U). replace (c + q - c) with q in first by ring.
+      specialize (first (Rle_refl q)).
+      assert (x t - x (c + q) <= 0 - 0).
+      { apply (gains x v (fun _ => 0) (fun _ => 0)); [lra|intros s S; apply D; lra|intros s _; apply still|].
+        intros s S. assert (T : c <= s <= t) by lra. specialize (H s T). rewrite Rmax_left in H; [exact H|nra]. }
+      assert (w * q - b * q ^ 2 / 2 = w * q / 2) by (rewrite <- Q'; field). lra.
+  Qed.
+
+  Lemma reaches x v t : moves x v -> 0 <= t ->
+    (forall s u, 0 <= s <= u -> u <= rho -> v u <= v s + a * (u - s)) ->
+    (forall s u, rho <= s <= u -> v u <= Rmax 0 (v s - b * (u - s))) ->
+    (t <= rho -> x t - x 0 <= v 0 * t + a * t ^ 2 / 2)
+    /\ (rho <= t -> x t - x 0 <= v 0 * rho + a * rho ^ 2 / 2 + Rmax 0 (v 0 + rho * a) ^ 2 / (2 * b)).
+  Proof.
+    intros D T A B.
+    assert (first : forall u, 0 <= u <= rho -> x u - x 0 <= v 0 * u + a * u ^ 2 / 2).
+    { intros u U. pose proof (gains x v (fun s => v 0 * s + a * s ^ 2 / 2) (fun s => v 0 + a * s) 0 u) as G.
+      cbv beta in G.
+      assert (x u - x 0 <= v 0 * u + a * u ^ 2 / 2 - (v 0 * 0 + a * 0 ^ 2 / 2)); [|lra].
+      apply G; [lra|intros s S; apply D; lra|intros s _; apply parabola|].
+      intros s S. assert (v s <= v 0 + a * (s - 0)) by (apply A; lra). lra. }
+    split; [intros L; apply first; lra|intros L]. specialize (first rho (conj Hr (Rle_refl rho))).
+    assert (v rho <= v 0 + a * (rho - 0)) by (apply A; lra).
+    assert (x t - x rho <= Rmax 0 (v 0 + rho * a) ^ 2 / (2 * b)); [|lra].
+    apply brakes_within with (v := v); [apply Rmax_l|exact L|intros s S; apply D; lra|].
+    intros s S. apply Rle_trans with (Rmax 0 (v rho - b * (s - rho))); [apply B; lra|].
+    apply Rle_max_compat_l. pose proof (Rmax_r 0 (v 0 + rho * a)). lra.
+  Qed.
+
+  Theorem motions_across x1 v1 x2 v2 : moves x1 v1 -> moves x2 v2 ->
+    (forall s u, 0 <= s <= u -> u <= rho -> v1 u <= v1 s + a * (u - s)) ->
+    (forall s u, 0 <= s <= u -> u <= rho -> - v2 u <= - v2 s + a * (u - s)) ->
+    (forall s u, rho <= s <= u -> v1 u <= Rmax 0 (v1 s - b * (u - s))) ->
+    (forall s u, rho <= s <= u -> - v2 u <= Rmax 0 (- v2 s - b * (u - s))) ->
+    x2 0 - x1 0 > signed (v1 0) (v2 0) ->
+    forall t, 0 <= t -> x1 t < x2 t.
+  Proof.
+    intros D1 D2 A1 A2 B1 B2 G t T.
+    destruct (reaches x1 v1 t D1 T A1 B1) as [N1 F1].
+    assert (D2' : moves (fun t => - x2 t) (fun t => - v2 t)).
+    { intros s S. apply (derivable_pt_lim_opp x2). apply D2, S. }
+    destruct (reaches (fun t => - x2 t) (fun t => - v2 t) t D2' T A2 B2) as [N2 F2]. cbv beta in *.
+    unfold signed in G. set (u1 := v1 0) in *. set (u2 := v2 0) in *.
+    assert (M : Rmax 0 (- u2 + rho * a) ^ 2 = Rmin 0 (u2 - rho * a) ^ 2).
+    { unfold Rmax, Rmin. destruct (Rle_dec 0 (- u2 + rho * a)), (Rle_dec 0 (u2 - rho * a)); nra. }
+    rewrite M in F2. set (p := Rmax 0 (u1 + rho * a) ^ 2) in *. set (q := Rmin 0 (u2 - rho * a) ^ 2) in *.
+    assert (P : 0 <= p) by apply pow2_ge_0. assert (Q' : 0 <= q) by apply pow2_ge_0.
+    assert (K : 0 < / (2 * b)) by (apply Rinv_0_lt_compat; lra). unfold Rdiv in *.
+    pose proof (Rmax_l 0 ((u1 - u2) * rho + a * rho ^ 2 + (p + q) * / (2 * b))).
+    pose proof (Rmax_r 0 ((u1 - u2) * rho + a * rho ^ 2 + (p + q) * / (2 * b))).
+    assert (0 <= (p + q) * / (2 * b)) by (apply Rmult_le_pos; lra).
+    destruct (Rle_lt_dec t rho) as [L|L].
+    - specialize (N1 L). specialize (N2 L).
+      assert (S : x1 t - x1 0 - (x2 t - x2 0) <= t * (u1 - u2 + a * t)) by lra.
+      destruct (Rle_lt_dec (u1 - u2 + a * t) 0) as [Z|Z].
+      + assert (t * (u1 - u2 + a * t) <= 0) by nra. lra.
+      + assert (u1 - u2 + a * t <= u1 - u2 + a * rho) by nra.
+        assert (t * (u1 - u2 + a * t) <= rho * (u1 - u2 + a * rho)) by (apply Rmult_le_compat; lra). lra.
+    - assert (L' : rho <= t) by lra. specialize (F1 L'). specialize (F2 L'). lra.
+  Qed.
+
+  (* `left` and `right` are courses across the road, on which places grow to the left; the right side of the left
+     vehicle is `wide` from its left one.  Each moves towards the other by at most a more until rho, and brakes by at
+     least b from then on, while it moves towards it. *)
+  Theorem drives_keep_apart_across (left right : course) (wide : R) :
+    lasting (pieces left) -> lasting (pieces right) ->
+    (forall t, 0 <= t < rho -> - acceleration_ (at_time left t) <= a) ->
+    (forall t, 0 <= t < rho -> acceleration_ (at_time right t) <= a) ->
+    (forall t, rho <= t -> speed_ (at_time left t) < 0 -> acceleration_ (at_time left t) >= b) ->
+    (forall t, rho <= t -> 0 < speed_ (at_time right t) -> acceleration_ (at_time right t) <= - b) ->
+    place_ (at_time left 0) - wide - place_ (at_time right 0)
+      > signed (- speed_ (at_time left 0)) (- speed_ (at_time right 0)) ->
+    forall t, 0 <= t -> place_ (at_time right t) < place_ (at_time left t) - wide.
+  Proof.
+    intros Ll Lr A1 A2 B1 B2 G t T.
+    assert (K : - (place_ (at_time left t) - wide) < - place_ (at_time right t)); [|lra].
+    apply (motions_across
+      (fun t => - (place_ (at_time left t) - wide)) (fun t => - speed_ (at_time left t))
+      (fun t => - place_ (at_time right t)) (fun t => - speed_ (at_time right t))); try exact T.
+    - intros s _. apply (derivable_pt_lim_opp (fun t => place_ (at_time left t) - wide)).
+      replace (speed_ (at_time left s)) with (speed_ (at_time left s) - 0) by ring.
+      apply derivable_pt_lim_minus; [apply moving_moves, Ll|apply derivable_pt_lim_const].
+    - intros s _. apply (derivable_pt_lim_opp (fun t => place_ (at_time right t))). apply moving_moves, Lr.
+    - intros s u S U. unfold at_time.
+      apply (chain (fun _ r => - r <= a) (fun d v w => - w <= - v + a * d)) with (s := s) (u := u); try assumption.
+      + intros v r d D H. pose proof (speeds_up_at_most a (- v) (- r) d D H). lra.
+      + intros d e x v w D E H1 H2. lra.
+      + intros r R'. apply A1. lra.
+    - intros s u S U. rewrite !Ropp_involutive. unfold at_time.
+      apply (chain (fun _ r => r <= a) (fun d v w => w <= v + a * d)) with (s := s) (u := u); try assumption.
+      + intros v r d D H. apply speeds_up_at_most; [exact D|exact H].
+      + intros d e x v w D E H1 H2. lra.
+      + intros r R'. apply A2. lra.
+    - intros s u S. unfold at_time.
+      apply (chain (fun v r => v < 0 -> r >= b) (fun d v w => - w <= Rmax 0 (- v - b * d))) with (s := s) (u := u);
+        try assumption.
+      + intros v r d D H. replace (- (v + r * d)) with (- v + - r * d) by ring. apply brakes_at_least; try assumption.
+        intros r' R' P. assert (r >= b) by (apply (H r' R'); lra). lra.
+      + intros d e x v w D E H1 H2. apply (brakes_on b Hb d e (- x) (- v) (- w) D E H1 H2).
+      + lra.
+      + intros r R'. apply B1. lra.
+    - intros s u S. rewrite !Ropp_involutive. unfold at_time.
+      apply (chain (fun v r => 0 < v -> r <= - b) (fun d v w => w <= Rmax 0 (v - b * d))) with (s := s) (u := u);
+        try assumption; [exact (brakes_at_least b Hb)|exact (brakes_on b Hb)|lra|].
+      intros r R'. apply B2. lra.
+    - lra.
+  Qed.
+End Lateral.
+
+(* As the paper prints it, v_lat goes into its equation unchanged, although d grows to the left (the option
+   lateral_sign = literal).  Then the distance of vehicles that approach each other by 1 m/s each is 0 at the
+   declared values, where they are to be more than 4 m apart. *)
+Lemma literal_sign_asks_for_nothing : paper (3 / 2) (3 / 2) (3 / 5) (- (1)) 1 = 0.
+Proof. unfold paper. apply Rmax_left. lra. Qed.
+Lemma right_sign_asks_for_more : paper (3 / 2) (3 / 2) (3 / 5) 1 (- (1)) > 4.
+Proof. unfold paper. pose proof (Rmax_r 0 ((1 - - (1)) * (3 / 5) + 3 / 2 * (3 / 5) ^ 2 +
+  ((1 + 3 / 5 * (3 / 2)) ^ 2 + (- (1) - 3 / 5 * (3 / 2)) ^ 2) / (2 * (3 / 2)))). lra. Qed.

@@ -22,6 +22,7 @@ Inductive derivation :=
 | Both (p q : derivation)                                 (* and *)
 | One (second : bool) (p : derivation)                    (* or *)
 | Split (c : Q) (after : bool) (p q : derivation)         (* before c (and at it, if after) and from there on *)
+| Case (s : list Q) (p q : derivation)                    (* where the polynomial s is above 0, and where it is not *)
 | Element (e : nat) (p : derivation)                      (* some *)
 | Each (ps : list derivation)                             (* every, in the order of elements *)
 | Whole (p : derivation)                                  (* G; not U: its right side is never true *)
@@ -617,6 +618,90 @@ Section Check.
     destruct m as [u|u]; cbn [at_]; apply le_R in H; rewrite ?plus_R in H; lra.
   Qed.
 
+  (* --- what the sign of a polynomial says of comparisons ------------------------------------------------ *)
+  (* Whether q is s times a number above 0 (true) or below 0 (false). *)
+  Definition same_sign (s q : list Q) : option bool :=
+    let c := Qred (last q 0%Q / last s 0%Q) in
+    match psub q (pscale c s) with
+    | [] => if below 0 c then Some true else if below c 0 then Some false else None
+    | _ => None
+    end.
+  (* l < r, and r < l, where it follows from s > 0 (above), or from s <= 0 *)
+  Definition says_less (same above : bool) : option bool :=
+    match same, above with true, true => Some true | false, false => None | _, _ => Some false end.
+  Definition says_greater (same above : bool) : option bool :=
+    match same, above with false, true => Some true | true, false => None | _, _ => Some false end.
+  Definition said_of (I : interval) (s : list Q) (above : bool) (l : side) (o : comparison) (r : side) : option bool :=
+    match l, r with
+    | Fin x, Fin y =>
+        match term_on I x, term_on I y with
+        | [u], [v] =>
+            match same_sign s (psub v u) with
+            | None => None
+            | Some same =>
+                match o with
+                | LT => says_less same above
+                | GE => option_map negb (says_less same above)
+                | GT => says_greater same above
+                | LE => option_map negb (says_greater same above)
+                end
+            end
+        | _, _ => None
+        end
+    | _, _ => None
+    end.
+  Fixpoint assume (I : interval) (s : list Q) (above : bool) (f : formula) : formula :=
+    match f with
+    | Compare l o r => match said_of I s above l o r with Some b => Truth b | None => f end
+    | Not f => Not (assume I s above f)
+    | And f g => And (assume I s above f) (assume I s above g)
+    | Or f g => Or (assume I s above f) (assume I s above g)
+    | Some_ n d f => Some_ n d (assume I s above f)
+    | Every n d f => Every n d (assume I s above f)
+    | _ => f
+    end.
+  Definition has_sign (s : list Q) (above : bool) (t : R) : Prop := if above then 0 < eval s t else eval s t <= 0.
+
+  Lemma same_sign_right s q same above t : same_sign s q = Some same -> has_sign s above t ->
+    match same, above with
+    | true, true => 0 < eval q t | true, false => eval q t <= 0
+    | false, true => eval q t < 0 | false, false => 0 <= eval q t
+    end.
+  Proof.
+    unfold same_sign. intros H S. set (c := Qred (last q 0%Q / last s 0%Q)) in *.
+    destruct (psub q (pscale c s)) as [|x l] eqn:E; [|discriminate].
+    assert (P : eval q t = Q2R c * eval s t).
+    { assert (Z : eval (psub q (pscale c s)) t = 0) by (rewrite E; reflexivity).
+      rewrite psub_eval, pscale_eval in Z. lra. }
+    rewrite P. clearbody c. destruct (below 0 c) eqn:B; [|destruct (below c 0) eqn:B'; [|discriminate]];
+      injection H as <-; (apply below_R in B || apply below_R in B'); rewrite zero_R in *;
+      destruct above; simpl in S; nra.
+  Qed.
+  Lemma said_of_right I s above l o r b t : said_of I s above l o r = Some b -> inside I t -> has_sign s above t ->
+    (b = true <-> compares o (extended_number W t l) (extended_number W t r)).
+  Proof.
+    unfold said_of. intros H T S. destruct l as [x|x]; [|discriminate]. destruct r as [y|y]; [|discriminate].
+    pose proof (term_right I x t T) as X. pose proof (term_right I y t T) as Y.
+    destruct (term_on I x) as [|u [|? ?]]; try discriminate. destruct (term_on I y) as [|v [|? ?]]; try discriminate.
+    destruct X as [u' [[<-|[]] X]]; [discriminate|]. destruct Y as [v' [[<-|[]] Y]]; [discriminate|].
+    destruct (same_sign s (psub v u)) as [same|] eqn:E; [|discriminate].
+    pose proof (same_sign_right s _ same above t E S) as Q'. rewrite psub_eval in Q'.
+    cbn [extended_number]. rewrite X, Y.
+    destruct o, same, above; simpl in H; try discriminate; injection H as <-; simpl; simpl in Q';
+      (split; intros C; try discriminate; try reflexivity; lra).
+  Qed.
+  Lemma assume_right I s above f t : inside I t -> has_sign s above t ->
+    forall b, Meaning.holds W named b t (assume I s above f) <-> Meaning.holds W named b t f.
+  Proof.
+    intros T S. induction f; intros p; cbn [assume Meaning.holds]; try tauto.
+    - destruct (said_of I s above l o r) as [b|] eqn:E; [|tauto]. apply (said_of_right I s above l o r b t E T S).
+    - split; intros [e [M H]]; exists e; (split; [exact M|apply IHf, H]).
+    - split; intros H e M; apply IHf, H, M.
+    - rewrite IHf. tauto.
+    - rewrite IHf1, IHf2. tauto.
+    - rewrite IHf1, IHf2. tauto.
+  Qed.
+
   (* --- derivations -------------------------------------------------------------------------------------- *)
   Definition somewhere_in (J : option interval) (check : interval -> bool) : bool :=
     match J with Some J => check J | None => false end.
@@ -638,6 +723,7 @@ Section Check.
     | One second p, And f g => negb pol && check p (if second then g else f) env pol I
     | One second p, Or f g => pol && check p (if second then g else f) env pol I
     | Split c after p q, _ => check p f env pol (before_ I c after) && check q f env pol (since I c after)
+    | Case s p q, _ => check p (assume I s true f) env pol I && check q (assume I s false f) env pol I
     | Element e p, Some_ n d f => pol && Nat.ltb e count && is_member env d e && check p f (put env n e) pol I
     | Element e p, Every n d f => negb pol && Nat.ltb e count && is_member env d e && check p f (put env n e) pol I
     | Each ps, Every n d f => pol && each ps (members env d) n f
@@ -681,20 +767,21 @@ Section Check.
   Lemma derivation_ind' (P : derivation -> Prop) :
     P Plain -> (forall cuts, P (Sign cuts)) -> (forall p, P p -> P (Turn p)) ->
     (forall p q, P p -> P q -> P (Both p q)) -> (forall s p, P p -> P (One s p)) ->
-    (forall c a p q, P p -> P q -> P (Split c a p q)) -> (forall e p, P p -> P (Element e p)) ->
+    (forall c a p q, P p -> P q -> P (Split c a p q)) ->
+    (forall s p q, P p -> P q -> P (Case s p q)) -> (forall e p, P p -> P (Element e p)) ->
     (forall ps, Forall P ps -> P (Each ps)) -> (forall p, P p -> P (Whole p)) ->
     (forall m p, P p -> P (Moment m p)) -> (forall m p q, P p -> P q -> P (Reach m p q)) ->
     (forall m p q, P p -> P q -> P (Break m p q)) -> forall p, P p.
   Proof.
-    intros H1 H2 H3 H4 H5 H6 H7 H8 H9 H10 H11 H12. fix IH 1. intros p.
-    destruct p; [apply H1|apply H2|apply H3|apply H4|apply H5|apply H6|apply H7|apply H8|apply H9|apply H10|apply H11|apply H12];
+    intros H1 H2 H3 H4 H5 H6 HC H7 H8 H9 H10 H11 H12. fix IH 1. intros p.
+    destruct p; [apply H1|apply H2|apply H3|apply H4|apply H5|apply H6|apply HC|apply H7|apply H8|apply H9|apply H10|apply H11|apply H12];
       try apply IH.
     induction ps as [|p ps IHps]; constructor; [apply IH|exact IHps].
   Qed.
 
   Theorem check_right p : right_for p.
   Proof.
-    induction p as [|cuts|p IHp|p q IHp IHq|second p IHp|c after p q IHp IHq|e p IHp|ps IHps|p IHp|m p IHp
+    induction p as [|cuts|p IHp|p q IHp IHq|second p IHp|c after p q IHp IHq|s p q IHp IHq|e p IHp|ps IHps|p IHp|m p IHp
                    |m p q IHp IHq|m p q IHp IHq] using derivation_ind';
       intros f env pol I b t H B T; cbn [check] in H.
     - destruct f; try discriminate. apply Bool.eqb_prop in H. subst. simpl. destruct pol; simpl; congruence.
@@ -711,6 +798,11 @@ Section Check.
         specialize (IHp _ _ _ _ _ _ H1 B T); destruct second; simpl in *; tauto.
     - apply andb_prop in H as [H1 H2]. destruct (split_right I c after t T) as [S|S];
         [apply (IHp _ _ _ _ _ _ H1 B S)|apply (IHq _ _ _ _ _ _ H2 B S)].
+    - apply andb_prop in H as [H1 H2]. destruct (Rlt_le_dec 0 (eval s t)) as [S|S].
+      + specialize (IHp _ _ _ _ _ _ H1 B T). pose proof (assume_right I s true f t T S b) as E.
+        destruct pol; simpl in *; tauto.
+      + specialize (IHq _ _ _ _ _ _ H2 B T). pose proof (assume_right I s false f t T S b) as E.
+        destruct pol; simpl in *; tauto.
     - destruct f; try discriminate; apply andb_prop in H as [H H1]; apply andb_prop in H as [H M];
         apply andb_prop in H as [H0 L]; destruct pol; try discriminate;
         destruct (number_exists e L) as [x X]; rewrite <- X in *; apply (is_member_right b env d x B) in M;

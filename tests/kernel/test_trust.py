@@ -9,7 +9,7 @@ ROW = re.compile(r"^\| \((\d)\) \| [^|]+ \| ([^|]+) \| (\d+) \|$", re.MULTILINE)
 
 def test_what_has_to_be_believed_is_as_long_as_the_page_says():
     rows = ROW.findall((HOME / "docs" / "trust.md").read_text("utf-8"))
-    assert [number for number, _, _ in rows] == list("123456")
+    assert [number for number, _, _ in rows] == list("1234567")
     for number, files, said in rows:
         lines = 0
         for name in re.findall(r"`([^`]+)`", files):

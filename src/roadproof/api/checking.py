@@ -125,8 +125,8 @@ def check(
     """Check certificates, drive files and folders of them, as ``roadproof check`` does.
 
     ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
-    certificates are put to Coq instead, and drives as well, and accepted only by its word. Raises ``InputError`` for a path
-    that holds nothing, ``MissingSolverError``.
+    certificates are put to Coq instead, drives too, and both accepted by its word alone. Raises
+    ``InputError`` for a path that holds nothing, ``MissingSolverError``.
     """
     one_of("solver", solver, Solver)
     if kernel is None:

@@ -7,8 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from roadproof.errors import RoadproofError
 from roadproof.deriving.prepare import prepare as prepare_drive
+from roadproof.errors import RoadproofError
 from roadproof.evidence import drive_file
 from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certificate_data
 from roadproof.evidence.drive_file import DriveFile, read_drive
@@ -76,7 +76,7 @@ class Answered:
 
 
 def put(asked: Sequence[Asked], jobs: int | None, progress: Progress | None = None) -> Answered:
-    """What Coq says of each; what is neither certificate nor drive has no ruling. Raises ``MissingSolverError``."""
+    """What Coq says of each certificate and drive; nothing of others. Raises ``MissingSolverError``."""
     with ready() as coq:
         prepared = prepare_all(asked, jobs, progress)
         count = pool.count_workers(list(prepared), jobs) if prepared else 0

@@ -1,8 +1,9 @@
 """A derivation that a formula is true of a drive, read off the sets of instants at which its parts are true.
 
 The exact judge says when each part is true; here an instant is chosen for each `F`, a disjunct for each `or`,
-and rational instants at which the choice changes. Nothing rests on it: Coq checks what comes out. Where a
-choice would have to change exactly at an irrational instant, there is no derivation.
+and rational instants at which the choice changes. Where it has to change exactly at an irrational instant,
+cases are made of the sign of a polynomial, which decides the comparisons that change; where that is not
+enough there is no derivation. Nothing rests on this: Coq checks what comes out.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -10,13 +11,14 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias, assert_never
 
-from roadproof.deriving.signs import Part, Shapes, Signs, compares, occupies, opposite, splits
+from roadproof.deriving.signs import Part, Poly, Shapes, Signs, compares, occupies, opposite, said_of, splits
 from roadproof.errors import RoadproofError
 from roadproof.judge.algebraic import Point, Root, bounds
 from roadproof.judge.exact import judge, seconds
 from roadproof.judge.truth import (
     ALWAYS,
     NEVER,
+    START,
     Cut,
     Span,
     TruthSet,
@@ -27,11 +29,11 @@ from roadproof.judge.truth import (
     union,
     until,
 )
-from roadproof.kernel.derivation import Fixed, Later, Moment, Step, element, sign, split, timed
+from roadproof.kernel.derivation import Fixed, Later, Moment, Step, case, element, sign, split, timed
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of, with_values, without_names
+from roadproof.logic.rewrite import terms_of, vehicles_of, with_values, without_names
 from roadproof.spec.bind import occupies as occupies_formula
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
@@ -209,6 +211,9 @@ class _Finding:
             return Step("Both", (), tuple(self.why(x, scope, positive, part) for x in sides))
         found: list[tuple[Part, Step]] = []
         for piece, place in _covered(part, [self.when(x, scope, positive) for x in sides]):
+            if isinstance(place, Root):
+                found.append((piece, self._case(kind(tuple(parts)), scope, positive, piece, place)))
+                continue
             step = self.why(sides[place], scope, positive, piece)
             found.append((piece, Step("One", (str(place == 1).lower(),), (step,))))
         return _put_together(found)
@@ -229,8 +234,39 @@ class _Finding:
             return Step("Each", (), tuple(self.why(body, x, positive, part) for x in scopes), many=True)
         found: list[tuple[Part, Step]] = []
         for piece, place in _covered(part, [self.when(body, x, positive) for x in scopes]):
+            if isinstance(place, Root):
+                whole = (f.Some if positive else f.Every)(variable, domain, body)
+                found.append((piece, self._case(whole, scope, positive, piece, place)))
+                continue
             found.append((piece, element(members[place], self.why(body, scopes[place], positive, piece))))
         return _put_together(found)
+
+    def _case(self, formula: Formula, scope: Scope, positive: bool, part: Part, change: Root) -> Step:
+        """Where a polynomial that has this root is above 0, and where it is not."""
+        polynomial = tuple(Fraction(x) for x in change.polynomial)
+        above, not_above = (self._assuming(formula, part, polynomial, x) for x in (True, False))
+        if formula in (above, not_above):
+            raise NoDerivationError("what holds changes exactly at an irrational instant")
+        return case(
+            polynomial,
+            self.why(above, scope, positive, part),
+            self.why(not_above, scope, positive, part),
+        )
+
+    def _assuming(self, formula: Formula, part: Part, polynomial: Poly, above: bool) -> Formula:
+        """``formula`` with what the sign of a polynomial says of its comparisons at the same instant."""
+        match formula:
+            case f.Compare():
+                vehicles = vehicles_of(formula)
+                if any(part.has_inside(x) for name in vehicles for x in self.shapes.knots(name)):
+                    return formula
+                said = said_of(self.shapes, formula, part, polynomial, above)
+                return formula if said is None else f.Truth(said)
+            case f.Not() | f.And() | f.Or() | f.Some() | f.Every():
+                inside = (self._assuming(x, part, polynomial, above) for x in f.children(formula))
+                return f.with_children(formula, tuple(inside))
+            case _:
+                return formula
 
     def _timed(
         self,
@@ -318,8 +354,11 @@ def _put_together(found: Sequence[tuple[Part, Step]]) -> Step:
     return step
 
 
-def _covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int]]:
-    """Parts of ``part`` that follow each other, each within one of the sets."""
+def _covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int | Root]]:
+    """Parts of ``part`` that follow each other, each within one of the sets.
+
+    A root in place of a set: at it one set ends and another begins.
+    """
     cut = part.begin
     while True:
         reaching = [(span, k) for k, x in enumerate(sets) if (span := _span_at(x, cut)) is not None]
@@ -334,15 +373,39 @@ def _covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int]]
             raise ValueError("an interval for ever covers what is left")
         end = span.end
         if isinstance(end.point, Root):
-            others = [
-                y for x in sets for y in x.spans() if y.begin < end and _ends_by(end, y.end) and y.end != end
-            ]
+            others = [y for x in sets for y in x.spans() if y.begin <= end and (y.end is None or end < y.end)]
             first = min((y.begin for y in others), default=None)
             if first is None:
                 raise NoDerivationError("what holds changes exactly at an irrational instant")
+            if first.point == end.point:
+                change = end.point
+                following = max((y for x in sets for y in x.spans() if y.begin == first), key=_by_end)
+                before, after = _around(change, cut, following.end, part.end)
+                if cut < before:
+                    yield Part(cut, before), place
+                yield Part(before, after), change
+                if after == part.end:
+                    return
+                cut = after
+                continue
             end = Cut(_between(max(first, cut).point, end.point), False)
         yield Part(cut, end), place
         cut = end
+
+
+def _by_end(span: Span) -> tuple[bool, Cut]:
+    return (True, START) if span.end is None else (False, span.end)
+
+
+def _around(change: Root, begin: Cut, limit: Cut | None, end: Cut | None) -> tuple[Cut, Cut]:
+    """Rational cuts around ``change``, near it, not before ``begin``, not after ``limit`` and ``end``."""
+    low, high = bounds(change, Fraction(1, 64))
+    while (limit is not None and not Cut(high, False) <= limit) or not begin <= Cut(low, False):
+        low, high = bounds(change, (high - low) / 8)
+        if high - low < Fraction(1, 2**400):
+            raise NoDerivationError("what holds changes twice at nearly one instant")
+    after = Cut(high, False)
+    return Cut(low, False), after if end is None or after <= end else end
 
 
 def _widened(part: Part, window: tuple[Fraction, Fraction | None]) -> Part:
@@ -401,7 +464,7 @@ def _moments(
 
 
 def _before(limit: Cut | None, low: Fraction, wanted: Cut | None, cut: Cut) -> Cut | None:
-    """How far instants go on whose windows begin before ``limit``: ``wanted``, or something rational before."""
+    """How far instants go on whose windows begin before ``limit``: ``wanted``, or a rational before."""
     if limit is None:
         return wanted
     if not isinstance(limit.point, Root):

@@ -14,7 +14,7 @@ from roadproof.judge.algebraic import Root, real_roots
 from roadproof.judge.polynomial import primitive
 from roadproof.judge.truth import Cut
 from roadproof.logic import terms as t
-from roadproof.logic.formula import Comparison
+from roadproof.logic.formula import Compare, Comparison
 from roadproof.logic.terms import Term
 from roadproof.world.drive import Drive
 from roadproof.world.motion import State, starts_of
@@ -289,6 +289,30 @@ def _cases(
             yield (False, q), (strict, subtract(p, q))
             yield (True, scale(minus, p)), (strict, subtract(p, q))
             yield (True, scale(minus, p)), (False, q)
+
+
+def said_of(shapes: Shapes, compared: Compare, part: Part, polynomial: Poly, above: bool) -> bool | None:
+    """What a comparison is in ``part`` where ``polynomial`` is above 0, or is not; None: open."""
+    left = shapes.term(compared.left, part, Signs())
+    right = shapes.term(compared.right, part, Signs())
+    if len(left) != 1 or len(right) != 1:
+        return None
+    difference = subtract(right[0], left[0])
+    if len(difference) != len(polynomial):
+        return None
+    factor = difference[-1] / polynomial[-1]
+    if scale(factor, polynomial) != difference:
+        return None
+    signs = (
+        (frozenset({1}) if above else frozenset({-1, 0}))
+        if factor > 0
+        else frozenset({-1} if above else {0, 1})
+    )
+    # The sign of right - left where the comparison is true.
+    true = {"<": {1}, "<=": {0, 1}, ">": {-1}, ">=": {-1, 0}}[compared.op]
+    if signs <= true:
+        return True
+    return None if signs & true else False
 
 
 def opposite(op: Comparison) -> Comparison:

@@ -45,6 +45,10 @@ def split(time: Fraction, after: bool, before: Step, since: Step) -> Step:
     return Step("Split", (rational(time), str(after).lower()), (before, since))
 
 
+def case(polynomial: tuple[Fraction, ...], above: Step, not_above: Step) -> Step:
+    return Step("Case", (f"[{'; '.join(map(rational, polynomial))}]",), (above, not_above))
+
+
 def element(number: int, step: Step) -> Step:
     return Step("Element", (f"{number}%nat",), (step,))
 

@@ -31,7 +31,7 @@ NewRoad InstRoad Cut Fact the_drive drive reasons derivation shows shown bodies 
 other_rectangles beside lanes_named values long wide long_above_0 wide_above_0 along across starts_at
 starts_with pieces finally lane lies_in from_s to_s right_d left_d Turn One Split Element Each Whole Moment
 Reach Break Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant
-Named Sane
+Named Sane Guarantee Case
 """
 WORDS = frozenset(_SAID.split())
 

@@ -1,0 +1,198 @@
+"""Drives put to Coq: accepted where the formula is true of them, and refused where it is not."""
+
+import json
+import re
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+from kernel import raw
+from kernel.drives import HEAD, cases, derived, example
+from kernel.needs import needs_coq
+from roadproof.api.checking import check
+from roadproof.deriving.derive import derive
+from roadproof.deriving.prepare import prepare
+from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.judged import judge_file
+from roadproof.judge import judge
+from roadproof.judge.algebraic import Root
+from roadproof.kernel.accept import Word
+from roadproof.kernel.coq import ready
+from roadproof.kernel.derivation import Step, coq_derivation, size
+from roadproof.kernel.drive import claim_text, drive_lines, module, shown
+from roadproof.kernel.source import file
+from roadproof.logic import formula as f
+from roadproof.logic.rewrite import without_names
+from roadproof.spec.bind import bind
+from roadproof.spec.library import bundled_library
+from roadproof.world.drive import Drive
+
+HOME = Path(__file__).parents[2]
+DRIVES = sorted((HOME / "tests/traffic/planted").glob("scenario-*.json"))
+ONE = HOME / "examples/traffic/drives/scenario-04-base.json"
+THEOREM = re.compile(r"Theorem proved .*?Qed\.\n", re.DOTALL)
+
+
+def derivation_of(path):
+    what = shown(load_drive(path), bundled_library())
+    return what, derive(what.formula, what.file.drive, what.file.road, what.file.lanes, what.values)
+
+
+def refused(name, what, derivation, asked):
+    """A module that says of each of ``asked``, (drive, claim, reasons) as text, that it is not accepted."""
+    made = module(name, what, claim_text(what), derivation)
+    said = [
+        f"Example refused_{k} : Roadproof.Shown.accepts {drive} bounds {claim} {reasons} = false.\n"
+        "Proof. vm_compute. reflexivity. Qed.\n"
+        for k, (drive, claim, reasons) in enumerate(asked)
+    ]
+    return replace(made, text=THEOREM.sub("".join(said), made.text))
+
+
+def accepted_whole(modules):
+    with ready() as coq:
+        ran = coq.run(file(modules))
+    assert (ran.code, ran.complained) == (0, "")
+
+
+@needs_coq
+def test_drives_of_all_eight_scenarios_are_accepted():
+    checked = check(*DRIVES, kernel="coq", jobs=1)
+    assert len(DRIVES) == 8
+    assert [(x.outcome, x.kernel) for x in checked.findings] == [(Acceptance.ACCEPTED, "accepted")] * 8
+
+
+def test_what_is_printed_says_claim_drive_and_theorem():
+    text = prepare("one", load_drive(ONE), bundled_library()).module.text
+    said, _, proof = text.partition("(* From here on it is proof")
+    assert "Definition claim : formula := shown_of_it and (G[0, 6] apart POV SV)." in said
+    assert "Definition shown_of_it : formula := scenario_4 SV POV L." in said
+    assert 'lanes_named := [\n    ("L", "main-1")\n  ];' in said
+    for motion in load_drive(ONE).drive.vehicles.values():
+        numbers = [motion.s, motion.v_lat, *(x for p in motion.pieces for x in (p.a_lon, p.a_lat) if x)]
+        for number in numbers:
+            shown_as = f"{number.numerator} # {number.denominator}" if number.denominator > 1 else str(number)
+            assert shown_as in said
+    assert "Theorem proved : Roadproof.Drive.shows the_drive bounds claim." in proof
+
+
+@needs_coq
+def test_what_the_judge_says_of_random_formulas_and_drives_coq_accepts():
+    """Comparisons of any degree up to two, inverses, lanes, and all operators of time inside each other."""
+    given = cases(60)
+    found = [(formula, drive, derived(formula, drive)) for formula, drive in given]
+    asked = [x for x in found if x[2] is not None]
+    assert len(asked) >= len(given) - 2
+    out = [HEAD]
+    for number, (formula, drive, derivation) in enumerate(asked):
+        out.append(example(f"yes_{number}", formula, drive, derivation, True))
+        out.append(example(f"no_{number}", f.Not(formula), drive, derivation, False))
+    with ready() as coq:
+        ran = coq.run("".join(out))
+    assert (ran.code, ran.complained) == (0, "")
+
+
+def changed(drive):
+    """The drive with one number changed, in many ways."""
+    for name, motion in drive.vehicles.items():
+        others = [
+            replace(motion, **{x: getattr(motion, x) + by}) for x in ("s", "d", "v_lon") for by in (-9, 9)
+        ]
+        for place, piece in enumerate(motion.pieces[:4]):
+            for a_lon in (piece.a_lon - 3, piece.a_lon + 3):
+                pieces = (*motion.pieces[:place], replace(piece, a_lon=a_lon), *motion.pieces[place + 1 :])
+                others.append(replace(motion, pieces=pieces))
+        for other in others:
+            yield Drive({**drive.vehicles, name: other})
+
+
+@needs_coq
+def test_a_changed_drive_on_which_the_formula_fails_is_refused():
+    """With the derivation of the drive as it was."""
+    modules, count = [], 0
+    for path in DRIVES[:2]:
+        what, derivation = derivation_of(path)
+        bound = bind(what.formula, what.file.road, what.file.lanes, what.values)
+        others = [x for x in changed(what.file.drive) if not judge(bound, x).holds]
+        false = [replace(what, file=replace(what.file, drive=x)) for x in others]
+        asked = [(" ".join(["(", *drive_lines(x), ")"]), "claim", "reasons") for x in false]
+        modules.append(refused(f"m{len(modules)}", what, derivation, asked))
+        count += len(asked)
+    assert count >= 20
+    accepted_whole(modules)
+
+
+@needs_coq
+def test_another_formula_with_the_derivation_of_this_is_refused():
+    library = bundled_library()
+    what, derivation = derivation_of(ONE)
+    claims = ["not scenario_4(SV, POV, L)", "G scenario_4(SV, POV, L)", "G not danger(SV, POV)"]
+    claims += [f"scenario_{number}(SV, POV, L)" for number in (1, 3, 5, 6, 7)]
+    asked = []
+    for claim in claims:
+        other = replace(what.file, formula=claim)
+        assert not judge_file(other, library).accepted
+        asked.append(("the_drive", raw.formula(without_names(shown(other, library).formula)), "reasons"))
+    accepted_whole([refused("m", what, derivation, asked)])
+
+
+def with_one_missing(step):
+    """The derivation with each of its steps in turn put as plain."""
+    if step.rule != "Plain":
+        yield Step("Plain")
+    for place, child in enumerate(step.children):
+        for other in with_one_missing(child):
+            children = (*step.children[:place], other, *step.children[place + 1 :])
+            yield replace(step, children=children)
+
+
+@needs_coq
+def test_a_derivation_with_a_step_missing_is_refused():
+    what, derivation = derivation_of(ONE)
+    others = list(with_one_missing(derivation))
+    assert len(others) >= size(derivation) - 5
+    asked = [("the_drive", "claim", "\n".join(coq_derivation(x))) for x in others]
+    accepted_whole([refused("m", what, derivation, asked)])
+
+
+@needs_coq
+def test_a_change_at_an_irrational_instant():
+    """s(A) > 0 from the square root of 2 on: one of two holds always, and they change there."""
+    motion = replace(load_drive(ONE).drive.vehicles["SV"], s=Fraction(-1), v_lon=Fraction(0))
+    last = replace(motion.pieces[-1], duration=None, a_lon=Fraction(1))
+    file_ = replace(
+        load_drive(ONE),
+        scenario=None,
+        drive=Drive({"SV": replace(motion, pieces=(last,))}),
+        formula="G (s(SV) > 0 m or s(SV) <= 0 m) and F (s(SV) >= 0 m) and not F[0, 1 s] s(SV) > 0 m",
+    )
+    what = shown(file_, bundled_library())
+    derivation = derive(what.formula, file_.drive, file_.road, file_.lanes, what.values)
+    assert "Case" in str(derivation)
+    ruling = judge_file(file_, bundled_library())
+    assert any(
+        isinstance(cut.point, Root) for truth in ruling.judgement.truths.values() for cut in truth.cuts
+    )
+    accepted_whole([module("m", what, claim_text(what), derivation)])
+
+
+@needs_coq
+def test_what_holds_at_one_irrational_instant_alone_is_unknown(tmp_path):
+    """Neither accepted nor rejected: the exact judge accepts it, Coq is told nothing."""
+    data = json.loads(ONE.read_text("utf-8"))
+    data["scenario"] = None
+    data["vehicles"] = {"SV": data["vehicles"]["SV"]}
+    data["vehicles"]["SV"] |= {
+        "s": "-1",
+        "v_lon": "0",
+        "pieces": [{"duration": None, "a_lon": "1", "a_lat": "0"}],
+    }
+    data["formula"] = "F (s(SV) >= 0 m and s(SV) <= 0 m)"
+    data["verdict"] = {}
+    path = tmp_path / "touching.json"
+    path.write_text(json.dumps(data), "utf-8")
+    assert check(path).accepted
+    (finding,) = check(path, kernel="coq").findings
+    assert (finding.outcome, finding.kernel) == (Acceptance.UNDECIDED, str(Word.UNKNOWN))
+    assert "no derivation was found: no rational instant" in finding.reason
