@@ -13,7 +13,7 @@ import pytest
 from hypothesis import settings
 
 import roadproof
-from lengthy import LENGTHY
+from lengthy import COLLECTED, LENGTHY
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")
@@ -23,7 +23,9 @@ for _each in pkgutil.walk_packages(roadproof.__path__, "roadproof."):
         import_module(_each.name)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    config.stash[COLLECTED] = [*items]
     for item in items:
         if item.nodeid.startswith(LENGTHY):
             item.add_marker("long")

@@ -7,6 +7,7 @@ import pytest
 
 import tally
 from fuzz.run import READERS
+from lengthy import COLLECTED
 from mutants import journal
 from mutants.__main__ import PACKAGE
 from mutants.choose import faults_of, targets
@@ -20,7 +21,7 @@ def test_the_page_tells_what_was_counted(name: str) -> None:
 
 def test_no_fault_is_planted_less_than_told(request: pytest.FixtureRequest) -> None:
     """Only where all tests are collected: fewer files say nothing."""
-    items = request.session.items
+    items = request.config.stash[COLLECTED]
     every = set(tally.ROOT.glob("tests/**/test_*.py"))
     if {item.path for item in items} != every:
         pytest.skip("not all tests were collected")
