@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from judge.cases import comparisons, drives, formulas
 from kernel import raw
-from roadproof.deriving.derive import NoDerivationError, derive
+from roadproof.deriving.derive import derive
+from roadproof.deriving.parts import NoDerivationError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge import judge
 from roadproof.kernel.derivation import coq_derivation

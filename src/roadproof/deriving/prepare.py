@@ -1,6 +1,7 @@
 """A drive file as what is put to Coq."""
 
-from roadproof.deriving.derive import NoDerivationError, derive
+from roadproof.deriving.derive import derive
+from roadproof.deriving.parts import NoDerivationError
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.kernel.accept import Prepared, Ruling, Word
