@@ -4,14 +4,16 @@ A trace starts at the first sample where initSafe holds, its whole window inside
 and ends with the last sample of the last danger interval after that.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
 from roadproof.evaluation.questions import SAFE, VIOLATION, Danger, Questions
-from roadproof.evaluation.traces import blocks, gather
-from roadproof.formats.pairs import Pairs, Triples, common_pairs, near_pairs
+from roadproof.evaluation.traces import blocks, gather, gather_rows
+from roadproof.formats.pairs import Pairs, Triples, all_moments, common_pairs, near_moments
 from roadproof.formats.recording import Bools, Integers, Recording, offsets
+from roadproof.monitoring.batch import Batch
 from roadproof.spec.scenarios import PAIR
 
 NEVER = np.iinfo(np.int64).max
@@ -40,24 +42,86 @@ class Disturbances:
 def find_disturbances(recording: Recording, questions: Questions) -> Disturbances:
     """The disturbances between vehicles of the classes that the settings name."""
     meeting = common_pairs(recording, np.isin(recording.kind, questions.settings.classes))
-    near = meeting if questions.reach is None else near_pairs(recording, meeting, questions.reach)
-    offset = offsets(near.samples)
+    pair, frame = _violations(recording, questions, meeting)
+    violating, begin = np.unique(pair, return_index=True)
+    pairs, hits = meeting.choose(violating), np.append(begin, len(pair))
+    offset = offsets(pairs.samples)
     next_safe = np.full(offset[-1], NEVER)
     last_danger = tuple(np.full(offset[-1], -1) for _ in questions.danger_steps)
-    violating = np.zeros(len(near), bool)
-    for index in blocks(near.low, near.high, 400_000):
-        block = near.choose(index)
-        vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
-        batch = gather(recording, vehicles, block.low, block.high, questions.danger.signals)
-        answers = questions.danger.evaluate(batch, at="all").answers
-        inside = np.arange(batch.samples)[:, None] < batch.lengths
-        violating[index] = answers[VIOLATION].true.any(axis=0)
-        frames = np.arange(batch.samples)[:, None] + block.low
-        place = (np.arange(batch.samples)[:, None] + offset[:-1][index])[inside]
+    for index in blocks(pairs.low, pairs.high, 200_000):
+        block = pairs.choose(index)
+        here, within = _spread_hits(hits, index)
+        truth = np.zeros((int(block.samples.max()), len(block)), bool)
+        truth[frame[here] - block.low[within], within] = True
+        answers = questions.danger.evaluate(_batch(recording, questions, block, truth), at="all").answers
+        inside = np.arange(len(truth))[:, None] < block.samples
+        frames = np.arange(len(truth))[:, None] + block.low
+        place = (np.arange(len(truth))[:, None] + offset[:-1][index])[inside]
         next_safe[place] = _next(answers[SAFE].true, frames)[inside]
         for k, last in enumerate(last_danger):
             last[place] = _last(answers[Danger(k)].true, frames)[inside]
-    return _cut(questions, meeting, near, violating, offset, next_safe, last_danger)
+    start = next_safe[offset[:-1]]
+    end = []
+    for steps, danger in zip(questions.danger_steps, last_danger, strict=True):
+        final = danger[offset[1:] - 1]
+        end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))
+    return Disturbances(meeting, pairs, start, tuple(end), offset, next_safe, last_danger)
+
+
+def _violations(recording: Recording, questions: Questions, meeting: Pairs) -> tuple[Integers, Integers]:
+    """Where there is an rssViolation: the place in ``meeting`` and the frame, in order of pairs."""
+    if not questions.violation_is_state:
+        return _violations_in_time(recording, questions, meeting)
+    if questions.reach is None:
+        found = all_moments(recording, meeting)
+    else:
+        found = near_moments(recording, meeting, questions.reach)
+    pairs, frames = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for moments in found:
+        if not len(moments):
+            continue
+        vehicles = dict(zip(PAIR, (meeting.first[moments.pair], meeting.second[moments.pair]), strict=True))
+        rows = dict(zip(PAIR, (moments.first[None], moments.second[None]), strict=True))
+        lengths = np.ones(len(moments), np.int64)
+        batch = gather_rows(recording, vehicles, rows, lengths, questions.violation.signals)
+        true = questions.violation.evaluate(batch).answers[VIOLATION].true
+        pairs.append(moments.pair[true])
+        frames.append(moments.frame[true])
+    return np.concatenate(pairs), np.concatenate(frames)
+
+
+def _violations_in_time(
+    recording: Recording, questions: Questions, meeting: Pairs
+) -> tuple[Integers, Integers]:
+    """The same for a violation that is more than a matter of one moment."""
+    pairs, frames = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for index in blocks(meeting.low, meeting.high, 400_000):
+        block = meeting.choose(index)
+        vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
+        batch = gather(recording, vehicles, block.low, block.high, questions.violation.signals)
+        sample, trace = np.nonzero(questions.violation.evaluate(batch, at="all").answers[VIOLATION].true)
+        pairs.append(index[trace])
+        frames.append(sample + block.low[trace])
+    pair, frame = np.concatenate(pairs), np.concatenate(frames)
+    order = np.lexsort((frame, pair))
+    return pair[order], frame[order]
+
+
+def _spread_hits(hits: Integers, index: Integers) -> tuple[Integers, Integers]:
+    """The places ``hits[k]`` … ``hits[k + 1]`` of each k of ``index``, and where in ``index`` k is."""
+    counts = hits[index + 1] - hits[index]
+    within = np.repeat(np.arange(len(index)), counts)
+    return np.arange(len(within)) + np.repeat(hits[index] - offsets(counts)[:-1], counts), within
+
+
+def _batch(recording: Recording, questions: Questions, block: Pairs, truth: Bools) -> Batch:
+    """The traces of pairs, with the ``truth`` of an rssViolation where that is a matter of one moment."""
+    given = {questions.violation.formulas[VIOLATION]: truth} if questions.violation_is_state else {}
+    if questions.danger.rests_on(given):
+        return Batch(Fraction(1, recording.rate), block.samples, given=given)
+    vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
+    batch = gather(recording, vehicles, block.low, block.high, questions.danger.signals)
+    return replace(batch, given={**batch.given, **given})
 
 
 def _next(truth: Bools, frames: Integers) -> Integers:
@@ -70,28 +134,6 @@ def _last(truth: Bools, frames: Integers) -> Integers:
     """For each sample the frame of the last true one up to there, down the rows."""
     found: Integers = np.maximum.accumulate(np.where(truth, frames, -1))
     return found
-
-
-def _cut(
-    questions: Questions,
-    meeting: Pairs,
-    near: Pairs,
-    violating: Bools,
-    offset: Integers,
-    next_safe: Integers,
-    last_danger: tuple[Integers, ...],
-) -> Disturbances:
-    """Only the violating pairs, with where their traces start and end."""
-    pairs = near.choose(violating)
-    rows = np.repeat(violating, np.diff(offset))
-    kept = offsets(pairs.samples)
-    safe, last = next_safe[rows], tuple(x[rows] for x in last_danger)
-    start = safe[kept[:-1]] if len(pairs) else np.zeros(0, np.int64)
-    end = []
-    for steps, danger in zip(questions.danger_steps, last, strict=True):
-        final = danger[kept[1:] - 1]
-        end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))
-    return Disturbances(meeting, pairs, start, tuple(end), kept, safe, last)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from roadproof.evaluation.lane_atoms import OTHER_LANE, LaneAtom, lane_atoms
 from roadproof.evaluation.sectors import Sector, is_possible, sectors_of
 from roadproof.formats.pairs import Reach, Sight
 from roadproof.formats.recording import ZONES
-from roadproof.logic.formula import Formula, disjunction
+from roadproof.logic.formula import Formula, disjunction, is_state
 from roadproof.logic.fragment import horizon
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.monitoring.answers import Convention, Key
@@ -143,7 +143,8 @@ VIOLATION, SAFE, START = Condition("violation"), Condition("safe"), Condition("s
 class Questions:
     """Monitors for each stage of the evaluation, and the lane predicates that the data must give.
 
-    ``sectors`` are those that can be met, with what is asked in each, and ``where`` says whether a pair is
+    ``violation`` is asked of moments where it is a matter of one (``violation_is_state``), and ``danger`` of
+    what comes out. ``sectors`` are those that can be met, with what is asked in each, and ``where`` says whether a pair is
     in one. ``safe_steps`` and ``danger_steps`` are how far initSafe and each danger look ahead. ``pairs`` and
     ``triples`` hold one monitor a minDanger. ``reach`` is None where the specification's rssViolation is
     not the library's, so that no pair may be left out; ``sight`` is its like for ``detectors``.
@@ -151,6 +152,8 @@ class Questions:
 
     settings: Settings
     rate: int
+    violation: Monitor[Condition]
+    violation_is_state: bool
     danger: Monitor[Condition | Danger]
     safe_steps: int
     danger_steps: tuple[int, ...]
@@ -185,10 +188,13 @@ def ask(settings: Settings, rate: int, zones: Iterable[str] = ZONES) -> Question
     sectors = tuple(x for x in sectors_of(first, settings.scenarios) if is_possible(x, there))
     two, three = _by_vehicles(first, (number for each in sectors for number in each.scenarios))
     detectors = _of_detectors(settings, first)
+    violated = _with_values(settings, near.formula)
     return Questions(
         settings=settings,
         rate=rate,
-        danger=compile({VIOLATION: _with_values(settings, near.formula), SAFE: safely, **dangers}),
+        violation=compile({VIOLATION: violated}),
+        violation_is_state=is_state(violated),
+        danger=compile({VIOLATION: violated, SAFE: safely, **dangers}),
         safe_steps=_steps(safely, dt, starts_safe),
         danger_steps=tuple(_steps(formula, dt, endangers) for formula in dangers.values()),
         sectors=sectors,

@@ -32,13 +32,26 @@ def gather(
     none, which nobody occupies) for each trace; ``atoms`` are decided for the vehicles and lanes
     that are there. Raises ``InputError`` for signals that recordings do not have.
     """
+    rows = {name: rows_of(recording, index, low, high) for name, index in vehicles.items()}
+    return gather_rows(recording, vehicles, rows, high - low + 1, signals, lanes, atoms)
+
+
+def gather_rows(
+    recording: Recording,
+    vehicles: Mapping[str, Integers],
+    rows: Mapping[str, Integers],
+    lengths: Integers,
+    signals: Iterable[SignalName | Own],
+    lanes: Mapping[str, Integers] | None = None,
+    atoms: Mapping[Formula, LaneAtom] | None = None,
+) -> Batch:
+    """As ``gather``, of the samples at ``rows`` (time, traces) of each vehicle, in order of time."""
     asked = tuple(dict.fromkeys(signals))
     own = [signal for signal in asked if isinstance(signal, Own)]
     wanted = [signal for signal in asked if not isinstance(signal, Own)]
     for signal in wanted:
         if signal not in RECORDED:
             raise InputError(f"no recording has the signal {signal}, which a formula needs")
-    rows = {name: rows_of(recording, index, low, high) for name, index in vehicles.items()}
     columns = {name: recording.own[name] for name in (x.name for x in own) if name in recording.own}
     own_signals = dict(by_vehicle({x: {v: c[at] for v, at in rows.items()} for x, c in columns.items()}))
     for x in own:
@@ -46,7 +59,7 @@ def gather(
         refuse_missing([(x.name, v) for v in whose], own_signals, f"recording {recording.name}")
     return Batch(
         dt=Fraction(1, recording.rate),
-        lengths=high - low + 1,
+        lengths=lengths,
         signals={
             **{(x, name): getattr(recording, x)[at] for name, at in rows.items() for x in wanted},
             **own_signals,

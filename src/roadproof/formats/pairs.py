@@ -83,31 +83,145 @@ def _meeting(recording: Recording, vehicles: Integers) -> tuple[Integers, Intege
     return vehicles[one], vehicles[other]
 
 
-def near_pairs(recording: Recording, pairs: Pairs, reach: Reach) -> Pairs:
-    """The pairs that come near enough, along and across in one common frame, for an RSS violation.
+@dataclass(frozen=True)
+class Moments:
+    """Moments of pairs: the pair at index ``pair`` at ``frame``, its two samples at ``first`` and ``second``."""
 
-    Proof that none is lost. A violation needs, in one frame, a longitudinal and a lateral one.
+    pair: Integers
+    frame: Integers
+    first: Integers
+    second: Integers
+
+    def __len__(self) -> int:
+        return len(self.pair)
+
+
+def all_moments(recording: Recording, pairs: Pairs, samples: int = 300_000) -> Iterator[Moments]:
+    """All common frames of all pairs, in order of pairs and frames, in parts of about so many."""
+    for part in _parts(pairs, samples):
+        chosen = pairs.choose(part)
+        yield _moments(recording, pairs, part.start + np.arange(len(chosen)), chosen.low, chosen.high)
+
+
+def near_moments(
+    recording: Recording, pairs: Pairs, reach: Reach, samples: int = 300_000
+) -> Iterator[Moments]:
+    """The moments at which a pair is near enough, along and across, for an RSS violation.
+
+    In order of pairs and frames, in parts that come from about so many ``samples``. Proof that no violation
+    is lost. One needs, in one frame, a longitudinal and a lateral violation. Time is cut into pieces that are
+    the same for all vehicles, and extremes below are those of a vehicle in the piece of the frame.
     Longitudinal, for the one in front f and the one behind r: 0 <= s_f - s_r <= length_f +
-    dRSS_lon(v_r, v_f). Let V be the greatest |v_lon| that r ever has and m the least |v_lon| of f.
+    dRSS_lon(v_r, v_f). Let V be the greatest |v_lon| of r in the piece and m the least |v_lon| of f.
     With rho, a_max >= 0 and b_min, b_max > 0: v_r·rho <= V·rho, (v_r + a_max·rho)² <=
     (V + a_max·rho)² and v_f² >= m², so dRSS_lon(v_r, v_f) is at most the same expression in V and m,
     whatever the signs of the speeds.
     Lateral, for the left one a and the right one b: 0 <= d_a - d_b <= width_a + dRSS_lat(v_1, v_2),
-    where |v_1| and |v_2| are the lateral speeds. With U the greatest |v_lat| that either ever has,
+    where |v_1| and |v_2| are the lateral speeds. With U the greatest |v_lat| of either in the piece,
     (v_1 - v_2)·rho <= 2·U·rho and both squares are at most (U + rho·a_max_lat)², in either reading
     of the signs and with or without the squares of ``lateral_rss = signed``.
-    These bounds, constants of each pair, are compared with the distances in every common frame. They
-    are widened by a millimetre, far more than the rounding of doubles in these sums, which stays
-    below a micrometre for roads up to a thousand kilometres.
+    These bounds are compared with the least distances in the piece, and in the pieces that are left with
+    the distances in each frame. They are widened by a millimetre, far more than the rounding of doubles in
+    these sums, which stays below a micrometre for roads up to a thousand kilometres.
     """
     if not (
         min(reach.rho, reach.a_max, reach.a_max_lat) >= 0
         and min(reach.b_min, reach.b_max, reach.b_min_lat) > 0
     ):
         raise ValueError("the bound holds for rho, a_max >= 0 and b_min, b_max > 0, lateral ones alike")
-    close = pairs.choose(ever_within(recording, pairs, [_along(recording, pairs, reach)]))
-    both = [_along(recording, close, reach), _across(recording, close, reach)]
-    return close.choose(ever_within(recording, close, both))
+    if len(pairs):
+        pieces = _pieces_of(recording, max(1, recording.rate))
+        for part in _parts(pairs, samples):
+            yield _near(recording, pieces, pairs, part, reach)
+
+
+def near_pairs(recording: Recording, pairs: Pairs, reach: Reach) -> Pairs:
+    """The pairs that are near enough for an RSS violation at some moment."""
+    found = [x.pair for x in near_moments(recording, pairs, reach)]
+    return pairs.choose(np.unique(np.concatenate(found))) if found else pairs
+
+
+@dataclass(frozen=True)
+class _Pieces:
+    """Extremes of each vehicle in pieces of ``frames`` frames, one after the other, vehicle by vehicle.
+
+    Frame f of vehicle v is in the piece at ``shift[v] + f // frames``.
+    """
+
+    frames: int
+    shift: Integers
+    s: tuple[Floats, Floats]
+    d: tuple[Floats, Floats]
+    fastest: Floats
+    slowest: Floats
+    drift: Floats
+    length: Floats
+    width: Floats
+
+
+def _pieces_of(recording: Recording, frames: int) -> _Pieces:
+    begin, end = recording.first_frame // frames, recording.last_frame // frames
+    counts = end - begin + 1
+    shift = offsets(counts)[:-1] - begin
+    vehicle = np.repeat(np.arange(recording.vehicles), counts)
+    earliest = (np.arange(len(vehicle)) - shift[vehicle]) * frames
+    first_frame = recording.first_frame[vehicle]
+    rows = recording.start[:-1][vehicle] + np.maximum(earliest, first_frame) - first_frame
+
+    def extremes(values: Floats) -> tuple[Floats, Floats]:
+        return np.minimum.reduceat(values, rows), np.maximum.reduceat(values, rows)
+
+    (least, most), (right, left) = extremes(recording.v_lon), extremes(recording.v_lat)
+    return _Pieces(
+        frames,
+        shift,
+        extremes(recording.s),
+        extremes(recording.d),
+        fastest=np.maximum(-least, most),
+        slowest=np.maximum(0, np.maximum(least, -most)),
+        drift=np.maximum(-right, left),
+        length=recording.length[vehicle],
+        width=recording.width[vehicle],
+    )
+
+
+def _near(recording: Recording, pieces: _Pieces, pairs: Pairs, part: slice, reach: Reach) -> Moments:
+    """The near moments of the pairs of a slice: first piece by piece, then frame by frame."""
+    chosen = pairs.choose(part)
+    begin, end = chosen.low // pieces.frames, chosen.high // pieces.frames
+    pair, piece = _spread(begin, end)
+    first, second = (pieces.shift[x][pair] + piece for x in (chosen.first, chosen.second))
+    for position, bounds in ((pieces.s, _along), (pieces.d, _across)):
+        low, high = position
+        below, above = bounds(pieces, reach, first, second)
+        near = np.flatnonzero((low[second] - high[first] <= above) & (low[first] - high[second] <= below))
+        pair, piece, first, second = (x[near] for x in (pair, piece, first, second))
+    low = np.maximum(chosen.low[pair], piece * pieces.frames)
+    high = np.minimum(chosen.high[pair], piece * pieces.frames + (pieces.frames - 1))
+    found = _moments(recording, pairs, part.start + pair, low, high)
+    counts = high - low + 1
+    inside = np.ones(len(found), bool)
+    for position, bounds in ((recording.s, _along), (recording.d, _across)):
+        below, above = bounds(pieces, reach, first, second)
+        apart = position[found.second] - position[found.first]
+        inside &= apart <= np.repeat(above, counts)
+        inside &= apart >= np.repeat(-below, counts)
+    return Moments(*(x[inside] for x in (found.pair, found.frame, found.first, found.second)))
+
+
+def _spread(low: Integers, high: Integers) -> tuple[Integers, Integers]:
+    """For each whole number from ``low`` to ``high`` of each entry: the place of the entry, and the number."""
+    counts = high - low + 1
+    place = np.repeat(np.arange(len(low)), counts)
+    return place, np.arange(len(place)) + np.repeat(low - offsets(counts)[:-1], counts)
+
+
+def _moments(recording: Recording, pairs: Pairs, pair: Integers, low: Integers, high: Integers) -> Moments:
+    """The moments ``low`` … ``high`` of the pairs at ``pair``."""
+    place, frame = _spread(low, high)
+    shift = recording.start[:-1] - recording.first_frame
+    first, second = (frame + np.repeat(shift[x[pair]], high - low + 1) for x in (pairs.first, pairs.second))
+    return Moments(pair[place], frame, first, second)
 
 
 def pairs_in_sight(recording: Recording, pairs: Pairs, sight: Sight) -> tuple[Pairs, Masks]:
@@ -116,7 +230,7 @@ def pairs_in_sight(recording: Recording, pairs: Pairs, sight: Sight) -> tuple[Pa
     Every one of them needs a frame in which both are in L and the gap from the front of one to the
     rear of the other is at most ``farthest``, ``thw``·v_lon of the rear one, or ``ttc`` times the
     difference of the speeds; with the greatest speed of the rear and the least of the front, all are
-    bounds that depend on the pair only. They are widened by a millimetre, as in near_pairs.
+    bounds that depend on the pair only. They are widened by a millimetre, as in near_moments.
     """
     greatest = np.maximum.reduceat(recording.v_lon, recording.start[:-1])
     least = np.minimum.reduceat(recording.v_lon, recording.start[:-1])
@@ -142,20 +256,17 @@ class Within:
     above: Floats
 
 
-def _along(recording: Recording, pairs: Pairs, reach: Reach) -> Within:
-    speed = np.abs(recording.v_lon)
-    greatest = np.maximum.reduceat(speed, recording.start[:-1])
-    least = np.minimum.reduceat(speed, recording.start[:-1])
-    first, second = pairs.first, pairs.second
-    below = _bound_along(reach, greatest[second], least[first]) + recording.length[first]
-    above = _bound_along(reach, greatest[first], least[second]) + recording.length[second]
-    return Within(recording.s, below, above)
+def _along(pieces: _Pieces, reach: Reach, first: Integers, second: Integers) -> tuple[Floats, Floats]:
+    """How far ``second`` may be behind ``first`` for a longitudinal violation, and how far ahead of it."""
+    below = _bound_along(reach, pieces.fastest[second], pieces.slowest[first]) + pieces.length[first]
+    above = _bound_along(reach, pieces.fastest[first], pieces.slowest[second]) + pieces.length[second]
+    return below, above
 
 
-def _across(recording: Recording, pairs: Pairs, reach: Reach) -> Within:
-    greatest = np.maximum.reduceat(np.abs(recording.v_lat), recording.start[:-1])
-    bound = _bound_across(reach, np.maximum(greatest[pairs.first], greatest[pairs.second]))
-    return Within(recording.d, bound + recording.width[pairs.first], bound + recording.width[pairs.second])
+def _across(pieces: _Pieces, reach: Reach, first: Integers, second: Integers) -> tuple[Floats, Floats]:
+    """The same across, to the right and to the left."""
+    bound = _bound_across(reach, np.maximum(pieces.drift[first], pieces.drift[second]))
+    return bound + pieces.width[first], bound + pieces.width[second]
 
 
 def _bound_along(reach: Reach, greatest_rear: Floats, least_front: Floats) -> Floats:

@@ -4,7 +4,7 @@ All formulas of a monitor share what they have in common: sub-formulas are found
 by the name of the definition that they come from.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -154,6 +154,10 @@ class Monitor(Generic[Key]):
                 pass
         return Margins(semantics, margins, named_margins)
 
+    def rests_on(self, given: Iterable[Formula]) -> bool:
+        """Whether the truth of these state formulas is all that a batch has to say. Raises ``InputError``."""
+        return not any(True for _ in self._comparisons({without_names(formula) for formula in given}))
+
     def _margin_evaluation(
         self,
         batch: Batch,
@@ -168,7 +172,7 @@ class Monitor(Generic[Key]):
         shape = (samples, columns.stop - columns.start)
         return Evaluation(MARGIN, leaves, margin_inside(batch, columns), batch.dt, shape, self.states)
 
-    def _comparisons(self, given: Mapping[Formula, Array]) -> Iterator[Compare]:
+    def _comparisons(self, given: Collection[Formula]) -> Iterator[Compare]:
         """Comparisons outside ``given``, each once. Raises ``InputError`` for an unknown lane predicate."""
         seen: set[Formula] = set()
         waiting = list(self.plain.values())
