@@ -33,6 +33,7 @@ from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
 from roadproof.spec import elaborate as elaborating
 from roadproof.spec import scenarios
+from roadproof.spec.elaboration import Elaborator
 from roadproof.spec.library import Source, Specification, build_library, bundled_library
 from roadproof.spec.query import Query
 from traffic.drives import braking, cut_in, cut_out, late_cut_out, swerve
@@ -297,10 +298,10 @@ def test_each_claim_is_elaborated_once_and_no_text_is_read(monkeypatch: pytest.M
     kept: list[Specification] = []
     honest = elaborating.elaborate
 
-    def counted(specification: Specification, claim: Claim) -> Query:
+    def counted(specification: Specification, claim: Claim, walk: Elaborator | None = None) -> Query:
         kept.append(specification)
         asked[id(specification), show.text(claim)] += 1
-        return honest(specification, claim)
+        return honest(specification, claim, walk)
 
     for user in (elaborating, scenarios):
         monkeypatch.setattr(user, "elaborate", counted)

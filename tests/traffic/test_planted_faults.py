@@ -141,19 +141,27 @@ def test_triples_end_with_the_last_danger(fault: Fault | None, monkeypatch: pyte
 REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
 FILTER = {
     "length below": Fault(
-        pairs, "least[first]) + recording.length[first]", "least[first]) + recording.length[second]"
+        pairs, "slowest[first]) + pieces.length[first]", "slowest[first]) + pieces.length[second]"
     ),
     "length above": Fault(
-        pairs, "least[second]) + recording.length[second]", "least[second]) + recording.length[first]"
+        pairs, "slowest[second]) + pieces.length[second]", "slowest[second]) + pieces.length[first]"
     ),
-    "no length below": Fault(pairs, "least[first]) + recording.length[first]", "least[first])"),
-    "speeds below": Fault(pairs, "greatest[second], least[first])", "greatest[first], least[second])"),
-    "speeds above": Fault(pairs, "greatest[first], least[second])", "greatest[second], least[first])"),
-    "width below": Fault(
-        pairs, "bound + recording.width[pairs.first],", "bound + recording.width[pairs.second],"
+    "no length below": Fault(pairs, "slowest[first]) + pieces.length[first]", "slowest[first])"),
+    "speeds below": Fault(
+        pairs,
+        "pieces.fastest[second], pieces.slowest[first])",
+        "pieces.fastest[first], pieces.slowest[second])",
     ),
+    "speeds above": Fault(
+        pairs,
+        "pieces.fastest[first], pieces.slowest[second])",
+        "pieces.fastest[second], pieces.slowest[first])",
+    ),
+    "width below": Fault(pairs, "bound + pieces.width[first],", "bound + pieces.width[second],"),
     "width above": Fault(
-        pairs, "bound + recording.width[pairs.second])", "bound + recording.width[pairs.first])"
+        pairs,
+        "bound + pieces.width[first], bound + pieces.width[second]",
+        "bound + pieces.width[first], bound + pieces.width[first]",
     ),
 }
 

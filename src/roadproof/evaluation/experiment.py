@@ -1,6 +1,7 @@
 """The highD experiment over many recordings: resumable, and in memory one recording a process."""
 
 import os
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
@@ -142,8 +143,8 @@ def _evaluate_all(
         for job in jobs:
             yield job.source, _evaluate(job)
         return
-    # Threads of a library may hold locks while a process forks, so workers start afresh.
-    with closing(answers_of(_evaluate, jobs, hands, fresh=True)) as answers:
+    # The threads of polars may hold locks while a process forks: where it has run, workers start afresh.
+    with closing(answers_of(_evaluate, jobs, hands, fresh="polars" in sys.modules)) as answers:
         for place, error in answers:
             yield sources[place], error
 

@@ -17,12 +17,13 @@ from roadproof.formats.pairs import Reach, Sight
 from roadproof.formats.recording import ZONES
 from roadproof.logic.formula import Formula, disjunction, is_state
 from roadproof.logic.fragment import horizon
-from roadproof.logic.rewrite import with_values, without_names
+from roadproof.logic.rewrite import all_with_values, with_values, without_names
 from roadproof.monitoring.answers import Convention, Key
 from roadproof.monitoring.batch import steps_of
 from roadproof.monitoring.compiled import Monitor, compile
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import apply_definition
+from roadproof.spec.elaboration import Elaborator
 from roadproof.spec.library import Library, Specification, bundled_library, unknown
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import (
@@ -144,10 +145,11 @@ class Questions:
     """Monitors for each stage of the evaluation, and the lane predicates that the data must give.
 
     ``violation`` is asked of moments where it is a matter of one (``violation_is_state``), and ``danger`` of
-    what comes out. ``sectors`` are those that can be met, with what is asked in each, and ``where`` says whether a pair is
-    in one. ``safe_steps`` and ``danger_steps`` are how far initSafe and each danger look ahead. ``pairs`` and
-    ``triples`` hold one monitor a minDanger. ``reach`` is None where the specification's rssViolation is
-    not the library's, so that no pair may be left out; ``sight`` is its like for ``detectors``.
+    what comes out. ``sectors`` are those that can be met, with what is asked in each, and ``where`` says
+    whether a pair is in one. ``safe_steps`` and ``danger_steps`` are how far initSafe and each danger look
+    ahead. ``pairs`` and ``triples`` hold one monitor a minDanger. ``reach`` is None where the specification's
+    rssViolation is not the library's, so that no pair may be left out; ``sight`` is its like for
+    ``detectors``.
     """
 
     settings: Settings
@@ -216,7 +218,8 @@ def _with_values(settings: Settings, formula: Formula, min_danger: Fraction = Fr
 def _all_with_values(
     settings: Settings, queries: Mapping[Key, Query], min_danger: Fraction = Fraction(0)
 ) -> dict[Key, Formula]:
-    return {key: _with_values(settings, query.formula, min_danger) for key, query in queries.items()}
+    values = {**settings.values, MIN_DANGER: min_danger}
+    return dict(zip(queries, all_with_values((x.formula for x in queries.values()), values), strict=True))
 
 
 def _monitors(settings: Settings, asked: Mapping[MonitorKey, Query]) -> tuple[Monitor[MonitorKey], ...]:
@@ -262,12 +265,14 @@ def _of_pairs(sets: Iterable[Specification], numbers: Iterable[int]) -> dict[Mon
     asked: dict[MonitorKey, Query] = {}
     lanes = dict(zip(PAIR, (LANE, OTHER_LANE), strict=True))
     for spec in sets:
+        walk = Elaborator(spec)
         for number in numbers:
             scenario = Scenario(number, spec.set_name)
             place = 0 if lane_owner(spec, scenario) == SUBJECT else 1
             for role, vehicles in ROLES.items():
                 lane = lanes[vehicles[place]]
-                asked[MonitorKey(spec.set_name, number, role, lane)] = applied(spec, scenario, vehicles, lane)
+                key = MonitorKey(spec.set_name, number, role, lane)
+                asked[key] = applied(spec, scenario, vehicles, lane, walk)
     return asked
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.formats.blockwise import blockwise
 from roadproof.formats.highd_checks import (
     check_boxes,
     check_direction,
@@ -19,7 +20,7 @@ from roadproof.formats.highd_checks import (
     check_plausible,
     check_sight,
 )
-from roadproof.formats.recording import Lane, Recording, beside_by_order, with_notes
+from roadproof.formats.recording import Bools, Floats, Lane, Recording, beside_by_order, with_notes
 from roadproof.formats.source import TRACK_FILES, Files, Format, first_line, rate_in_meta, with_suffix
 from roadproof.formats.straight import StraightRoad, of_road, place
 from roadproof.formats.table import Kind, Table, names_in, read_table
@@ -116,11 +117,10 @@ def read_highd(folder: Path, name: str) -> Recording:
 
     direction = np.repeat(meta["drivingDirection"], sizes)
     up = direction == UPPER
-    sign = np.where(up, -1.0, 1.0)
     length, width = tracks["width"], tracks["height"]
     # Rounding undoes what binary floats add: sums of the file's decimals are decimals again.
-    s = np.where(up, -tracks["x"], np.round(tracks["x"] + length, 6))
-    d = np.where(up, np.round(tracks["y"] + width, 6), -tracks["y"])
+    s = blockwise(lambda up, x, length: np.where(up, -x, np.round(x + length, 6)), up, tracks["x"], length)
+    d = blockwise(lambda up, y, width: np.where(up, np.round(y + width, 6), -y), up, tracks["y"], width)
     check_direction(meta, tracks, s, start)
     placed = place(road, direction, s, d, length, width)
     recording = Recording(
@@ -138,10 +138,10 @@ def read_highd(folder: Path, name: str) -> Recording:
         start=start,
         s=s,
         d=d,
-        v_lon=sign * tracks["xVelocity"],
-        v_lat=-sign * tracks["yVelocity"],
-        a_lon=sign * tracks["xAcceleration"],
-        a_lat=-sign * tracks["yAcceleration"],
+        v_lon=blockwise(_turned, up, tracks["xVelocity"]),
+        v_lat=blockwise(_turned, ~up, tracks["yVelocity"]),
+        a_lon=blockwise(_turned, up, tracks["xAcceleration"]),
+        a_lat=blockwise(_turned, ~up, tracks["yAcceleration"]),
         notes=notes,
         occupancy=placed.occupancy,
         lane=placed.lane,
@@ -150,6 +150,11 @@ def read_highd(folder: Path, name: str) -> Recording:
     )
     more = (*check_plausible(recording, tracks), *check_lanes(tracks, recording, direction != way))
     return with_notes(recording, (*more, *check_sight(meta, tracks, SAMPLE_COLUMNS, UPPER)))
+
+
+def _turned(backwards: Bools, values: Floats) -> Floats:
+    """The values, with the other sign where what they are of goes ``backwards``."""
+    return np.where(backwards, -values, values)
 
 
 def _read_road(path: Path, bands: tuple[Lane, ...]) -> tuple[StraightRoad, int]:

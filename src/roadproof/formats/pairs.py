@@ -85,7 +85,7 @@ def _meeting(recording: Recording, vehicles: Integers) -> tuple[Integers, Intege
 
 @dataclass(frozen=True)
 class Moments:
-    """Moments of pairs: the pair at index ``pair`` at ``frame``, its two samples at ``first`` and ``second``."""
+    """Moments of pairs: of the pair at index ``pair`` at ``frame``, the samples ``first`` and ``second``."""
 
     pair: Integers
     frame: Integers
@@ -191,10 +191,10 @@ def _near(recording: Recording, pieces: _Pieces, pairs: Pairs, part: slice, reac
     begin, end = chosen.low // pieces.frames, chosen.high // pieces.frames
     pair, piece = _spread(begin, end)
     first, second = (pieces.shift[x][pair] + piece for x in (chosen.first, chosen.second))
-    for position, bounds in ((pieces.s, _along), (pieces.d, _across)):
-        low, high = position
+    for (least, most), bounds in ((pieces.s, _along), (pieces.d, _across)):
         below, above = bounds(pieces, reach, first, second)
-        near = np.flatnonzero((low[second] - high[first] <= above) & (low[first] - high[second] <= below))
+        ahead, behind = least[second] - most[first], least[first] - most[second]
+        near = np.flatnonzero((ahead <= above) & (behind <= below))
         pair, piece, first, second = (x[near] for x in (pair, piece, first, second))
     low = np.maximum(chosen.low[pair], piece * pieces.frames)
     high = np.minimum(chosen.high[pair], piece * pieces.frames + (pieces.frames - 1))
@@ -210,7 +210,7 @@ def _near(recording: Recording, pieces: _Pieces, pairs: Pairs, part: slice, reac
 
 
 def _spread(low: Integers, high: Integers) -> tuple[Integers, Integers]:
-    """For each whole number from ``low`` to ``high`` of each entry: the place of the entry, and the number."""
+    """For each whole number from ``low`` to ``high`` of each entry: its place, and the number."""
     counts = high - low + 1
     place = np.repeat(np.arange(len(low)), counts)
     return place, np.arange(len(place)) + np.repeat(low - offsets(counts)[:-1], counts)

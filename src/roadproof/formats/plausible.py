@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from roadproof.formats.blockwise import blocks_of, blockwise
 from roadproof.formats.recording import Bools, Floats, Integers, Recording
 from roadproof.signals import SignalName, SizeName
 
@@ -140,7 +141,13 @@ def _seconds(recording: Recording) -> tuple[Integers, Integers]:
 def _sums(rate: Floats, frames_a_second: int) -> Floats:
     """The integral of a rate up to each sample, straight between samples; only differences mean something."""
     total = np.zeros(len(rate))
-    np.cumsum((rate[1:] + rate[:-1]) / (2 * frames_a_second), out=total[1:])
+    for part in blocks_of(len(rate), overlap=1):
+        values = rate[part]
+        steps = values[1:] + values[:-1]
+        steps /= 2 * frames_a_second
+        if len(steps):
+            steps[0] += total[part.start]
+            np.cumsum(steps, out=total[part.start + 1 : part.stop])
     return total
 
 
@@ -156,18 +163,33 @@ def _steps(recording: Recording) -> Iterator[Implausible]:
     inner = np.ones(max(0, len(recording.s) - 1), bool)
     inner[recording.start[1:-1] - 1] = False
     for name, along, most in (("s", "v_lon", 1.0), ("d", "v_lat", 0.5)):
+        rules = (
+            (f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next", 0.0),
+            (
+                f"a position and the velocity differ by more than {most:g} m from one frame to the next",
+                SHARE_OF_JUMPS,
+            ),
+        )
         place, speed = getattr(recording, name), getattr(recording, along)
-        way = np.diff(place)
-        rule = f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next"
-        yield from _jumps(rule, name, inner & (np.abs(way) > LARGEST_STEP), inner, 0)
-        rule = f"a position and the velocity differ by more than {most:g} m from one frame to the next"
-        way -= (speed[1:] + speed[:-1]) * (step / 2)
-        yield from _jumps(rule, name, inner & (np.abs(way) > most), inner)
+        jumps = [np.empty(len(inner), bool) for _ in rules]
+        for part in blocks_of(len(place), overlap=1):
+            steps = slice(part.start, part.stop - 1)
+            way, velocity = np.diff(place[part]), speed[part]
+            jumps[0][steps] = inner[steps] & (np.abs(way) > LARGEST_STEP)
+            way -= (velocity[1:] + velocity[:-1]) * (step / 2)
+            jumps[1][steps] = inner[steps] & (np.abs(way) > most)
+        for (rule, share), broken in zip(rules, jumps, strict=True):
+            yield from _jumps(rule, name, broken, inner, share)
     for name, most in (("v_lon", 30 * step + 0.5), ("v_lat", 10 * step + 0.5)):
         rule = f"a velocity changes by more than {most:.2g} m/s from one frame to the next"
-        yield from _jumps(rule, name, inner & (np.abs(np.diff(getattr(recording, name))) > most), inner)
+        speed, broken = getattr(recording, name), np.empty(len(inner), bool)
+        for part in blocks_of(len(speed), overlap=1):
+            steps = slice(part.start, part.stop - 1)
+            broken[steps] = inner[steps] & (np.abs(np.diff(speed[part])) > most)
+        yield from _jumps(rule, name, broken, inner)
     rule = "an acceleration is above 15 m/s²"
-    yield from _jumps(rule, "a_lon", np.abs(recording.a_lon[1:]) > 15, inner)
+    broken = blockwise(lambda a_lon: np.abs(a_lon) > 15, recording.a_lon[1:])
+    yield from _jumps(rule, "a_lon", broken, inner)
 
 
 def _jumps(
@@ -217,7 +239,9 @@ def _places(recording: Recording) -> Iterator[Implausible]:
     middle = np.array([(band[0] + band[1]) / 2 for band in bands if band is not None] + [0.0])
     half = np.repeat(recording.width / 2, np.diff(recording.start))
     direction = np.repeat(recording.direction, np.diff(recording.start))
-    beside = (recording.d - half - middle[recording.lane]) / half
+    beside = blockwise(
+        lambda d, half, lane: (d - half - middle[lane]) / half, recording.d, half, recording.lane
+    )
     for way in np.unique(recording.direction):
         ours = (direction == way) & (recording.lane >= 0)
         many = int(np.count_nonzero(recording.direction == way))

@@ -16,6 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from roadproof.formats.blockwise import blocks_of
 from roadproof.signals import KINDS, RECORDED, Kind
 from roadproof.world.road import Lanelet, Zone
 
@@ -250,17 +251,21 @@ def occupy_bands(
     touches a marking in the decimals of the file does so here. A centre on a marking is in the band
     to the left of it.
     """
+    if any(band.d is None for band in lanes):
+        name = next(band.name for band in lanes if band.d is None)
+        raise ValueError(f"lane {name} is no straight band")
     occupancy = np.zeros(len(d), np.uint32)
     lane = np.full(len(d), -1, np.int64)
-    right = np.round(d - width, 6)
-    centre = np.round(d - width / 2, 6)
-    for k, band in enumerate(lanes):
-        if band.d is None:
-            raise ValueError(f"lane {band.name} is no straight band")
-        low, high = band.d
-        ours = direction == band.direction
-        occupancy |= (ours & (d > low) & (right < high)).astype(np.uint32) << np.uint32(k)
-        lane[ours & (low <= centre) & (centre < high)] = k
+    for part in blocks_of(len(d)):
+        way, left = direction[part], d[part]
+        right = np.round(left - width[part], 6)
+        centre = np.round(left - width[part] / 2, 6)
+        for k, band in enumerate(lanes):
+            assert band.d is not None
+            low, high = band.d
+            ours = way == band.direction
+            occupancy[part] |= (ours & (left > low) & (right < high)).astype(np.uint32) << np.uint32(k)
+            lane[part][ours & (low <= centre) & (centre < high)] = k
     return occupancy, lane
 
 

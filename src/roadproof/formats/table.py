@@ -7,7 +7,7 @@ first cell that breaks a rule is named by file, row (the header is row 1), colum
 
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -84,17 +84,18 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
     Integers come as int64, numbers as finite float64, texts as str. Raises ``InputError`` for a
     file that cannot be read, is empty or truncated, or breaks a rule above.
     """
-    content = _read_bytes(path)
-    other = other_table(content, len(header))
+    content = _Content.of(path)
+    beginning = content.beginning()
+    other = other_table(beginning, len(header))
     if other is not None:
         raise InputError(f"{path}: the file {other}")
-    end = content.find(b"\n")
-    _check_header(path, content[:end] if end >= 0 else content, header)
-    rows = _check_shape(path, content, len(header))
-    columns = _read_fast(content, wanted, rows)
+    _check_header(path, beginning.partition(b"\n")[0], header)
+    rows = _check_shape(content, len(header))
+    columns = _read_fast(content.source(), wanted, rows)
     if columns is None:
-        _blame(path, content[end + 1 :], header, wanted)
+        _blame(path, content.all().partition(b"\n")[2], header, wanted)
         raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
+    content.require_unchanged()
     for name, kind in wanted.items():
         if kind == "number" and not np.isfinite(columns[name]).all():
             row = int(np.argmin(np.isfinite(columns[name])))
@@ -104,7 +105,7 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
 
 def read_named(path: Path, wanted: Mapping[str, Kind]) -> Table:
     """As ``read_table``, for a file that may have other columns too, in any order. Raises ``InputError``."""
-    header = _read_bytes(path).partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
+    header = _Content.of(path).beginning().partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
     return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted)
 
 
@@ -173,14 +174,74 @@ def polars_module() -> ModuleType:
     return polars
 
 
-def _read_bytes(path: Path) -> bytes:
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
-    if not content or content.isspace():
-        raise InputError(f"{path}: the file is empty; get it again from its source")
-    return content.removeprefix(b"\xef\xbb\xbf")
+_MARK = b"\xef\xbb\xbf"
+"""What some programs begin text in UTF-8 with."""
+
+
+@dataclass(frozen=True)
+class _Content:
+    """What is in a file, without the mark of UTF-8: looked at piece by piece, and not kept.
+
+    ``kept``: of what is no file on a disk, which can be read once. ``stamp`` changes when the file does.
+    """
+
+    path: Path
+    stamp: tuple[int, ...]
+    kept: bytes | None
+
+    @classmethod
+    def of(cls, path: Path) -> "_Content":
+        """Raises ``InputError`` for a file that cannot be read or is empty."""
+        try:
+            kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
+            found = cls(path, _stamp(path), kept)
+            empty = not found.beginning() or (found.beginning().isspace() and found.all().isspace())
+        except OSError as error:
+            raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
+        if empty:
+            raise InputError(f"{path}: the file is empty; get it again from its source")
+        return found
+
+    def pieces(self) -> Iterator[bytes]:
+        """All of it, in pieces that fit the cache."""
+        with self.path.open("rb") if self.kept is None else io.BytesIO(self.kept) as file:
+            if file.read(len(_MARK)) != _MARK or self.kept is not None:
+                file.seek(0)
+            while piece := file.read(1 << 18):
+                yield piece
+
+    def beginning(self) -> bytes:
+        """The first of the pieces, in which the header is."""
+        return next(self.pieces(), b"")
+
+    def ends_line(self) -> bool:
+        """Whether it ends with a line break."""
+        if self.kept is not None:
+            return self.kept.endswith(b"\n")
+        with self.path.open("rb") as file:
+            file.seek(-1, io.SEEK_END)
+            return file.read() == b"\n"
+
+    def all(self) -> bytes:
+        return b"".join(self.pieces())
+
+    def source(self) -> Path | bytes:
+        """What polars is to read; the file itself where it has no mark."""
+        if self.kept is not None:
+            return self.kept
+        with self.path.open("rb") as file:
+            marked = file.read(len(_MARK)) == _MARK
+        return self.all() if marked else self.path
+
+    def require_unchanged(self) -> None:
+        """Raise ``InputError`` where the file was written to since it was first looked at."""
+        if _stamp(self.path) != self.stamp:
+            raise InputError(f"{self.path}: the file changed while it was read; ask again when it is whole")
+
+
+def _stamp(path: Path) -> tuple[int, ...]:
+    found = path.stat()
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
 
 
 def _check_header(path: Path, line: bytes, header: Sequence[str]) -> None:
@@ -198,24 +259,26 @@ def _check_header(path: Path, line: bytes, header: Sequence[str]) -> None:
         raise InputError(f"{path}, row 1: the columns must come in the order {', '.join(header)}, each once")
 
 
-def _check_shape(path: Path, content: bytes, fields: int) -> int:
+def _check_shape(content: _Content, fields: int) -> int:
     """The number of data rows; every line must end, and hold ``fields`` fields."""
-    data = np.frombuffer(content, np.uint8)
-    if data[-1] != ord("\n"):
+    path = content.path
+    if not content.ends_line():
         raise InputError(
             f"{path}: the last row does not end with a line break; the file was cut off, get it again"
         )
     lines = commas = 0
-    for begin in range(0, len(data), 1 << 18):  # pieces that fit the cache
-        piece = data[begin : begin + (1 << 18)]
+    for found in content.pieces():
+        piece = np.frombuffer(found, np.uint8)
         if piece.max() > 127 or not piece.min():
-            strange = begin + int(np.argmax((piece > 127) | (piece == 0)))
-            row = content.count(b"\n", 0, strange) + 1
-            raise InputError(f"{path}, row {row}: byte {data[strange]:#04x} is no part of a table of numbers")
+            strange = int(np.argmax((piece > 127) | (piece == 0)))
+            row = lines + found.count(b"\n", 0, strange) + 1
+            raise InputError(
+                f"{path}, row {row}: byte {piece[strange]:#04x} is no part of a table of numbers"
+            )
         lines += int(np.count_nonzero(piece == ord("\n")))
         commas += int(np.count_nonzero(piece == ord(",")))
     if commas != lines * (fields - 1):
-        for number, line in enumerate(content.split(b"\n")[:-1], start=1):
+        for number, line in enumerate(content.all().split(b"\n")[:-1], start=1):
             if line.count(b",") != fields - 1:
                 count = line.count(b",") + 1
                 raise InputError(f"{path}, row {number}: the row has {count} fields, the format {fields}")
@@ -224,14 +287,14 @@ def _check_shape(path: Path, content: bytes, fields: int) -> int:
     return lines - 1
 
 
-def _read_fast(content: bytes, wanted: Mapping[str, Kind], rows: int) -> dict[str, Column] | None:
+def _read_fast(source: Path | bytes, wanted: Mapping[str, Kind], rows: int) -> dict[str, Column] | None:
     """All wanted columns, or None if some cell is wrong."""
     pl = polars_module()
 
     types = {"integer": pl.Int64, "number": pl.Float64, "text": pl.String, "list": pl.String}
     try:
         frame = pl.read_csv(
-            content,
+            source,
             columns=list(wanted),
             schema_overrides={name: types[kind] for name, kind in wanted.items()},
             quote_char=None,

@@ -8,7 +8,7 @@ Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dens
 ``Until(φ, J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Literal, TypeAlias, assert_never
 
 from roadproof.logic.node import node, once
@@ -246,17 +246,18 @@ def with_intervals(formula: Formula, change: Callable[[Interval], Interval]) -> 
             assert_never(formula)
 
 
-def subformulas(formula: Formula) -> Iterator[Formula]:
-    """Every distinct sub-formula once, parents before children."""
+def subformulas(*formulas: Formula) -> Iterator[Formula]:
+    """Every distinct sub-formula once, parents before children, of one formula after the other."""
     seen: set[Formula] = set()
-    waiting = [formula]
-    while waiting:
-        current = waiting.pop()
-        if current in seen:
-            continue
-        seen.add(current)
-        yield current
-        waiting.extend(reversed(children(current)))
+    for whole in formulas:
+        waiting = [whole]
+        while waiting:
+            current = waiting.pop()
+            if current in seen:
+                continue
+            seen.add(current)
+            yield current
+            waiting.extend(reversed(children(current)))
 
 
 def nesting(formula: Formula) -> dict[Named, int]:
@@ -277,9 +278,28 @@ def nesting(formula: Formula) -> dict[Named, int]:
 
 
 @once
+@once
 def is_state(formula: Formula) -> bool:
     """Whether ``formula`` speaks about one instant only: no temporal operator inside."""
-    return not any(isinstance(f, Temporal) for f in subformulas(formula))
+    return not isinstance(formula, Temporal) and all(map(is_state, children(formula)))
+
+
+def share(formulas: Iterable[Formula], change: Callable[[Formula], Formula]) -> list[Formula]:
+    """As ``transform`` of each, with one object for all sub-formulas that are equal.
+
+    Whatever compares them has then no need to look inside.
+    """
+    pool: dict[Formula, Formula] = {}
+    done: dict[int, tuple[Formula, Formula]] = {}  # an object keeps its id while it is held
+
+    def visit(current: Formula) -> Formula:
+        if id(current) not in done:
+            parts = tuple(visit(child) for child in children(current))
+            made = change(with_children(current, parts))
+            done[id(current)] = current, pool.setdefault(made, made)
+        return done[id(current)][1]
+
+    return [visit(formula) for formula in formulas]
 
 
 def transform(formula: Formula, change: Callable[[Formula], Formula]) -> Formula:

@@ -76,8 +76,7 @@ def _beyond(vehicle: str, op: Comparison, kind: Kind) -> Formula:
 
 def own_of(formulas: Iterable[Formula]) -> tuple[t.Own, ...]:
     """The own signals that occur, each of each vehicle, by name and vehicle."""
-    sides = (side for formula in formulas for side in terms_of(formula))
-    found = {leaf for side in sides for leaf in t.leaves(side) if isinstance(leaf, t.Own)}
+    found = {leaf for side in terms_of(*formulas) for leaf in t.leaves(side) if isinstance(leaf, t.Own)}
     return tuple(sorted(found, key=lambda x: (x.name, x.vehicle)))
 
 

@@ -15,6 +15,7 @@ from roadproof.logic.formula import (
     Some,
     children,
     intervals,
+    share,
     subformulas,
     transform,
     with_children,
@@ -37,7 +38,10 @@ from roadproof.signals import SIGNALS, SignalName
 
 def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
     """``formula`` with ``change`` applied to both sides of every comparison and to every bound."""
+    return transform(formula, _changing_terms(change))
 
+
+def _changing_terms(change: Callable[[Term], Term]) -> Callable[[Formula], Formula]:
     def interval(old: Interval) -> Interval:
         return Interval(change(old.low), None if old.high is None else change(old.high))
 
@@ -46,23 +50,26 @@ def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
             return Compare(change(current.left), current.op, change(current.right))
         return with_intervals(current, interval)
 
-    return transform(formula, visit)
+    return visit
 
 
 def with_values(formula: Formula, values: Mapping[str, Fraction]) -> Formula:
     """``formula`` with the named parameters replaced by numbers; others stay symbolic."""
-    if not values:
-        return formula
+    return map_terms(formula, _giving(values)) if values else formula
 
+
+def all_with_values(formulas: Iterable[Formula], values: Mapping[str, Fraction]) -> list[Formula]:
+    """As ``with_values`` of each, with one object for all sub-formulas that are equal."""
+    return share(formulas, _changing_terms(_giving(values)))
+
+
+def _giving(values: Mapping[str, Fraction]) -> Callable[[Term], Term]:
     def leaf(old: Leaf) -> Term:
         if isinstance(old, Parameter) and old.name in values:
             return Number(values[old.name], old.dimension)
         return old
 
-    def fold(term: Term) -> Term:
-        return replace_leaves(term, leaf)
-
-    return map_terms(formula, fold)
+    return lambda term: replace_leaves(term, leaf)
 
 
 def without_names(formula: Formula) -> Formula:
@@ -70,9 +77,9 @@ def without_names(formula: Formula) -> Formula:
     return transform(formula, lambda f: f.body if isinstance(f, Named) else f)
 
 
-def terms_of(formula: Formula) -> Iterator[Term]:
+def terms_of(*formulas: Formula) -> Iterator[Term]:
     """Both sides of every comparison and every interval bound."""
-    for current in subformulas(formula):
+    for current in subformulas(*formulas):
         if isinstance(current, Compare):
             yield current.left
             yield current.right
@@ -100,7 +107,7 @@ def vehicles_of(formula: Formula) -> tuple[str, ...]:
 
 def signals_of(formulas: Iterable[Formula]) -> tuple[SignalName, ...]:
     """Names of the signals that occur, in the order of the list of signals."""
-    terms = (term for formula in formulas for term in terms_of(formula))
+    terms = terms_of(*formulas)
     found = {leaf.name for term in terms for leaf in leaves(term) if isinstance(leaf, Signal)}
     return tuple(name for name in SIGNALS if name in found)
 

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Generic
 
 import numpy as np
@@ -67,15 +68,20 @@ class Observation:
 class Monitor(Generic[Key]):
     """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
 
-    ``signals``: what they speak of, of any vehicle; own signals of some vehicle stand for all.
+    ``named``: sub-formulas that have names, and what each is without. ``signals``: what they speak of, of
+    any vehicle; own signals of some vehicle stand for all.
     """
 
     formulas: Mapping[Key, Formula]
     plain: Mapping[Key, Formula]
-    named: Mapping[Named, Formula]
     states: frozenset[Formula]
     signals: tuple[SignalName | Own, ...]
     programs: dict[tuple[Compare, ...], Program] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def named(self) -> Mapping[Named, Formula]:
+        nodes = [x for x in f.subformulas(*self.formulas.values()) if isinstance(x, Named)]
+        return dict(zip(nodes, f.share(nodes, _unnamed), strict=True))
 
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
         """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
@@ -199,36 +205,43 @@ def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
     Every parameter must have its value (``with_values``); lanes may be open where the batch gives
     the truth of the formulas that speak of them. Raises ``InputError``.
     """
-    pool: dict[Formula, Formula] = {}
-
-    def share(formula: Formula) -> Formula:
-        plain = formula.body if isinstance(formula, Named) else formula
-        return pool.setdefault(plain, plain)
-
-    for name, formula in formulas.items():
-        _check_closed(name, formula)
-    plain = {name: f.transform(formula, share) for name, formula in formulas.items()}
-    nodes = dict.fromkeys(
-        node for x in formulas.values() for node in f.subformulas(x) if isinstance(node, Named)
-    )
-    named = {node: f.transform(node, share) for node in nodes}
+    _check_closed(formulas)
+    plain = dict(zip(formulas, f.share(formulas.values(), _unnamed), strict=True))
     own = {(x.name, not x.vehicle): x for x in own_of(formulas.values())}.values()
-    states = frozenset(x for x in pool if f.is_state(x))
-    return Monitor(dict(formulas), plain, named, states, (*signals_of(formulas.values()), *own))
+    states = frozenset(x for x in f.subformulas(*plain.values()) if f.is_state(x))
+    return Monitor(dict(formulas), plain, states, (*signals_of(formulas.values()), *own))
 
 
-def _check_closed(name: object, formula: Formula) -> None:
-    for term in terms_of(formula):
-        for leaf in t.leaves(term):
-            if isinstance(leaf, t.Parameter | t.Variable):
+def _unnamed(formula: Formula) -> Formula:
+    return formula.body if isinstance(formula, Named) else formula
+
+
+def _check_closed(formulas: Mapping[Key, Formula]) -> None:
+    whole = tuple(formulas.values())
+    fine = all(map(_has_value, terms_of(*whole))) and all(
+        map(_is_interval, (bounds_of(x) for part in f.subformulas(*whole) for x in f.intervals(part)))
+    )
+    for name, formula in () if fine else formulas.items():
+        for term in terms_of(formula):
+            for leaf in t.leaves(term):
+                if isinstance(leaf, t.Parameter | t.Variable):
+                    raise InputError(
+                        f"{name}: a monitor needs numbers, but {leaf.name} has no value; substitute one first"
+                    )
+        for low, high in map(bounds_of, intervals_of(formula)):
+            if not _is_interval((low, high)):
                 raise InputError(
-                    f"{name}: a monitor needs numbers, but {leaf.name} has no value; substitute one first"
+                    f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
                 )
-    for low, high in map(bounds_of, intervals_of(formula)):
-        if low < 0 or (high is not None and high < low):
-            raise InputError(
-                f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
-            )
+
+
+def _has_value(term: t.Term) -> bool:
+    return not any(isinstance(leaf, t.Parameter | t.Variable) for leaf in t.leaves(term))
+
+
+def _is_interval(bounds: tuple[Fraction, Fraction | None]) -> bool:
+    low, high = bounds
+    return low >= 0 and (high is None or high >= low)
 
 
 def _given(batch: Batch) -> dict[Formula, Array]:

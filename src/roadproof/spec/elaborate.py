@@ -51,9 +51,12 @@ def mistakes_in(
     return once_each(error.locate(source, text) for error in errors)
 
 
-def elaborate(specification: Specification, claim: syntax.Claim) -> Query:
-    """What a claim means in a specification. Raises ``TextError``, located where the claim has positions."""
-    elaborator = Elaborator(specification)
+def elaborate(specification: Specification, claim: syntax.Claim, walk: Elaborator | None = None) -> Query:
+    """What a claim means in a specification. Raises ``TextError``, located where the claim has positions.
+
+    ``walk``, through the same specification, knows what others use.
+    """
+    elaborator = Elaborator(specification) if walk is None else walk.again()
     made = elaborator.formula(claim.body, elaborator.given(claim))
     declared = [b.name for b in claim.given if b.sort == "vehicle"]
     vehicles = tuple(dict.fromkeys([*declared, *sorted(elaborator.free["vehicle"])]))
@@ -82,14 +85,18 @@ def read_term(specification: Specification, text: str, source: str = "term") -> 
     return made.term, made.dimension or UNITS["unitless"][1]
 
 
-def apply_definition(specification: Specification, name: str, arguments: tuple[str, ...] = ()) -> Query:
+def apply_definition(
+    specification: Specification, name: str, arguments: tuple[str, ...] = (), walk: Elaborator | None = None
+) -> Query:
     """The formula of a definition applied to names; to its own parameters where none are given.
+
+    ``walk`` as for ``elaborate``.
 
     >>> apply_definition(bundled_library().select(), "scenario_2").vehicles
     ('POV1', 'POV2', 'SV')
     """
-    roles = arguments or signature(specification, name.partition("@")[0])
-    return elaborate(specification, syntax.Claim((), syntax.Call(name, tuple(map(syntax.Name, roles)))))
+    roles = arguments or signature(specification, name.partition("@")[0], walk)
+    return elaborate(specification, syntax.Claim((), syntax.Call(name, tuple(map(syntax.Name, roles)))), walk)
 
 
 def signatures(specification: Specification, names: Iterable[str]) -> dict[str, tuple[str, ...]]:

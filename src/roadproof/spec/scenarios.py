@@ -19,6 +19,7 @@ from roadproof.logic.formula import Formula, transform
 from roadproof.logic.syntax import Definition, TitleDeclaration
 from roadproof.spec.compose import both, either, eventually
 from roadproof.spec.elaborate import apply_definition, elaborate, read_claim, signature
+from roadproof.spec.elaboration import Elaborator
 from roadproof.spec.library import Specification, source_of, unknown
 from roadproof.spec.query import Query
 from roadproof.world.road import Zone
@@ -97,12 +98,19 @@ def vehicles_of(specification: Specification, scenario: Scenario) -> tuple[str, 
 
 
 def applied(
-    specification: Specification, scenario: Scenario, vehicles: Sequence[str] = (), lane: str = LANE
+    specification: Specification,
+    scenario: Scenario,
+    vehicles: Sequence[str] = (),
+    lane: str = LANE,
+    walk: Elaborator | None = None,
 ) -> Query:
-    """A scenario applied to vehicles (its own where none are given) and a lane."""
+    """A scenario applied to vehicles (its own where none are given) and a lane.
+
+    ``walk`` as for ``elaborate``.
+    """
     roles = tuple(vehicles) or vehicles_of(specification, scenario)
     name = _in_set(name_of(scenario.number), scenario, specification)
-    return apply_definition(specification, name, (*roles, lane))
+    return apply_definition(specification, name, (*roles, lane), walk)
 
 
 def read_query(specification: Specification, text: str, source: str = "claim") -> tuple[int | None, Query]:
