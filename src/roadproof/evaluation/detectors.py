@@ -36,7 +36,12 @@ def find_detections(recording: Recording, questions: Questions, meeting: Pairs) 
     else:
         pairs, lanes = pairs_in_sight(recording, meeting, questions.sight)
     found = _detect(recording, questions, pairs, lanes)
-    return tuple(sorted(found, key=lambda x: (x.detector, x.sv, x.pov, x.lane)))
+    return tuple(sorted(found, key=order_of_detections))
+
+
+def order_of_detections(found: Detection) -> tuple[str, int, int, str]:
+    """In what order they are told."""
+    return found.detector, found.sv, found.pov, found.lane
 
 
 def _detect(recording: Recording, questions: Questions, pairs: Pairs, lanes: Masks) -> Iterator[Detection]:

@@ -38,6 +38,20 @@ class Disturbances:
     next_safe: Integers
     last_danger: tuple[Integers, ...]
 
+    def choose(self, wanted: Bools) -> "Disturbances":
+        """Those of some of the pairs."""
+        rows = np.repeat(wanted, self.pairs.samples)
+        pairs = self.pairs.choose(wanted)
+        return Disturbances(
+            self.meeting,
+            pairs,
+            self.start[wanted],
+            tuple(x[wanted] for x in self.end),
+            offsets(pairs.samples),
+            self.next_safe[rows],
+            tuple(x[rows] for x in self.last_danger),
+        )
+
 
 def find_disturbances(recording: Recording, questions: Questions) -> Disturbances:
     """The disturbances between vehicles of the classes that the settings name."""

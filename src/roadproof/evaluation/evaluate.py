@@ -1,12 +1,12 @@
 """The highD experiment on one recording (semantics §7): which disturbance matches which scenario."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from roadproof.evaluation.boundary import Asked, uncertain
-from roadproof.evaluation.detectors import Detection, find_detections
+from roadproof.evaluation.detectors import Detection, find_detections, order_of_detections
 from roadproof.evaluation.disturbances import (
     NEVER,
     CutTriples,
@@ -17,10 +17,11 @@ from roadproof.evaluation.disturbances import (
 from roadproof.evaluation.lane_atoms import OTHER_LANE
 from roadproof.evaluation.questions import START, MonitorKey, Questions
 from roadproof.evaluation.traces import gather
-from roadproof.formats.overlaps import describe_overlaps
+from roadproof.formats.overlaps import Overlap, find_overlaps, told_overlap
 from roadproof.formats.pairs import Pairs, triples_of
 from roadproof.formats.recording import Bools, Integers, Recording
 from roadproof.formats.repeats import Seen, see_pair
+from roadproof.formats.windows import Window
 from roadproof.monitoring.answers import Convention
 from roadproof.monitoring.compiled import Monitor, Observation
 from roadproof.spec.scenarios import LANE, PAIR, TRIPLE
@@ -95,37 +96,87 @@ class Findings:
 
 def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
     """Filter, cut and match all pairs, and all triples for the scenarios of three cars."""
-    if recording.rate != questions.rate:
-        raise ValueError(f"questions for {questions.rate} Hz put to a recording of {recording.rate} Hz")
-    found = find_disturbances(recording, questions)
+    return evaluate_windows([Window(recording, np.ones(recording.vehicles, bool))], questions)
+
+
+def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Findings:
+    """As ``evaluate_recording``, of a recording in windows of time, of which one at a time is looked at.
+
+    A pair or triple is looked at where the last of its vehicles comes in, on all of its common frames.
+    """
+    parts: list[_Part] = []
+    name, notes = "", tuple[str, ...]()
+    for window in windows:
+        recording = window.recording
+        if recording.rate != questions.rate:
+            raise ValueError(f"questions for {questions.rate} Hz put to a recording of {recording.rate} Hz")
+        name, notes = recording.name, recording.notes
+        parts.append(_evaluate(window, questions))
+    matches = sorted((x for part in parts for x in part.matches), key=_order)
+    overlaps = sorted((x for part in parts for x in part.overlaps), key=lambda x: x[:2])
+    return Findings(
+        recording=name,
+        vehicles=sum(part.vehicles for part in parts),
+        samples=sum(part.samples for part in parts),
+        violating=sum(part.violating for part in parts),
+        triples=sum(part.triples for part in parts),
+        asked=sum(part.tally.asked for part in parts),
+        undecided=sum(part.tally.undecided for part in parts),
+        differing=sum(part.tally.differing for part in parts),
+        traces=tuple(sorted((x for part in parts for x in part.traces), key=_order_of_traces)),
+        matches=tuple(matches),
+        detections=tuple(sorted((x for part in parts for x in part.detections), key=order_of_detections)),
+        notes=(*notes, *map(told_overlap, overlaps), *_say_uncertain(matches)),
+        sectors=tuple(x.name for x in questions.sectors),
+        seen=tuple(sorted((x for part in parts for x in part.seen), key=lambda x: (x.first, x.second))),
+    )
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What was found in a window; fields as in ``Findings``."""
+
+    vehicles: int
+    samples: int
+    violating: int
+    triples: int
+    tally: "_Tally"
+    traces: tuple[Trace, ...]
+    matches: tuple[Match, ...]
+    detections: tuple[Detection, ...]
+    overlaps: tuple[Overlap, ...]
+    seen: tuple[Seen, ...]
+
+
+def _evaluate(window: Window, questions: Questions) -> _Part:
+    recording = window.recording
+    everything = find_disturbances(recording, questions)
+    found = everything.choose(window.has(everything.pairs.first, everything.pairs.second))
     tally = _Tally(questions)
     matches = list(_match_pairs(recording, questions, found, tally))
     cut = None
     if questions.triple_start is not None:
-        cut = _candidates(recording, questions, found)
+        cut = _candidates(window, questions, everything)
         matches += _match_triples(recording, questions, cut, tally)
-    detections = find_detections(recording, questions, found.meeting)
-    return Findings(
-        recording=recording.name,
-        vehicles=recording.vehicles,
-        samples=len(recording.s),
+    meeting = everything.meeting.choose(window.has(everything.meeting.first, everything.meeting.second))
+    detections = find_detections(recording, questions, meeting)
+    return _Part(
+        vehicles=int(np.count_nonzero(window.new)),
+        samples=int(np.diff(recording.start)[window.new].sum()),
         violating=len(found.pairs),
         triples=0 if cut is None else len(cut.triples),
-        asked=tally.asked,
-        undecided=tally.undecided,
-        differing=tally.differing,
+        tally=tally,
         traces=tuple(_traces(recording, questions, found)),
-        matches=tuple(sorted(matches, key=_order)),
+        matches=tuple(matches),
         detections=detections,
-        notes=(*recording.notes, *_overlapping(recording, found), *_say_uncertain(matches)),
-        sectors=tuple(x.name for x in questions.sectors),
+        overlaps=tuple(_overlapping(recording, found)),
         seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),
     )
 
 
-def _overlapping(recording: Recording, found: Disturbances) -> Iterator[str]:
+def _overlapping(recording: Recording, found: Disturbances) -> Iterator[Overlap]:
     """Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already."""
-    return describe_overlaps(recording, found.pairs) if not len(recording.moments) else iter(())
+    return find_overlaps(recording, found.pairs) if not len(recording.moments) else iter(())
 
 
 def _say_uncertain(matches: Sequence[Match]) -> Iterator[str]:
@@ -145,6 +196,10 @@ def _see(recording: Recording, found: Disturbances, detections: tuple[Detection,
 
 def _order(match: Match) -> tuple[object, ...]:
     return (match.sv, match.pov, match.pov2 or 0, match.min_danger, match.set_name, match.scenario)
+
+
+def _order_of_traces(trace: Trace) -> tuple[int, int, int]:
+    return trace.first, trace.second, trace.min_danger
 
 
 @dataclass
@@ -196,9 +251,12 @@ def _match_pairs(
             yield Match(sv, pov, None, lane, *frames, k, asked.set_name, asked.number, unsure)
 
 
-def _candidates(recording: Recording, questions: Questions, found: Disturbances) -> CutTriples:
+def _candidates(window: Window, questions: Questions, found: Disturbances) -> CutTriples:
     """Triples in which danger arises and whose start allows a scenario of three cars."""
-    cut = cut_triples(questions, found, triples_of(recording, found.pairs, found.meeting))
+    recording = window.recording
+    triples = triples_of(recording, found.pairs, found.meeting)
+    triples = triples.choose(window.has(triples.sv, triples.pov1, triples.pov2))
+    cut = cut_triples(questions, found, triples)
     assert questions.triple_start is not None
     if not len(cut.triples):
         return cut

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from roadproof.errors import InputError, SharedError
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
+from roadproof.evaluation.evaluate import Findings, evaluate_windows
 from roadproof.evaluation.questions import Questions, Settings, ask
 from roadproof.evaluation.results import (
     Totals,
@@ -22,6 +22,7 @@ from roadproof.evaluation.results import (
 from roadproof.formats.recording import Recording
 from roadproof.formats.source import RecordingSource
 from roadproof.formats.sources import copies_among, find_sources
+from roadproof.formats.windows import Divided
 from roadproof.hands import Hands
 from roadproof.workers import Lost, answers_of
 
@@ -163,17 +164,18 @@ class _Job:
 def _evaluate(job: _Job) -> str | None:
     """Read, evaluate and save; why the recording cannot be used, where it is the files' fault."""
     try:
-        recording = job.source.read()
+        divided = job.source.divided()
     except InputError as error:
         return str(error)
     try:
-        questions = questions_for(job.settings, job.question, recording)
+        questions = questions_for(job.settings, job.question, divided)
     except InputError as error:
-        return f"{job.source.place_of_rate(recording.rate)}: {error}"
+        return f"{job.source.place_of_rate(divided.rate)}: {error}"
     try:
-        findings = evaluate_recording(recording, questions)
+        findings = evaluate_windows(divided.windows(), questions)
     except InputError as error:
-        return f"{job.source.files[-1]}: {error}"
+        told, file = str(error), str(job.source.files[-1])
+        return told if told.startswith(file) else f"{file}: {told}"
     except Exception as error:
         raise RuntimeError(f"recording {job.source.name}: {type(error).__name__}: {error}") from error
     save_findings(_path(job.out, job.source), findings, job.mark)
@@ -184,7 +186,7 @@ _MOST_ASKED = 4
 _asked: dict[tuple[str, int, tuple[str, ...]], Questions] = {}
 
 
-def questions_for(settings: Settings, question: str, recording: Recording) -> Questions:
+def questions_for(settings: Settings, question: str, recording: Recording | Divided) -> Questions:
     """Compiled once a process for recordings of one rate and the same zones.
 
     ``question`` is the settings' mark, which tells settings apart, as they come as copies.

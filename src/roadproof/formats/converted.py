@@ -8,7 +8,8 @@ were made of otherwise, and refuses them.
 import hashlib
 import io
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import fields
 from fractions import Fraction
 from importlib.metadata import version
@@ -19,15 +20,19 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.files import read_limited, write_json, write_whole
-from roadproof.formats.recording import Lane, Recording, Slack, offsets
+from roadproof.formats import windows
+from roadproof.formats.recording import Integers, Lane, Recording, Slack, offsets, zones_in
 from roadproof.formats.samples import CONVERTED
 from roadproof.formats.source import Files, Format, RecordingSource, with_suffix
-from roadproof.formats.table import Column, polars_module
+from roadproof.formats.table import Column, polars_module, stamp_of
+from roadproof.formats.windows import Divided, Window, divide
 from roadproof.signals import RECORDED
 from roadproof.world.road import Lanelet
 
 SCHEMA = "roadproof/recording/1"
 HEAD, SAMPLES = ".recording.json", CONVERTED
+_UNFIT = (ValueError, KeyError, TypeError, AttributeError, RecursionError)
+_NEAR = 100_000  # rows between those of two vehicles that are read with them
 _LARGEST_HEAD = 200_000_000  # bytes; two thousand vehicles take 0.3 MB
 _OF_VEHICLES: Mapping[str, type[Any]] = {
     "vehicle_id": np.int64,
@@ -78,21 +83,100 @@ def write_converted(source: RecordingSource, folder: Path) -> Recording:
 
 def read_converted(head: Path) -> Recording:
     """The recording of NAME.recording.json. Raises ``InputError``."""
-    table = head.with_name(f"{head.name.removesuffix(HEAD)}{SAMPLES}")
+    with _as_written(head):
+        said = _read_head(head)
+        return _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
+
+
+def divide_converted(head: Path) -> Divided | None:
+    """The recording of NAME.recording.json in windows of time, None where it is small. Raises ``InputError``.
+
+    Each is read from the rows of its vehicles. Raises ``InputError`` where the file changes meanwhile.
+    """
+    with _as_written(head):
+        said, table = _read_head(head), _table_of(head)
+        if _rows(said) <= windows.MOST_SAMPLES:
+            return None
+        stamp = stamp_of(table)
+        with table.open("rb") as file:
+            _require_digest(table, hashlib.file_digest(file, "sha256").hexdigest(), said["samples"]["sha256"])
+        counts, first_frame = np.array(said["counts"]), np.array(said["vehicles"]["first_frame"])
+        if counts.sum() != _rows(said) or counts.shape != first_frame.shape or counts.min() < 1:
+            raise ValueError("vehicles and samples do not fit")
+        zones = polars_module().scan_parquet(table).select("zones").unique().collect()["zones"].to_list()
+
+    def read() -> Iterator[Window]:
+        start = offsets(counts)
+        for there, new in divide(first_frame, first_frame + counts - 1, windows.MOST_SAMPLES):
+            with _as_written(head):
+                vehicles = np.flatnonzero(there)
+                recording = _recording(_of_vehicles(said, vehicles), _read_rows(table, start, vehicles))
+                if stamp_of(table) != stamp:
+                    raise InputError(
+                        f"{table}: the file changed while it was read; ask again when it is whole"
+                    )
+            yield Window(recording, new[vehicles])
+
+    return Divided(int(said["rate"]), zones_in(zones), read)
+
+
+def _of_vehicles(said: Mapping[str, Any], vehicles: Integers) -> dict[str, Any]:
+    """What is said, of some of the vehicles."""
+    chosen = vehicles.tolist()
+    counts = [said["counts"][v] for v in chosen]
+    of = {name: [x[v] for v in chosen] if x else x for name, x in said["vehicles"].items()}
+    return {**said, "counts": counts, "vehicles": of, "samples": {"rows": sum(counts)}}
+
+
+def _read_rows(table: Path, start: Integers, vehicles: Integers) -> dict[str, Column]:
+    """The samples of some vehicles, in order; those that lie near each other are read at once."""
+    pl = polars_module()
+    begin, end = start[vehicles], start[vehicles + 1]
+    apart = np.flatnonzero(begin[1:] - end[:-1] > _NEAR) + 1
+    parts = []
+    for group in np.split(np.arange(len(vehicles)), apart):
+        low, high = int(begin[group[0]]), int(end[group[-1]])
+        frame = pl.scan_parquet(table).slice(low, high - low).collect()
+        wanted = np.zeros(high - low + 1, np.int64)
+        np.add.at(wanted, begin[group] - low, 1)
+        np.add.at(wanted, end[group] - low, -1)
+        parts.append(frame.filter(pl.Series(np.cumsum(wanted)[:-1] > 0)))
+    whole = pl.concat(parts)
+    return {name: whole[name].to_numpy() for name in whole.columns}
+
+
+@contextmanager
+def _as_written(head: Path) -> Iterator[None]:
+    """Raise ``InputError`` where a file is not what ``convert`` writes."""
     try:
-        said = json.loads(read_limited(head, _LARGEST_HEAD, "it is none of ours"))
-        if said["schema"] != SCHEMA:
-            raise InputError(f"{head}: schema={said['schema']!r}, but must be {SCHEMA!r}")
-        if said["roadproof"] != version("roadproof"):
-            raise InputError(
-                f"{head}: it was converted by version {str(said['roadproof'])[:40]}, and this is "
-                f"{version('roadproof')}, which may read recordings otherwise; convert them again"
-            )
-        columns = _read_samples(table, said["samples"]["sha256"], said["samples"]["rows"])
-        return _recording(said, columns)
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        yield
+    except (*_UNFIT, polars_module().exceptions.PolarsError) as error:
         told = f"{type(error).__name__}: {error}"[:120]
         raise InputError(f"{head}: it is not what convert writes ({told}); convert again") from None
+    except OSError as error:
+        raise InputError(
+            f"{_table_of(head)}: the file cannot be read ({error.strerror}); convert again"
+        ) from None
+
+
+def _table_of(head: Path) -> Path:
+    return head.with_name(f"{head.name.removesuffix(HEAD)}{SAMPLES}")
+
+
+def _rows(said: Mapping[str, Any]) -> int:
+    return int(said["samples"]["rows"])
+
+
+def _read_head(head: Path) -> dict[str, Any]:
+    said: dict[str, Any] = json.loads(read_limited(head, _LARGEST_HEAD, "it is none of ours"))
+    if said["schema"] != SCHEMA:
+        raise InputError(f"{head}: schema={said['schema']!r}, but must be {SCHEMA!r}")
+    if said["roadproof"] != version("roadproof"):
+        raise InputError(
+            f"{head}: it was converted by version {str(said['roadproof'])[:40]}, and this is "
+            f"{version('roadproof')}, which may read recordings otherwise; convert them again"
+        )
+    return said
 
 
 def same_recording(one: Recording, other: Recording) -> bool:
@@ -152,16 +236,17 @@ def _lanelet(data: Mapping[str, Any]) -> Lanelet:
 
 
 def _read_samples(path: Path, digest: str, rows: int) -> dict[str, Column]:
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"{path}: the file cannot be read ({error.strerror}); convert again") from None
-    if hashlib.sha256(content).hexdigest() != digest:
-        raise InputError(f"{path}: its content is not what {path.stem} was converted to; convert again")
+    content = path.read_bytes()
+    _require_digest(path, hashlib.sha256(content).hexdigest(), digest)
     frame = polars_module().read_parquet(io.BytesIO(content))
     if frame.height != rows:
         raise ValueError(f"{frame.height} rows of {rows}")
     return {name: frame[name].to_numpy() for name in frame.columns}
+
+
+def _require_digest(path: Path, found: str, digest: str) -> None:
+    if found != digest:
+        raise InputError(f"{path}: its content is not what {path.stem} was converted to; convert again")
 
 
 def _recording(said: Mapping[str, Any], columns: Mapping[str, Column]) -> Recording:
@@ -209,8 +294,14 @@ def _read(files: Files) -> Recording:
     return read_converted(files[0])
 
 
+def _divide(files: Files) -> Divided | None:
+    return divide_converted(files[0])
+
+
 def _rate_at(files: Files, rate: int) -> str:
     return f"{files[0]}, rate={rate}"
 
 
-FORMAT = Format("converted", f"NAME{HEAD} and NAME{SAMPLES}, of roadproof convert", _find, _read, _rate_at)
+FORMAT = Format(
+    "converted", f"NAME{HEAD} and NAME{SAMPLES}, of roadproof convert", _find, _read, _rate_at, _divide
+)

@@ -1,14 +1,18 @@
 """Vehicles that are in one place: noise in measured traffic, and a fault in simulated traffic."""
 
 from collections.abc import Iterator
+from typing import TypeAlias
 
 import numpy as np
 
 from roadproof.formats.pairs import Pairs, Within, common_pairs, ever_within, row_of
 from roadproof.formats.recording import Recording
 
+Overlap: TypeAlias = tuple[int, int, int, float]
+"""Both ids, in how many frames, how deep at most (m)."""
 
-def find_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[tuple[int, int, int, float]]:
+
+def find_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[Overlap]:
     """Pairs whose boxes overlap with positive area: both ids, in how many frames, how deep at most (m).
 
     All pairs are looked at, or those ``among``.
@@ -37,7 +41,12 @@ def find_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[
             yield int(ids[first]), int(ids[second]), int(np.count_nonzero(depth > 0)), float(depth.max())
 
 
+def told_overlap(overlap: Overlap) -> str:
+    """An overlap as a line."""
+    one, other, frames, depth = overlap
+    return f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth:.2f} m"
+
+
 def describe_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[str]:
     """One line for each pair that overlaps."""
-    for one, other, frames, depth in find_overlaps(recording, among):
-        yield f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth:.2f} m"
+    return map(told_overlap, find_overlaps(recording, among))

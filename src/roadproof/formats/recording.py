@@ -142,13 +142,18 @@ class Recording:
     @property
     def zone_names(self) -> tuple[Zone, ...]:
         """The zones that some vehicle is in at some time, in the order of ZONES."""
-        met = int(np.bitwise_or.reduce(self.zones, initial=0))
-        return tuple(zone for k, zone in enumerate(ZONES) if met >> k & 1)
+        return zones_in([int(np.bitwise_or.reduce(self.zones, initial=0))])
 
     def beside_mask(self, lane: int) -> int:
         """The lanes adjacent to ``lanes[lane]``, as bits of ``occupancy``."""
         name = self.lanes[lane].name
         return sum(1 << k for k, x in enumerate(self.lanes) if frozenset((x.name, name)) in self.beside)
+
+
+def zones_in(masks: Iterable[int]) -> tuple[Zone, ...]:
+    """The zones that are in some of the ``masks``, in the order of ZONES."""
+    met = [*masks]
+    return tuple(zone for k, zone in enumerate(ZONES) if any(mask >> k & 1 for mask in met))
 
 
 def kind_called(name: str) -> Kind:

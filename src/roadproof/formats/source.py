@@ -8,10 +8,16 @@ from pathlib import Path
 from typing import TypeAlias
 
 from roadproof.formats.recording import Recording
+from roadproof.formats.windows import Divided, undivided
 
 Files: TypeAlias = tuple[Path, ...]
 TRACK_FILES = re.compile(r"(\d+)_(?:recordingMeta|tracksMeta|tracks)\.csv")
 """The names of the files of highD and exiD, with the name of the recording."""
+
+
+def as_a_whole(files: Files) -> Divided | None:
+    """What a format does that is never read in windows."""
+    return None
 
 
 @dataclass(frozen=True)
@@ -21,7 +27,8 @@ class Format:
     ``find``: the recordings of this kind, by name, that a folder holds or that a file is of; for each all
     files that it is read from, that of its samples last. A recording of which files are missing is found,
     so that reading it is refused. ``read`` raises ``InputError``. ``rate_at``: where the files say how many
-    samples a second there are. ``told``: the files in words.
+    samples a second there are. ``told``: the files in words. ``divide``: a recording that is
+    too large to be read as a whole, in windows; None for others.
     """
 
     name: str
@@ -29,6 +36,7 @@ class Format:
     find: Callable[[Path], dict[str, Files]]
     read: Callable[[Files], Recording]
     rate_at: Callable[[Files, int], str]
+    divide: Callable[[Files], Divided | None] = as_a_whole
 
 
 @dataclass(frozen=True)
@@ -42,6 +50,10 @@ class RecordingSource:
     def read(self) -> Recording:
         """Read and check it. Raises ``InputError``."""
         return self.format.read(self.files)
+
+    def divided(self) -> Divided:
+        """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
+        return self.format.divide(self.files) or undivided(self.read())
 
     def digests(self) -> list[str]:
         """A digest of the content of each file, empty for one that cannot be read."""

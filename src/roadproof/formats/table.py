@@ -194,7 +194,7 @@ class _Content:
         """Raises ``InputError`` for a file that cannot be read or is empty."""
         try:
             kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
-            found = cls(path, _stamp(path), kept)
+            found = cls(path, stamp_of(path), kept)
             empty = not found.beginning() or (found.beginning().isspace() and found.all().isspace())
         except OSError as error:
             raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
@@ -235,11 +235,12 @@ class _Content:
 
     def require_unchanged(self) -> None:
         """Raise ``InputError`` where the file was written to since it was first looked at."""
-        if _stamp(self.path) != self.stamp:
+        if stamp_of(self.path) != self.stamp:
             raise InputError(f"{self.path}: the file changed while it was read; ask again when it is whole")
 
 
-def _stamp(path: Path) -> tuple[int, ...]:
+def stamp_of(path: Path) -> tuple[int, ...]:
+    """What changes when a file does."""
     found = path.stat()
     return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
 
