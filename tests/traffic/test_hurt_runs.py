@@ -100,7 +100,7 @@ def test_our_own_fault_names_the_recording(
     def broken(recording: object, questions: object) -> None:
         raise FloatingPointError("overflow")
 
-    monkeypatch.setattr(module, "evaluate_recording", broken)
+    monkeypatch.setattr(module, "evaluate_windows", broken)
     with pytest.raises(RuntimeError, match="recording 01: FloatingPointError: overflow"):
         run_experiment(Experiment(folder, tmp_path, default_settings()))
 
