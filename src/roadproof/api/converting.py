@@ -7,7 +7,9 @@ from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.files import hold_folder
-from roadproof.formats.converted import FORMAT, HEAD, SAMPLES, write_converted
+from roadproof.formats.converted import FORMAT, HEAD, SAMPLES, samples_in, write_converted
+from roadproof.formats.large import is_large, write_large
+from roadproof.formats.samples import CSV, PARQUET
 from roadproof.formats.source import RecordingSource
 from roadproof.formats.sources import find_sources
 from roadproof.study import pool
@@ -61,4 +63,7 @@ class _Converting:
     folder: Path
 
     def __call__(self, source: RecordingSource) -> int:
+        if source.format in (CSV, PARQUET) and source.files[-1].is_file() and is_large(source.files[-1]):
+            digests = dict(zip((path.name for path in source.files), source.digests(), strict=True))
+            return samples_in(write_large(source.files[-1], self.folder, digests, source.format.name))
         return len(write_converted(source, self.folder).s)

@@ -24,7 +24,7 @@ from roadproof.formats import windows
 from roadproof.formats.recording import Integers, Lane, Recording, Slack, offsets, zones_in
 from roadproof.formats.samples import CONVERTED
 from roadproof.formats.source import Files, Format, RecordingSource, with_suffix
-from roadproof.formats.table import Column, polars_module, stamp_of
+from roadproof.formats.table import Column, Frame, polars_module, stamp_of
 from roadproof.formats.windows import Divided, Window, divide
 from roadproof.signals import RECORDED
 from roadproof.world.road import Lanelet
@@ -61,24 +61,46 @@ def write_converted(source: RecordingSource, folder: Path) -> Recording:
     digests = dict(zip((path.name for path in source.files), source.digests(), strict=True))
     recording = source.read()
     samples = io.BytesIO()
-    pl = polars_module()
-    frame = pl.DataFrame({name: pl.Series(name, values) for name, values in _samples(recording).items()})
-    frame.write_parquet(samples, compression="zstd", statistics=False)
+    frame_of_samples(recording).write_parquet(samples, compression="zstd", statistics=False)
     content = samples.getvalue()
     head, table = folder / f"{source.name}{HEAD}", folder / f"{source.name}{SAMPLES}"
     head.unlink(missing_ok=True)  # it is there when the samples are
     write_whole(table, content)
-    said = {
-        "schema": SCHEMA,
-        "roadproof": version("roadproof"),
-        "made_of": {"format": source.format.name, "sha256": digests},
-        "samples": {"rows": len(recording.s), "sha256": hashlib.sha256(content).hexdigest()},
-        **_said(recording),
-    }
-    write_json(head, said)
+    digest = hashlib.sha256(content).hexdigest()
+    write_json(head, head_of(recording, source.format.name, digests, len(recording.s), digest))
     if not same_recording(read_converted(head), recording):
         raise RuntimeError(f"recording {source.name} does not come back from {head}")
     return recording
+
+
+def head_of(
+    recording: Recording, form: str, digests: Mapping[str, str], rows: int, digest: str
+) -> dict[str, Any]:
+    """What NAME.recording.json says of so many ``rows``; their file has the ``digest``.
+
+    ``digests``: of the files of the format called ``form`` that it was made of.
+    """
+    return {
+        "schema": SCHEMA,
+        "roadproof": version("roadproof"),
+        "made_of": {"format": form, "sha256": dict(digests)},
+        "samples": {"rows": rows, "sha256": digest},
+        **_said(recording),
+    }
+
+
+def frame_of_samples(recording: Recording) -> Frame:
+    """All that there is an entry a sample of."""
+    pl = polars_module()
+    frame: Frame = pl.DataFrame({name: pl.Series(name, x) for name, x in _samples(recording).items()})
+    return frame
+
+
+def same_frame(one: Frame, other: Frame) -> bool:
+    """Whether two frames have the same columns and values, NaN included."""
+    if one.columns != other.columns:
+        return False
+    return all(_same(one[name].to_numpy(), other[name].to_numpy()) for name in one.columns)
 
 
 def read_converted(head: Path) -> Recording:
@@ -86,6 +108,12 @@ def read_converted(head: Path) -> Recording:
     with _as_written(head):
         said = _read_head(head)
         return _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
+
+
+def samples_in(head: Path) -> int:
+    """How many samples a converted recording has. Raises ``InputError``."""
+    with _as_written(head):
+        return _rows(_read_head(head))
 
 
 def divide_converted(head: Path) -> Divided | None:

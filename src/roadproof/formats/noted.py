@@ -1,13 +1,13 @@
 """What a file contradicts itself in: a note where it happens seldom, and refused where it happens often."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.formats.plausible import SHARE, Implausible, find_doubts, off_road
-from roadproof.formats.recording import Bools, Recording
+from roadproof.formats.plausible import SHARE, Implausible, OffRoad, find_doubts, off_road
+from roadproof.formats.recording import Bools, Integers, Recording
 from roadproof.formats.table import Table
 
 
@@ -29,7 +29,14 @@ def contradictions(path: Path, recording: Recording, at: Callable[[Implausible],
 
     Raises ``InputError`` where it is too much.
     """
-    for doubt in find_doubts(recording):
+    return noted_doubts(path, find_doubts(recording), at)
+
+
+def noted_doubts(
+    path: Path, doubts: Iterable[Implausible], at: Callable[[Implausible], str]
+) -> Iterator[str]:
+    """As ``contradictions``, of what was found already."""
+    for doubt in doubts:
         yield _noted(path, at(doubt), doubt.told, doubt.refused)
 
 
@@ -41,11 +48,22 @@ def nowhere(
     ``lanelets``: what they are on none of, in words. Raises ``InputError``, which ends with ``advice``, where
     they are too many.
     """
-    off = off_road(recording)
+    return noted_nowhere(path, off_road(recording), recording.start, at, lanelets, advice)
+
+
+def noted_nowhere(
+    path: Path,
+    off: OffRoad | None,
+    start: Integers,
+    at: Callable[[int], str],
+    lanelets: str,
+    advice: str = "",
+) -> Iterator[str]:
+    """As ``nowhere``, of what was found already; ``start``: the first sample of each vehicle."""
     if off is not None:
         told = f"on no {lanelets} at any time, like {off.count} vehicles"
         told += f"; {advice}" if advice and off.refused else ""
-        yield _noted(path, at(int(recording.start[off.vehicle])), told, off.refused)
+        yield _noted(path, at(int(start[off.vehicle])), told, off.refused)
 
 
 def _noted(path: Path, where: str, told: str, refused: bool) -> str:

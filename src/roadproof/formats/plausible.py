@@ -5,12 +5,15 @@ refused, below it the rule is a note. The constants are argued for in docs/highd
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from roadproof.formats.blockwise import blocks_of, blockwise
-from roadproof.formats.recording import Bools, Floats, Integers, Recording
+from roadproof.formats.median import Median
+from roadproof.formats.recording import Bools, Floats, Integers, Lane, Recording
+from roadproof.formats.windows import MOST_SAMPLES
 from roadproof.signals import SignalName, SizeName
 
 LARGEST_SPEED = 250.0
@@ -56,10 +59,9 @@ class Implausible:
 
 def find_doubts(recording: Recording) -> list[Implausible]:
     """Everything in which ``recording`` contradicts itself, the gravest first."""
-    if not len(recording.s):
-        return []
-    found = [*_motion(recording), *_steps(recording), *_sizes(recording), *_places(recording)]
-    return sorted(found, key=lambda doubt: not doubt.refused)
+    found = Doubting(recording.rate, recording.lanes)
+    found.add(recording)
+    return found.doubts()
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,17 @@ class OffRoad:
 
 def off_road(recording: Recording) -> OffRoad | None:
     """The vehicles that are never on a lane; None where there are none."""
-    on_road = np.logical_or.reduceat(recording.occupancy != 0, recording.start[:-1])
+    return of_those_on_road(on_road(recording))
+
+
+def on_road(recording: Recording) -> Bools:
+    """For each vehicle whether it is ever on a lane."""
+    found: Bools = np.logical_or.reduceat(recording.occupancy != 0, recording.start[:-1])
+    return found
+
+
+def of_those_on_road(on_road: Bools) -> OffRoad | None:
+    """The others, if there are any."""
     count = int(np.count_nonzero(~on_road))
     return OffRoad(int(np.argmin(on_road)), count, count > SHARE * len(on_road)) if count else None
 
@@ -101,25 +113,45 @@ _RATES = (
 _FACTORS = ((-1.0, "the sign is turned"), (0.0, "zero"), (3.6, "km/h?"), (2.237, "miles an hour?"))
 
 
-def _motion(recording: Recording) -> Iterator[Implausible]:
-    """What a signal changes by in a second against the sum of its rates, five times a second."""
-    begin, end = _seconds(recording)
-    for rule in _RATES:
-        if not len(begin):
-            return
-        signal, rate = getattr(recording, rule.signal), getattr(recording, rule.rate)
-        total = _sums(rate, recording.rate)
+@dataclass
+class _Motion:
+    """What a signal changes by in a second against the sum of its rate, five times a second.
+
+    The sum goes on from vehicle to vehicle, so that parts of a recording come to what the whole does.
+    """
+
+    rule: _Rate
+    broken: int = 0
+    asked: int = 0
+    row: int = 0
+    factors: list[Floats] = field(default_factory=list)
+    last: tuple[float, float] | None = None
+
+    def add(self, recording: Recording, before: int) -> None:
+        """``before``: how many rows there were already."""
+        signal, rate = getattr(recording, self.rule.signal), getattr(recording, self.rule.rate)
+        total = _sums(rate, recording.rate, self.last)
+        self.last = float(total[-1]), float(rate[-1])
+        begin, end = _seconds(recording, before)
         change, told = signal[end] - signal[begin], total[end] - total[begin]
         greater = np.maximum(np.abs(change), np.abs(told))
-        moved = greater > rule.least
-        wrong = moved & (np.abs(change - told) > rule.share * greater + rule.slack)
-        broken, asked = int(np.count_nonzero(wrong)), int(np.count_nonzero(moved))
-        if broken:
-            factor = float(np.median(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong])))
-            row = _worst(signal, total, int(begin[np.argmax(wrong)]), int(end[np.argmax(wrong)]))
-            refused = _too_many(broken, asked, SHARE)
-            text = f"{rule.what} contradict each other{_hint(factor) if refused else ''}"
-            yield Implausible(text, rule.rate, row, broken, asked, "moving seconds", refused)
+        moved = greater > self.rule.least
+        wrong = moved & (np.abs(change - told) > self.rule.share * greater + self.rule.slack)
+        if wrong.any() and not self.broken:
+            first = int(np.argmax(wrong))
+            self.row = before + _worst(signal, total, int(begin[first]), int(end[first]))
+        self.broken += int(np.count_nonzero(wrong))
+        self.asked += int(np.count_nonzero(moved))
+        self.factors.append(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong]))
+
+    def doubts(self) -> Iterator[Implausible]:
+        if self.broken:
+            factor = float(np.median(np.concatenate(self.factors)))
+            refused = _too_many(self.broken, self.asked, SHARE)
+            text = f"{self.rule.what} contradict each other{_hint(factor) if refused else ''}"
+            yield Implausible(
+                text, self.rule.rate, self.row, self.broken, self.asked, "moving seconds", refused
+            )
 
 
 def _hint(factor: float) -> str:
@@ -130,17 +162,23 @@ def _hint(factor: float) -> str:
     return f", by a factor of {factor:.3g}{cause}"
 
 
-def _seconds(recording: Recording) -> tuple[Integers, Integers]:
+def _seconds(recording: Recording, before: int) -> tuple[Integers, Integers]:
     """The first and last sample of windows of a second, every fifth of a second, within one vehicle."""
-    rows = np.arange(0, len(recording.s) - recording.rate, max(1, recording.rate // 5))
+    every = max(1, recording.rate // 5)
+    rows = np.arange(-before % every, len(recording.s) - recording.rate, every)
     vehicle = recording.row_vehicle
     rows = rows[vehicle[rows] == vehicle[rows + recording.rate]]
     return rows, rows + recording.rate
 
 
-def _sums(rate: Floats, frames_a_second: int) -> Floats:
-    """The integral of a rate up to each sample, straight between samples; only differences mean something."""
+def _sums(rate: Floats, frames_a_second: int, last: tuple[float, float] | None = None) -> Floats:
+    """The integral of a rate up to each sample, straight between samples; only differences mean something.
+
+    ``last``: the integral and the rate at the sample before, where there is one.
+    """
     total = np.zeros(len(rate))
+    if last is not None:
+        total[0] = last[0] + (rate[0] + last[1]) / (2 * frames_a_second)
     for part in blocks_of(len(rate), overlap=1):
         values = rate[part]
         steps = values[1:] + values[:-1]
@@ -157,102 +195,193 @@ def _worst(signal: Floats, total: Floats, begin: int, end: int) -> int:
     return begin + 1 + int(np.argmax(apart))
 
 
-def _steps(recording: Recording) -> Iterator[Implausible]:
-    """What no vehicle does from one frame to the next."""
-    step = 1 / recording.rate
-    inner = np.ones(max(0, len(recording.s) - 1), bool)
-    inner[recording.start[1:-1] - 1] = False
-    for name, along, most in (("s", "v_lon", 1.0), ("d", "v_lat", 0.5)):
-        rules = (
-            (f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next", 0.0),
-            (
-                f"a position and the velocity differ by more than {most:g} m from one frame to the next",
-                SHARE_OF_JUMPS,
-            ),
+@dataclass
+class _Jumps:
+    """What no vehicle does from one frame to the next, of which ``most`` of all may be."""
+
+    rule: str
+    signal: SignalName
+    most: float = SHARE_OF_JUMPS
+    broken: int = 0
+    asked: int = 0
+    row: int = 0
+
+    def add(self, broken: Bools, first: int, asked: int) -> None:
+        """``broken`` has an entry a row from row ``first`` on; of ``asked`` steps."""
+        if broken.any() and not self.broken:
+            self.row = first + int(np.argmax(broken))
+        self.broken += int(np.count_nonzero(broken))
+        self.asked += asked
+
+    def doubts(self) -> Iterator[Implausible]:
+        if self.broken:
+            refused = self.broken > self.most * self.asked and (self.broken >= FEWEST or self.most == 0)
+            yield Implausible(self.rule, self.signal, self.row, self.broken, self.asked, "steps", refused)
+
+
+class _Steps:
+    """The rules about steps from one frame to the next."""
+
+    def __init__(self, rate: int) -> None:
+        self.step = step = 1 / rate
+        moves = f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next"
+        differ = "a position and the velocity differ by more than {:g} m from one frame to the next"
+        changes = "a velocity changes by more than {:.2g} m/s from one frame to the next"
+        along, across = 30 * step + 0.5, 10 * step + 0.5
+        self.ways: tuple[tuple[SignalName, SignalName, float, _Jumps, _Jumps], ...] = (
+            ("s", "v_lon", 1.0, _Jumps(moves, "s", 0), _Jumps(differ.format(1.0), "s")),
+            ("d", "v_lat", 0.5, _Jumps(moves, "d", 0), _Jumps(differ.format(0.5), "d")),
         )
-        place, speed = getattr(recording, name), getattr(recording, along)
-        jumps = [np.empty(len(inner), bool) for _ in rules]
-        for part in blocks_of(len(place), overlap=1):
-            steps = slice(part.start, part.stop - 1)
-            way, velocity = np.diff(place[part]), speed[part]
-            jumps[0][steps] = inner[steps] & (np.abs(way) > LARGEST_STEP)
-            way -= (velocity[1:] + velocity[:-1]) * (step / 2)
-            jumps[1][steps] = inner[steps] & (np.abs(way) > most)
-        for (rule, share), broken in zip(rules, jumps, strict=True):
-            yield from _jumps(rule, name, broken, inner, share)
-    for name, most in (("v_lon", 30 * step + 0.5), ("v_lat", 10 * step + 0.5)):
-        rule = f"a velocity changes by more than {most:.2g} m/s from one frame to the next"
-        speed, broken = getattr(recording, name), np.empty(len(inner), bool)
-        for part in blocks_of(len(speed), overlap=1):
-            steps = slice(part.start, part.stop - 1)
-            broken[steps] = inner[steps] & (np.abs(np.diff(speed[part])) > most)
-        yield from _jumps(rule, name, broken, inner)
-    rule = "an acceleration is above 15 m/s²"
-    broken = blockwise(lambda a_lon: np.abs(a_lon) > 15, recording.a_lon[1:])
-    yield from _jumps(rule, "a_lon", broken, inner)
+        self.speeds = (
+            (along, _Jumps(changes.format(along), "v_lon")),
+            (across, _Jumps(changes.format(across), "v_lat")),
+        )
+        self.hard = _Jumps("an acceleration is above 15 m/s²", "a_lon")
+
+    def add(self, recording: Recording, before: int) -> None:
+        inner = np.ones(max(0, len(recording.s) - 1), bool)
+        inner[recording.start[1:-1] - 1] = False
+        asked = int(np.count_nonzero(inner))
+        for name, along, most, far, apart in self.ways:
+            place, speed = getattr(recording, name), getattr(recording, along)
+            jumps, differ = np.empty(len(inner), bool), np.empty(len(inner), bool)
+            for part in blocks_of(len(place), overlap=1):
+                steps = slice(part.start, part.stop - 1)
+                way, velocity = np.diff(place[part]), speed[part]
+                jumps[steps] = inner[steps] & (np.abs(way) > LARGEST_STEP)
+                way -= (velocity[1:] + velocity[:-1]) * (self.step / 2)
+                differ[steps] = inner[steps] & (np.abs(way) > most)
+            far.add(jumps, before + 1, asked)
+            apart.add(differ, before + 1, asked)
+        for most, rule in self.speeds:
+            speed, broken = getattr(recording, rule.signal), np.empty(len(inner), bool)
+            for part in blocks_of(len(speed), overlap=1):
+                steps = slice(part.start, part.stop - 1)
+                broken[steps] = inner[steps] & (np.abs(np.diff(speed[part])) > most)
+            rule.add(broken, before + 1, asked)
+        first = 0 if before else 1  # the first of all is no step
+        hard = blockwise(lambda a_lon: np.abs(a_lon) > 15, recording.a_lon[first:])
+        self.hard.add(hard, before + first, asked)
+
+    def doubts(self) -> Iterator[Implausible]:
+        for *_, far, apart in self.ways:
+            yield from far.doubts()
+            yield from apart.doubts()
+        for _, rule in self.speeds:
+            yield from rule.doubts()
+        yield from self.hard.doubts()
 
 
-def _jumps(
-    rule: str, signal: str, broken: Bools, asked: Bools, most: float = SHARE_OF_JUMPS
-) -> Iterator[Implausible]:
-    count, of = int(np.count_nonzero(broken)), int(np.count_nonzero(asked))
-    if count:
-        refused = count > most * of and (count >= FEWEST or most == 0)
-        row = int(np.argmax(broken)) + 1
-        yield Implausible(rule, signal, row, count, of, "steps", refused)  # type: ignore[arg-type]
+@dataclass(frozen=True)
+class _Vehicles:
+    """What is said once of vehicles; ``start`` is the first row of each."""
+
+    length: Floats
+    width: Floats
+    kind: npt.NDArray[np.str_]
+    direction: Integers
+    start: Integers
 
 
-def _sizes(recording: Recording) -> Iterator[Implausible]:
+def _sizes(vehicles: _Vehicles, lanes: tuple[Lane, ...]) -> Iterator[Implausible]:
     """Sizes that do not fit the class, that are wider than long, or wider than any lane."""
-    length, width, kind = recording.length, recording.width, recording.kind
-    asked = recording.vehicles
-    yield from _vehicles(recording, "a vehicle is wider than it is long", "width", width > length)
-    widths = [lane.d[1] - lane.d[0] for lane in recording.lanes if lane.d is not None]
+    length, width, kind = vehicles.length, vehicles.width, vehicles.kind
+    yield from _vehicles(vehicles, "a vehicle is wider than it is long", "width", width > length)
+    widths = [lane.d[1] - lane.d[0] for lane in lanes if lane.d is not None]
     if widths:
-        yield from _vehicles(recording, "a vehicle is wider than every lane", "width", width > max(widths))
+        yield from _vehicles(vehicles, "a vehicle is wider than every lane", "width", width > max(widths))
     for name, (lengths, across) in SIZES.items():
-        for signal, value, (low, high) in (("length", length, lengths), ("width", width, across)):
+        sizes: tuple[tuple[SizeName, Floats, tuple[float, float]], ...] = (
+            ("length", length, lengths),
+            ("width", width, across),
+        )
+        for signal, value, (low, high) in sizes:
             broken = (kind == name) & ((value < low) | (value > high))
             rule = f"a {name} is usually {low:g} to {high:g} m {'long' if signal == 'length' else 'wide'}"
-            yield from _vehicles(recording, rule, signal, broken, asked)
+            yield from _vehicles(vehicles, rule, signal, broken)
 
 
-def _vehicles(
-    recording: Recording, rule: str, signal: str, broken: Bools, asked: int | None = None
-) -> Iterator[Implausible]:
-    count, of = int(np.count_nonzero(broken)), recording.vehicles if asked is None else asked
+def _vehicles(vehicles: _Vehicles, rule: str, signal: SizeName, broken: Bools) -> Iterator[Implausible]:
+    count, of = int(np.count_nonzero(broken)), len(vehicles.length)
     if count:
-        row = int(recording.start[np.argmax(broken)])
-        refused = _too_many(count, of, SHARE)
-        yield Implausible(rule, signal, row, count, of, "vehicles", refused)  # type: ignore[arg-type]
+        row, refused = int(vehicles.start[np.argmax(broken)]), _too_many(count, of, SHARE)
+        yield Implausible(rule, signal, row, count, of, "vehicles", refused)
 
 
 def _too_many(broken: int, asked: int, share: float) -> bool:
     return broken >= FEWEST and broken > share * asked
 
 
-def _places(recording: Recording) -> Iterator[Implausible]:
+class _Places:
     """Vehicles of one direction that all drive beside the middle of their lanes, so no corner is tracked."""
-    bands = [lane.d for lane in recording.lanes]
-    if any(band is None for band in bands):
-        return
-    middle = np.array([(band[0] + band[1]) / 2 for band in bands if band is not None] + [0.0])
-    half = np.repeat(recording.width / 2, np.diff(recording.start))
-    direction = np.repeat(recording.direction, np.diff(recording.start))
-    beside = blockwise(
-        lambda d, half, lane: (d - half - middle[lane]) / half, recording.d, half, recording.lane
-    )
-    for way in np.unique(recording.direction):
-        ours = (direction == way) & (recording.lane >= 0)
-        many = int(np.count_nonzero(recording.direction == way))
-        if many < FEWEST_VEHICLES or not ours.any():
-            continue
-        median = float(np.median(beside[ours]))
-        if abs(median) > OFF_CENTRE[0]:
-            side = "left" if median > 0 else "right"
-            rule = (
-                f"vehicles of direction {way} drive {abs(median):.2f} half widths {side} of the middle of "
-                "their lanes: is a position the upper-left corner of the box?"
-            )
-            row = int(np.argmax(ours & (np.abs(beside) > OFF_CENTRE[0])))
-            yield Implausible(rule, "d", row, many, many, "vehicles", abs(median) > OFF_CENTRE[1])
+
+    def __init__(self, lanes: tuple[Lane, ...]) -> None:
+        bands = [lane.d for lane in lanes if lane.d is not None]
+        self.straight = len(bands) == len(lanes)
+        self.middle = np.array([(right + left) / 2 for right, left in bands] + [0.0])
+        self.beside: dict[int, Median] = {}
+        self.rows: dict[int, int] = {}
+
+    def add(self, recording: Recording, before: int) -> None:
+        if not self.straight:
+            return
+        counts = np.diff(recording.start)
+        half, direction = np.repeat(recording.width / 2, counts), np.repeat(recording.direction, counts)
+        beside = blockwise(
+            lambda d, half, lane: (d - half - self.middle[lane]) / half, recording.d, half, recording.lane
+        )
+        for way in np.unique(recording.direction).tolist():
+            ours = (direction == way) & (recording.lane >= 0)
+            self.beside.setdefault(way, Median(MOST_SAMPLES)).add(beside[ours])
+            off = np.flatnonzero(ours & (np.abs(beside) > OFF_CENTRE[0]))
+            if len(off):
+                self.rows.setdefault(way, before + int(off[0]))
+
+    def doubts(self, vehicles: _Vehicles) -> Iterator[Implausible]:
+        for way, beside in sorted(self.beside.items()):
+            many = int(np.count_nonzero(vehicles.direction == way))
+            if many < FEWEST_VEHICLES or not beside.count:
+                continue
+            median = beside.value()
+            if abs(median) > OFF_CENTRE[0]:
+                side = "left" if median > 0 else "right"
+                rule = (
+                    f"vehicles of direction {way} drive {abs(median):.2f} half widths {side} of the middle "
+                    "of their lanes: is a position the upper-left corner of the box?"
+                )
+                refused = abs(median) > OFF_CENTRE[1]
+                yield Implausible(rule, "d", self.rows[way], many, many, "vehicles", refused)
+
+
+class Doubting:
+    """What a recording contradicts itself in, whose vehicles are added one after the other, each whole."""
+
+    def __init__(self, rate: int, lanes: tuple[Lane, ...]) -> None:
+        self.lanes = lanes
+        self.motion = [_Motion(rule) for rule in _RATES]
+        self.steps = _Steps(rate)
+        self.places = _Places(lanes)
+        self.vehicles: list[_Vehicles] = []
+        self.rows = 0
+
+    def add(self, recording: Recording) -> None:
+        """The vehicles that follow those that were added, in the order of the whole."""
+        if not len(recording.s):
+            return
+        for rule in self.motion:
+            rule.add(recording, self.rows)
+        self.steps.add(recording, self.rows)
+        self.places.add(recording, self.rows)
+        of = (recording.length, recording.width, recording.kind, recording.direction)
+        self.vehicles.append(_Vehicles(*of, recording.start[:-1] + self.rows))
+        self.rows += len(recording.s)
+
+    def doubts(self) -> list[Implausible]:
+        """Everything that was found, the gravest first."""
+        if not self.rows:
+            return []
+        names = _Vehicles.__dataclass_fields__
+        whole = _Vehicles(*(np.concatenate([getattr(x, name) for x in self.vehicles]) for name in names))
+        found = [doubt for rule in self.motion for doubt in rule.doubts()]
+        found += [*self.steps.doubts(), *_sizes(whole, self.lanes), *self.places.doubts(whole)]
+        return sorted(found, key=lambda doubt: not doubt.refused)

@@ -7,14 +7,15 @@ NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, say
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from roadproof.errors import InputError
 from roadproof.formats.noted import contradictions, nowhere
-from roadproof.formats.parquet import read_parquet
+from roadproof.formats.parquet import count_rows, parquet_pieces, read_parquet
 from roadproof.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
@@ -24,7 +25,8 @@ from roadproof.formats.plausible import (
 from roadproof.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
 from roadproof.formats.source import TRACK_FILES, Files, Format, beside, first_line, with_suffix
 from roadproof.formats.straight import StraightRoad, of_road, place
-from roadproof.formats.table import Kind, Table, read_table
+from roadproof.formats.table import Kind, Table, count_lines, read_pieces, read_table
+from roadproof.formats.windows import Divided
 from roadproof.signals import RECORDED, SIZES
 from roadproof.world.models import load_recorded_road
 
@@ -48,12 +50,28 @@ def read_columns(path: Path) -> Table:
     """The columns of a file, with ``kind`` and own signals where it has them. Raises ``InputError``."""
     if path.suffix == ".parquet":
         return read_parquet(path, _KINDS, {"kind": "text"}, others="list")
+    return read_table(path, *_header_of(path))
+
+
+def column_pieces(path: Path) -> Iterator[Table]:
+    """The same in pieces, of which one at a time is in memory. Raises ``InputError``."""
+    if path.suffix == ".parquet":
+        return parquet_pieces(path, _KINDS, {"kind": "text"}, others="list")
+    return read_pieces(path, *_header_of(path))
+
+
+def count_samples(path: Path) -> int:
+    """How many rows a file has. Raises ``InputError``."""
+    return count_rows(path) if path.suffix == ".parquet" else count_lines(path) - 1
+
+
+def _header_of(path: Path) -> tuple[tuple[str, ...], dict[str, Kind]]:
     names = tuple(first_line(path).split(","))
     more = names[len(HEADER) :] if names[: len(HEADER)] == HEADER else ()
     if len({*names}) < len(names) or not all(_NAME.fullmatch(name) for name in more):
         more = ()
     kinds: dict[str, Kind] = {name: "text" if name == "kind" else "list" for name in more}
-    return read_table(path, (*HEADER, *more), {**_KINDS, **kinds})
+    return (*HEADER, *more), {**_KINDS, **kinds}
 
 
 def own_columns(names: Iterable[str]) -> tuple[str, ...]:
@@ -67,19 +85,33 @@ def read_recording(path: Path) -> Recording:
     Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
     columns = read_columns(path)
+    return recording_of(columns, road_beside(path), path.stem)
+
+
+def road_beside(path: Path) -> StraightRoad:
+    """The road beside a file of samples. Raises ``InputError``."""
     road_file = path.with_name(f"{path.stem}{ROAD_ENDING}")
     if not road_file.is_file():
         raise InputError(f"{path}: {road_file.name} is missing beside it, which says where the lanes are")
-    road = of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
-    return recording_of(columns, road, path.stem)
+    return of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
 
 
 def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = ()) -> Recording:
     """The recording of columns called as in ``HEADER``, and ``kind``, on a road. Raises ``InputError``."""
-    table, ids, numbered = _by_vehicle(columns)
+    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
+    number, numbered = number_vehicles(names)
+    table, ids = by_vehicle(columns, number[index])
+    clock = _read_clock(table, ids)
+    recording = vehicles_of(table, ids, clock, road, name)
+    told = with_notes(recording, (*notes, *numbered, *clock.notes))
+    return with_notes(told, _check_plausible(table, recording))
+
+
+def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad, name: str) -> Recording:
+    """The recording of rows by vehicle, whose numbers are ``ids``, without notes. Raises ``InputError``."""
     first = np.flatnonzero(np.diff(ids, prepend=-1) != 0)
     start = np.append(first, table.rows)
-    rate, frames, begin = _frames(table, ids)
+    frames = _frames(table, ids, clock)
     _check_cells(table, start)
     counts = np.diff(start)
     kind = table["kind"].astype(np.str_) if "kind" in table.columns else np.full(table.rows, "Car")
@@ -87,9 +119,9 @@ def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str
     placed = place(
         road, np.full(table.rows, DIRECTION), *(table[x] for x in ("s", "d")), *(table[x] for x in SIZES)
     )
-    recording = Recording(
+    return Recording(
         name=name,
-        rate=rate,
+        rate=clock.rate,
         lanes=road.lanes,
         beside=road.beside,
         vehicle_id=ids[first],
@@ -110,48 +142,76 @@ def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str
         zones=placed.zones,
         lanelets=road.lanelets,
         inside=placed.inside,
-        notes=(*notes, *numbered, *begin),
         label=table[LABEL].astype(np.str_)[first] if LABEL in table.columns else np.zeros(0, np.str_),
         own={name: own_numbers(table[name].tolist()) for name in own_columns(table.columns)},
     )
-    return with_notes(recording, _check_plausible(table, recording))
 
 
-def _by_vehicle(table: Table) -> tuple[Table, Integers, tuple[str, ...]]:
-    """The rows by vehicle, in the order of the file, and the number of each row's vehicle."""
-    names, index = np.unique(table["vehicle"].astype(np.str_), return_inverse=True)
-    notes: tuple[str, ...] = ()
+def number_vehicles(names: npt.NDArray[np.str_]) -> tuple[Integers, tuple[str, ...]]:
+    """The numbers of vehicles, whose names come in order, and a note where these are no numbers."""
     if all(name.isdecimal() and name[0] != "0" and len(name) < 10 for name in names):
-        number = names.astype(np.int64)
-    else:
-        number = np.arange(1, len(names) + 1)
-        shown = ", ".join(f"{name} is {k}" for name, k in zip(names[:12], number, strict=False))
-        notes = (f"vehicles are numbered: {shown}{', …' if len(names) > 12 else ''}",)
-    ids: Integers = number[index]
+        return names.astype(np.int64), ()
+    number = np.arange(1, len(names) + 1)
+    shown = ", ".join(f"{name} is {k}" for name, k in zip(names[:12], number, strict=False))
+    return number, (f"vehicles are numbered: {shown}{', …' if len(names) > 12 else ''}",)
+
+
+def by_vehicle(table: Table, ids: Integers) -> tuple[Table, Integers]:
+    """The rows by vehicle, in the order of the file, and the number of each row's vehicle."""
     order = np.argsort(ids, kind="stable")
     columns = {name: values[order] for name, values in table.columns.items()}
-    return replace(table, columns=columns, places=order), ids[order], notes
+    places = order if table.places is None else table.places[order]
+    return replace(table, columns=columns, places=places), ids[order]
 
 
-def _frames(table: Table, ids: Integers) -> tuple[int, Integers, tuple[str, ...]]:
-    """Samples a second, the frame of each row, and a note on what frame 0 is where it is not time 0."""
+@dataclass(frozen=True)
+class Clock:
+    """``begin`` (s) is the time of frame 0, ``step`` (s) what times go on by, ``rate`` so many a second."""
+
+    begin: float
+    step: float
+    rate: int
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What frame 0 is, where it is not time 0."""
+        return (f"frame 0 is time {self.begin:g} s",) if self.begin else ()
+
+
+def _read_clock(table: Table, ids: Integers) -> Clock:
     time = table["time"]
     same = np.diff(ids, prepend=-1) == 0
     ahead = np.diff(time, prepend=0.0)
-    table.require(~same | (ahead > 0), "time", "the rows of a vehicle come in order of time, each time once")
-    if not same.any():
-        raise InputError(f"{table.path}: no vehicle has two samples; at least two are needed")
-    steps = ahead[same]
-    step = float(steps[steps < 1.2 * steps.min()].mean())  # gaps left out, rounded times evened out
+    table.require(~same | (ahead > 0), "time", ORDER)
+    steps, counts = np.unique(ahead[same], return_counts=True)
+    return clock_of(table.path, float(time.min()), steps, counts)
+
+
+ORDER = "the rows of a vehicle come in order of time, each time once"
+
+
+def clock_of(path: Path, begin: float, steps: Floats, counts: Integers) -> Clock:
+    """The clock by the ``steps`` between samples, each so often, in order. Raises ``InputError``."""
+    if not len(steps):
+        raise InputError(f"{path}: no vehicle has two samples; at least two are needed")
+    near = steps < 1.2 * steps[0]  # gaps left out, rounded times evened out
+    step = float((steps[near] * counts[near]).sum() / counts[near].sum())
     rate = round(1 / step)
     if not 1 <= rate <= LARGEST_RATE:
-        raise InputError(f"{table.path}: time goes on by {step:g} s; 1 to {LARGEST_RATE} samples a second")
-    frames: Integers = np.round((time - time.min()) * rate).astype(np.int64)
-    told = f"samples are {step:g} s apart, so times are whole multiples of 1/{rate} s"
-    off = np.abs(time - time.min() - frames / rate)
+        raise InputError(f"{path}: time goes on by {step:g} s; 1 to {LARGEST_RATE} samples a second")
+    return Clock(begin, step, rate)
+
+
+def _frames(table: Table, ids: Integers, clock: Clock) -> Integers:
+    """The frame of each row."""
+    time, rate = table["time"], clock.rate
+    same = np.diff(ids, prepend=-1) == 0
+    frames: Integers = np.round((time - clock.begin) * rate).astype(np.int64)
+    told = f"samples are {clock.step:g} s apart, so times are whole multiples of 1/{rate} s"
+    off = np.abs(time - clock.begin - frames / rate)
     table.require(off <= min(_ROUNDING, 0.1 / rate), "time", told)
     table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told} without gaps")
-    return rate, frames, (f"frame 0 is time {time.min():g} s",) if time.min() else ()
+    return frames
 
 
 def _check_cells(table: Table, start: Integers) -> None:
@@ -213,5 +273,11 @@ def _rate_at(files: Files, rate: int) -> str:
     return f"{files[-1]}, column time in steps of 1/{rate} s"
 
 
-CSV = Format("CSV", f"NAME.csv with the header {','.join(HEADER)}", _find_csv, _read, _rate_at)
-PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet, _read, _rate_at)
+def _divide(files: Files) -> Divided | None:
+    from roadproof.formats.large import divide_large  # it reads files of this format
+
+    return divide_large(files)
+
+
+CSV = Format("CSV", f"NAME.csv with the header {','.join(HEADER)}", _find_csv, _read, _rate_at, _divide)
+PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet, _read, _rate_at, _divide)

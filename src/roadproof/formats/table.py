@@ -29,6 +29,8 @@ else:
 
 Kind: TypeAlias = Literal["integer", "number", "text", "list"]
 """A list is text that may be empty."""
+PIECE = 1 << 25
+"""Bytes of a large file that are in memory at once."""
 Column: TypeAlias = npt.NDArray[Any]
 RULES: Mapping[Kind, str] = {
     "integer": "a whole number is needed",
@@ -96,11 +98,47 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
         _blame(path, content.all().partition(b"\n")[2], header, wanted)
         raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
     content.require_unchanged()
+    _require_finite(path, columns, wanted)
+    return Table(path, columns, rows)
+
+
+def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Iterator[Table]:
+    """As ``read_table``, in pieces of about PIECE bytes, of which one at a time is in memory."""
+    content = _Content.of(path)
+    names, _, _ = content.beginning().partition(b"\n")
+    _check_header(path, names, header)
+    _check_shape(content, len(header))
+    done, rest = 0, b""
+    for block in content.pieces(PIECE):
+        lines, rest = (rest + block).rpartition(b"\n")[0], (rest + block).rpartition(b"\n")[2]
+        body = lines.partition(b"\n")[2] if done == 0 else lines
+        rows = body.count(b"\n") + 1 if body else 0
+        if not rows:
+            rest = lines + b"\n" + rest if lines and done == 0 else rest
+            continue
+        body += b"\n"
+        columns = _read_fast(names + b"\n" + body, wanted, rows)
+        if columns is None:
+            _blame(path, body, header, wanted, done)
+            raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
+        _require_finite(path, columns, wanted, done)
+        yield Table(path, columns, rows, np.arange(done, done + rows))
+        done += rows
+    content.require_unchanged()
+
+
+def count_lines(path: Path) -> int:
+    """How many line breaks a file has."""
+    return sum(piece.count(b"\n") for piece in _Content.of(path).pieces())
+
+
+def _require_finite(
+    path: Path, columns: Mapping[str, Column], wanted: Mapping[str, Kind], before: int = 0
+) -> None:
     for name, kind in wanted.items():
         if kind == "number" and not np.isfinite(columns[name]).all():
             row = int(np.argmin(np.isfinite(columns[name])))
-            raise cell_error(path, row, name, columns[name][row], "a number must be finite")
-    return Table(path, columns, rows)
+            raise cell_error(path, before + row, name, columns[name][row], "a number must be finite")
 
 
 def read_named(path: Path, wanted: Mapping[str, Kind]) -> Table:
@@ -202,12 +240,12 @@ class _Content:
             raise InputError(f"{path}: the file is empty; get it again from its source")
         return found
 
-    def pieces(self) -> Iterator[bytes]:
-        """All of it, in pieces that fit the cache."""
+    def pieces(self, size: int = 1 << 18) -> Iterator[bytes]:
+        """All of it, in pieces that by default fit the cache."""
         with self.path.open("rb") if self.kept is None else io.BytesIO(self.kept) as file:
             if file.read(len(_MARK)) != _MARK or self.kept is not None:
                 file.seek(0)
-            while piece := file.read(1 << 18):
+            while piece := file.read(size):
                 yield piece
 
     def beginning(self) -> bytes:
@@ -311,10 +349,12 @@ def _read_fast(source: Path | bytes, wanted: Mapping[str, Kind], rows: int) -> d
     return {name: values.to_numpy() for name, values in full.items()}
 
 
-def _blame(path: Path, body: bytes, header: Sequence[str], wanted: Mapping[str, Kind]) -> None:
+def _blame(
+    path: Path, body: bytes, header: Sequence[str], wanted: Mapping[str, Kind], before: int = 0
+) -> None:
     """Read cell by cell and raise for the first one that is wrong; slow, and only after a failure."""
     places = [(header.index(name), name, kind) for name, kind in wanted.items()]
-    for row, line in enumerate(body.decode("utf-8", "replace").split("\n")[:-1]):
+    for row, line in enumerate(body.decode("utf-8", "replace").split("\n")[:-1], before):
         cells = line.rstrip("\r").split(",")
         if len(cells) != len(header):
             raise InputError(
