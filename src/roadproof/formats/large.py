@@ -119,6 +119,7 @@ class _Survey:
     """
 
     rows: int
+    names: list[str]
     index: Mapping[str, int]
     numbers: Integers
     counts: Integers
@@ -132,33 +133,43 @@ def _survey(path: Path) -> _Survey:
     steps: dict[float, int] = {}
     begin, rows = np.inf, 0
     for table in column_pieces(path):
-        names, index = np.unique(table["vehicle"].astype(np.str_), return_inverse=True)
+        names, index = _named(table)
         ordered, codes = by_vehicle(table, index)
         time = ordered["time"]
         first = np.flatnonzero(np.diff(codes, prepend=-1) != 0)
         before = np.concatenate(([np.nan], time[:-1]))
-        before[first] = [last.get(name, np.nan) for name in names.tolist()]
+        before[first] = [last.get(name, np.nan) for name in names]
         ahead = time - before
         ordered.require(np.isnan(before) | (ahead > 0), "time", ORDER)
         for step, count in zip(*np.unique(ahead[~np.isnan(before)], return_counts=True), strict=True):
             steps[float(step)] = steps.get(float(step), 0) + int(count)
         ends = np.append(first[1:], len(time)) - 1
-        for name, count, end in zip(names.tolist(), np.diff(np.append(first, len(time))), ends, strict=True):
+        for name, count, end in zip(names, np.diff(np.append(first, len(time))), ends, strict=True):
             counts[name] = counts.get(name, 0) + int(count)
             last[name] = float(time[end])
         begin, rows = min(begin, float(time.min())), rows + table.rows
-    names = np.array(sorted(counts))
-    numbers, notes = number_vehicles(names)
+    unordered = np.array(sorted(counts))
+    numbers, notes = number_vehicles(unordered)
     order = np.argsort(numbers, kind="stable")
+    known = [str(name) for name in unordered[order]]
     found = np.array(sorted(steps)), np.array([steps[x] for x in sorted(steps)], np.int64)
     return _Survey(
         rows,
-        {str(name): k for k, name in enumerate(names[order])},
+        known,
+        {name: k for k, name in enumerate(known)},
         numbers[order],
-        np.array([counts[str(name)] for name in names[order]]),
+        np.array([counts[name] for name in known]),
         clock_of(path, begin, *found),
         notes,
     )
+
+
+def _named(table: Table) -> tuple[list[str], Integers]:
+    """The names of the vehicles in some rows, in order, and the place of each row's among them."""
+    each = [str(name) for name in table["vehicle"].tolist()]
+    names = sorted({*each})
+    place = {name: k for k, name in enumerate(names)}
+    return names, np.fromiter(map(place.__getitem__, each), np.int64, len(each))
 
 
 def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
@@ -171,10 +182,12 @@ def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
         each.mkdir()
     for number, table in enumerate(column_pieces(path)):
         places = np.arange(table.rows) if table.places is None else table.places
-        names, index = np.unique(table["vehicle"].astype(np.str_), return_inverse=True)
-        where = group[[survey.index[name] for name in names.tolist()]][index]
+        names, index = _named(table)
+        vehicle = np.array([survey.index[name] for name in names])[index]
+        where = group[vehicle]
         columns = {name: pl.Series(name, values) for name, values in table.columns.items()}
-        frame = pl.DataFrame(columns).with_columns(pl.Series(_PLACE, places))
+        columns |= {"vehicle": pl.Series(vehicle), _PLACE: pl.Series(places)}
+        frame = pl.DataFrame(columns)
         for k in np.unique(where).tolist():
             frame.filter(pl.Series(where == k)).write_parquet(groups[k] / f"{number:06d}", compression="lz4")
     return groups
@@ -190,16 +203,18 @@ class _Reading:
     groups: list[Path]
 
     def table(self, number: int) -> tuple[Table, Integers]:
-        """The rows of a group by vehicle, and the number of each row's vehicle."""
+        """The rows of a group by vehicle, and the number of each row's vehicle.
+
+        The column ``vehicle`` has its place in the survey.
+        """
         pl = polars_module()
         frame = pl.concat(
             [pl.read_parquet(part, glob=False) for part in sorted(self.groups[number].iterdir())]
         )
         columns = {name: frame[name].to_numpy() for name in frame.columns}
         places = columns.pop(_PLACE)
-        names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
-        ids = self.survey.numbers[[self.survey.index[name] for name in names.tolist()]][index]
-        return by_vehicle(Table(self.path, columns, frame.height, places), ids)
+        table = Table(self.path, columns, frame.height, places)
+        return by_vehicle(table, self.survey.numbers[columns["vehicle"]])
 
     def recording(self, number: int) -> Recording:
         table, ids = self.table(number)
@@ -210,7 +225,11 @@ class _Reading:
         for number in range(len(self.groups)):
             table, _ = self.table(number)
             if row < table.rows:
-                return table.cell(row, column), str(table["vehicle"][row])
+                name = self.survey.names[int(table["vehicle"][row])]
+                value = name if column == "vehicle" else table[column][row]
+                assert table.places is not None
+                found = Table(self.path, {column: np.array([value])}, 1, table.places[row : row + 1])
+                return found.cell(0, column), name
             row -= table.rows
         raise IndexError(row)
 

@@ -10,7 +10,7 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.formats.table import RULES, Column, Kind, Table, cell_error, polars_module
 
-PIECE = 1_000_000
+PIECE = 250_000
 """Rows of a large file that are in memory at once."""
 
 

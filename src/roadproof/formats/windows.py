@@ -12,7 +12,7 @@ import numpy as np
 from roadproof.formats.recording import Bools, Integers, Recording
 from roadproof.world.road import Zone
 
-MOST_SAMPLES = 4_000_000
+MOST_SAMPLES = 1_000_000
 """A recording of more samples is looked at in windows of so many, where its format can be read in parts."""
 
 
