@@ -24,7 +24,8 @@ from roadproof.formats.source import RecordingSource
 from roadproof.formats.sources import copies_among, find_sources
 from roadproof.formats.windows import Divided
 from roadproof.hands import Hands
-from roadproof.workers import Lost, answers_of
+from roadproof.memory import keep_freed_memory
+from roadproof.workers import Lost, answers_of, is_worker
 
 
 @dataclass(frozen=True)
@@ -163,6 +164,8 @@ class _Job:
 
 def _evaluate(job: _Job) -> str | None:
     """Read, evaluate and save; why the recording cannot be used, where it is the files' fault."""
+    if is_worker():
+        keep_freed_memory()
     try:
         divided = job.source.divided()
     except InputError as error:

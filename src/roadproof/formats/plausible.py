@@ -127,12 +127,12 @@ class _Motion:
     factors: list[Floats] = field(default_factory=list)
     last: tuple[float, float] | None = None
 
-    def add(self, recording: Recording, before: int) -> None:
-        """``before``: how many rows there were already."""
+    def add(self, recording: Recording, before: int, windows: tuple[Integers, Integers]) -> None:
+        """``before``: how many rows there were already; ``windows``: the first and last rows of seconds."""
         signal, rate = getattr(recording, self.rule.signal), getattr(recording, self.rule.rate)
         total = _sums(rate, recording.rate, self.last)
         self.last = float(total[-1]), float(rate[-1])
-        begin, end = _seconds(recording, before)
+        begin, end = windows
         change, told = signal[end] - signal[begin], total[end] - total[begin]
         greater = np.maximum(np.abs(change), np.abs(told))
         moved = greater > self.rule.least
@@ -321,6 +321,7 @@ class _Places:
         self.middle = np.array([(right + left) / 2 for right, left in bands] + [0.0])
         self.beside: dict[int, Median] = {}
         self.rows: dict[int, int] = {}
+        self.off: dict[int, Integers] = {}
 
     def add(self, recording: Recording, before: int) -> None:
         if not self.straight:
@@ -333,15 +334,20 @@ class _Places:
         for way in np.unique(recording.direction).tolist():
             ours = (direction == way) & (recording.lane >= 0)
             self.beside.setdefault(way, Median(MOST_SAMPLES)).add(beside[ours])
-            off = np.flatnonzero(ours & (np.abs(beside) > OFF_CENTRE[0]))
-            if len(off):
-                self.rows.setdefault(way, before + int(off[0]))
+            left, right = ours & (beside > OFF_CENTRE[0]), ours & (beside < -OFF_CENTRE[0])
+            off = left | right
+            if off.any():
+                self.rows.setdefault(way, before + int(np.argmax(off)))
+            counts = np.array([np.count_nonzero(left), np.count_nonzero(right)])
+            self.off[way] = self.off.get(way, np.zeros(2, np.int64)) + counts
 
     def doubts(self, vehicles: _Vehicles) -> Iterator[Implausible]:
         for way, beside in sorted(self.beside.items()):
             many = int(np.count_nonzero(vehicles.direction == way))
             if many < FEWEST_VEHICLES or not beside.count:
                 continue
+            if 2 * self.off[way].max() + 2 < beside.count:
+                continue  # more than half are in the middle, and so is the median
             median = beside.value()
             if abs(median) > OFF_CENTRE[0]:
                 side = "left" if median > 0 else "right"
@@ -368,8 +374,9 @@ class Doubting:
         """The vehicles that follow those that were added, in the order of the whole."""
         if not len(recording.s):
             return
+        windows = _seconds(recording, self.rows)
         for rule in self.motion:
-            rule.add(recording, self.rows)
+            rule.add(recording, self.rows, windows)
         self.steps.add(recording, self.rows)
         self.places.add(recording, self.rows)
         of = (recording.length, recording.width, recording.kind, recording.direction)
