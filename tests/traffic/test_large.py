@@ -12,7 +12,7 @@ from roadproof.cli.main import main
 from roadproof.errors import InputError
 from roadproof.evaluation.evaluate import evaluate_recording, evaluate_windows
 from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats import large, plausible, windows
+from roadproof.formats import large, plausible, table, windows
 from roadproof.formats.converted import same_recording
 from roadproof.formats.median import Median
 from roadproof.formats.recording import Recording
@@ -172,6 +172,23 @@ def test_cells_that_are_missing_or_not_finite_are_named(
         expected = answer(path)
         assert "row 5002, column s" in expected
         assert in_windows(path, monkeypatch) == expected
+
+
+@pytest.mark.parametrize("most", [3_000, 1_000_000])
+def test_a_file_that_changes_while_it_is_read_is_refused(
+    frame: pl.DataFrame, most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, honest = put(frame, tmp_path, "csv"), table._read_fast
+
+    def disturbed(*given: object) -> object:
+        with path.open("ab") as file:
+            file.write(b" ")
+        return honest(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(windows, "MOST_SAMPLES", most)
+    monkeypatch.setattr(table, "_read_fast", disturbed)
+    with pytest.raises(InputError, match="changed while it was read"):
+        find_source(path).divided()
 
 
 def test_rows_out_of_order_are_refused(

@@ -1,5 +1,6 @@
 """Pairs, the pre-filter and triples against brute force over all vehicles and frames."""
 
+from dataclasses import replace
 from itertools import combinations, permutations
 
 import numpy as np
@@ -8,7 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadproof.formats import pairs as module
-from roadproof.formats.pairs import Pairs, Reach, common_pairs, near_pairs, triples_of
+from roadproof.formats.pairs import (
+    Pairs,
+    Reach,
+    all_moments,
+    common_pairs,
+    near_moments,
+    near_pairs,
+    triples_of,
+)
 from roadproof.formats.recording import Recording
 from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
@@ -97,6 +106,29 @@ def test_pairs_and_filter_against_brute_force(r: Recording, seed: int) -> None:
         for p, frames in expected.items():
             if any(violates(r, *p, f, reach, reading) for f in frames):
                 assert p in near
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(recordings(), st.integers(1, 30))
+def test_moments_against_brute_force(r: Recording, rate: int) -> None:
+    """Every violating frame of every pair is a near moment, once, in order, with the right rows."""
+    r = replace(r, rate=rate)
+    pairs = common_pairs(r, np.ones(r.vehicles, bool))
+    for samples in (7, 10_000):
+        found = list(near_moments(r, pairs, REACH, samples))
+        pair, frame = (np.concatenate([[], *(getattr(x, y) for x in found)]) for y in ("pair", "frame"))
+        moments = list(zip(pair.astype(int).tolist(), frame.astype(int).tolist(), strict=True))
+        assert moments == sorted(set(moments))
+        for part in found:
+            for rows, vehicle in ((part.first, pairs.first), (part.second, pairs.second)):
+                assert np.array_equal(r.row_vehicle[rows], vehicle[part.pair])
+                assert np.array_equal(r.row_frame[rows], part.frame)
+        for p, (one, other) in enumerate(zip(pairs.first.tolist(), pairs.second.tolist(), strict=True)):
+            for f in range(int(pairs.low[p]), int(pairs.high[p]) + 1):
+                if violates(r, one, other, f, REACH):
+                    assert (p, f) in moments
+        every = sum(len(x) for x in all_moments(r, pairs, samples))
+        assert every == pairs.samples.sum()
 
 
 def test_simulated_traffic_loses_none() -> None:

@@ -24,7 +24,7 @@ from roadproof.formats import windows
 from roadproof.formats.recording import Integers, Lane, Recording, Slack, offsets, zones_in
 from roadproof.formats.samples import CONVERTED
 from roadproof.formats.source import Files, Format, RecordingSource, with_suffix
-from roadproof.formats.table import Column, Frame, polars_module, stamp_of
+from roadproof.formats.table import Column, Frame, polars_module, require_unchanged, stamp_of
 from roadproof.formats.windows import Divided, Window, divide
 from roadproof.signals import RECORDED
 from roadproof.world.road import Lanelet
@@ -139,10 +139,7 @@ def divide_converted(head: Path) -> Divided | None:
             with _as_written(head):
                 vehicles = np.flatnonzero(there)
                 recording = _recording(_of_vehicles(said, vehicles), _read_rows(table, start, vehicles))
-                if stamp_of(table) != stamp:
-                    raise InputError(
-                        f"{table}: the file changed while it was read; ask again when it is whole"
-                    )
+                require_unchanged(table, stamp)
             yield Window(recording, new[vehicles])
 
     return Divided(int(said["rate"]), zones_in(zones), read)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from roadproof.errors import InputError
 from roadproof.files import write_json
 from roadproof.formats import windows
 from roadproof.formats.converted import (
@@ -39,7 +40,7 @@ from roadproof.formats.samples import (
 )
 from roadproof.formats.source import Files
 from roadproof.formats.straight import StraightRoad
-from roadproof.formats.table import Table, polars_module
+from roadproof.formats.table import Table, polars_module, require_unchanged, stamp_of
 from roadproof.formats.windows import Divided, Window
 
 _LEAST = 24
@@ -80,8 +81,11 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str)
     """
     road = road_beside(path)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".") as temporary:
+        stamp = stamp_of(path)
         survey = _survey(path)
+        require_unchanged(path, stamp)
         groups = _divide_rows(path, survey, Path(temporary))
+        require_unchanged(path, stamp)
         read = _Reading(path, road, survey, groups)
         doubting = Doubting(survey.clock.rate, road.lanes)
         heads, placed, parts = [], [], []
@@ -183,6 +187,8 @@ def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
     for number, table in enumerate(column_pieces(path)):
         places = np.arange(table.rows) if table.places is None else table.places
         names, index = _named(table)
+        if not survey.index.keys() >= {*names}:
+            raise InputError(f"{path}: the file changed while it was read; ask again when it is whole")
         vehicle = np.array([survey.index[name] for name in names])[index]
         where = group[vehicle]
         columns = {name: pl.Series(name, values) for name, values in table.columns.items()}

@@ -94,10 +94,10 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
     _check_header(path, beginning.partition(b"\n")[0], header)
     rows = _check_shape(content, len(header))
     columns = _read_fast(content.source(), wanted, rows)
+    content.require_unchanged()
     if columns is None:
         _blame(path, content.all().partition(b"\n")[2], header, wanted)
         raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
-    content.require_unchanged()
     _require_finite(path, columns, wanted)
     return Table(path, columns, rows)
 
@@ -119,6 +119,7 @@ def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -
         body += b"\n"
         columns = _read_fast(names + b"\n" + body, wanted, rows)
         if columns is None:
+            content.require_unchanged()
             _blame(path, body, header, wanted, done)
             raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
         _require_finite(path, columns, wanted, done)
@@ -273,13 +274,21 @@ class _Content:
 
     def require_unchanged(self) -> None:
         """Raise ``InputError`` where the file was written to since it was first looked at."""
-        if stamp_of(self.path) != self.stamp:
-            raise InputError(f"{self.path}: the file changed while it was read; ask again when it is whole")
+        require_unchanged(self.path, self.stamp)
+
+
+def require_unchanged(path: Path, stamp: tuple[int, ...]) -> None:
+    """Raise ``InputError`` where a file is not what it was when ``stamp_of`` it was asked for."""
+    if stamp_of(path) != stamp:
+        raise InputError(f"{path}: the file changed while it was read; ask again when it is whole")
 
 
 def stamp_of(path: Path) -> tuple[int, ...]:
-    """What changes when a file does."""
-    found = path.stat()
+    """What changes when a file does; nothing of one that is gone."""
+    try:
+        found = path.stat()
+    except OSError:
+        return ()
     return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
 
 
