@@ -1,6 +1,7 @@
 """Processes for many jobs: they end when their parent ends, and one that dies costs at most its own job."""
 
 import contextlib
+import gc
 import multiprocessing
 import os
 import signal
@@ -173,6 +174,7 @@ def _serve(connection: Any, function: Callable[[Any], object], parent: int, hear
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
     die_with(parent)
+    gc.freeze()  # what was there before the fork stays, and is not walked through at each collection
     while True:
         try:
             job = connection.recv()

@@ -123,10 +123,15 @@ def test_a_proof_of_one_reading_only_is_noticed(kept: str, monkeypatch: pytest.M
     assert not is_proved_of_every_reading(decided(5, 6))
 
 
+def test_a_proof_of_one_reading_is_not_taken_for_that_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    plant(monkeypatch, overlap._Deciding, "decide", "proofs[0] if len(proofs) == 1 else None", "proofs[0]")
+    assert not is_proved_of_every_reading(decided(5, 6))
+
+
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [
-        ("x for x in queries if", "x for x in queries[:1] if"),
+        ("zip(queries, proofs, strict=True) if", "zip(queries[:1], proofs) if"),
         ("if not left:", "if len(left) < len(queries):"),
     ],
 )

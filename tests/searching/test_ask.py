@@ -8,6 +8,7 @@ import pytest
 from asking import posed, search_for
 from roadproof.effort import Effort, Late
 from roadproof.errors import UsageError
+from roadproof.proving.prover import Hunch, prove
 from roadproof.searching import ask, impossible
 from roadproof.searching.ask import answer
 from roadproof.searching.grid import make_grid
@@ -82,6 +83,37 @@ def test_a_core_costs_no_more_than_is_left(monkeypatch):
     assert found.minimal
     assert asked[0] == 5
     assert all(units <= impossible.SHORTER for units in asked[1:])
+
+
+@pytest.mark.parametrize("hunch", [True, False])
+def test_a_core_does_not_rest_on_hunches(hunch, monkeypatch):
+    clash = "v_lon(SV) > 3 m/s and F v_lon(POV) > 3 m/s and v_lon(SV) < 2 m/s and d(SV) > 1 m"
+    query = read_claim(LIBRARY.select(), clash)
+    right = impossible.show_impossible(LIBRARY.select(), query, Effort(5))
+    assert right.told == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
+    monkeypatch.setattr(impossible.Hunch, "has_proof", lambda self, claim, effort: (hunch, 0.0))
+    found = impossible.show_impossible(LIBRARY.select(), query, Effort(5))
+    assert found.certificate == right.certificate
+    assert found.told == (right.told if hunch else tuple(clash.split(" and ")))
+
+
+def test_what_is_learnt_of_one_claim_does_not_change_the_next():
+    """Claims with atoms of the same names, or of other vehicles, one after the other."""
+    specification = LIBRARY.select()
+    texts = [
+        "not (v_lon(SV) > 3 m/s and v_lon(SV) < 2 m/s)",
+        "not (v_lon(SV) > 3 m/s and v_lon(SV) < 4 m/s)",
+        "not (v_lon(SV) > 3 m/s and v_lon(SV) < 2 m/s and F v_lon(POV) > 3 m/s)",
+        "given A: vehicle: not (s(A) > 3 m and s(A) < 3 m)",
+        "not (danger(SV, POV) and not danger(POV, SV))",
+        "not (danger(SV, POV) and initSafe(SV, POV))",
+        "not danger(SV, POV)",
+    ]
+    together = Hunch(specification)
+    for text in texts:
+        claim = read_claim(specification, text)
+        alone = prove(specification, claim, Effort(5)).holds
+        assert (together.has_proof(claim, Effort(5))[0], text) == (alone, text)
 
 
 def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatch):

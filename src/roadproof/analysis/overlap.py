@@ -20,8 +20,9 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
+from roadproof.proving.prover import Result
 from roadproof.searching.ask import ask
-from roadproof.searching.impossible import parts, show_impossible, told_parts
+from roadproof.searching.impossible import explain, parts, told_parts
 from roadproof.spec.compose import both, either, negation
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.query import Query
@@ -220,10 +221,13 @@ class _Deciding:
     def decide(self, pair: Pair) -> PairVerdict:
         """Proofs first, which are quick where they exist; then drives for what is left."""
         queries = self.queries(pair)
-        left = [x for x in queries if not self.basis.proof_of(negation(x)).holds]
+        proofs = [self.basis.proof_of(negation(x)) for x in queries]
+        left = [x for x, proof in zip(queries, proofs, strict=True) if not proof.holds]
         if not left:
-            cores = tuple(self._core(x) for x in queries)
-            return self._impossible(pair, queries, cores) or _doubt(pair, queries, "a proof was lost")
+            cores = tuple(self._core(x, proof) for x, proof in zip(queries, proofs, strict=True))
+            known = proofs[0] if len(proofs) == 1 else None
+            shown = self._impossible(pair, queries, cores, known)
+            return shown or _doubt(pair, queries, "a proof was lost")
         for query in left:
             outcome = ask(self.basis.search(query))
             if outcome.drives:
@@ -243,13 +247,15 @@ class _Deciding:
         return None if shown is None else PairVerdict(*pair, Verdict.WITNESSED, chosen, drive=shown)
 
     def _impossible(
-        self, pair: Pair, queries: Sequence[Query], cores: tuple[Core, ...]
+        self, pair: Pair, queries: Sequence[Query], cores: tuple[Core, ...], known: Result | None = None
     ) -> PairVerdict | None:
+        """``known``: a proof of all that is claimed, where there is one."""
         claim = both(*(negation(x) for x in queries))
-        result = self.basis.proof_of(claim, 10 * self.basis.proof, f"overlap-{pair[0]}-{pair[1]}")
+        result = known or self.basis.proof_of(claim, 10 * self.basis.proof)
         if not result.holds or result.certificate is None:
             return None
-        return PairVerdict(*pair, Verdict.IMPOSSIBLE, claim, "", cores, result.certificate)
+        certificate = replace(result.certificate, property=f"overlap-{pair[0]}-{pair[1]}")
+        return PairVerdict(*pair, Verdict.IMPOSSIBLE, claim, "", cores, certificate)
 
     def _explain(self, pair: Pair, queries: Sequence[Query], left: Sequence[Query]) -> PairVerdict:
         """No drive was found: say within which limits there is none, or prove it after all."""
@@ -269,9 +275,11 @@ class _Deciding:
         verdict = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
         return PairVerdict(*pair, verdict, either(*left), "; ".join(dict.fromkeys(reasons)))
 
-    def _core(self, query: Query) -> Core:
+    def _core(self, query: Query, proof: Result | None = None) -> Core:
+        """``proof``: that ``query`` never holds, where it is known."""
         effort = self.basis.effort.of(10 * self.basis.proof)
-        shown = show_impossible(self.basis.specification, query, effort)
+        proof = proof or self.basis.proof_of(negation(query), 10 * self.basis.proof)
+        shown = explain(self.basis.specification, query, proof, effort)
         return Core(query, () if shown is None else shown.core)
 
     def _core_like(self, query: Query, core: Core) -> Core:

@@ -24,6 +24,7 @@ from roadproof.report import redundancy as redundancy_report
 from roadproof.spec.scenarios import numbers_of
 from roadproof.spec.values import Number
 from roadproof.spec.words import Called, called, called_in
+from roadproof.study import pool
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
@@ -128,6 +129,10 @@ def overlap(
     pairs = pairs_of(basis, home.among(among))
     if not pairs:
         raise UsageError(f"--among {among} leaves no pair: name at least two scenarios")
+    if pool.are_forked(pairs, jobs):
+        from roadproof.solve.milp import prepare
+
+        prepare()  # what every worker needs is imported once, before they are forked
     return Overlaps.asked(Overlap(basis, pairs, Meeting(lanes, roles, start)), out, jobs, progress, say)
 
 

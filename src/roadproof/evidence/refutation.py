@@ -7,6 +7,7 @@ instant, lanes and lanelets as for drives, and time by the exact judge.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, Literal, assert_never
 
 from roadproof.errors import InputError, RoadproofError
@@ -17,6 +18,7 @@ from roadproof.judge.truth import from_switches
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
+from roadproof.logic.node import once
 from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
 from roadproof.signals import FIXED
 from roadproof.spec.bind import bind
@@ -138,23 +140,34 @@ def _with_variables(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
 
 
 def _holds(part: f.Compare, instant: Instant) -> bool:
-    """Whether a comparison holds in a state, evaluated exactly."""
+    """Whether a comparison holds in a state."""
+    names = sorted(dict.fromkeys(_named(part).values()))
+    return _holds_at(part, tuple((name, instant.values[name]) for name in names if name in instant.values))
+
+
+@lru_cache(maxsize=10_000)
+def _holds_at(part: f.Compare, known: tuple[tuple[str, Fraction], ...]) -> bool:
+    """Whether a comparison holds where what it speaks of has these values, evaluated exactly."""
+    named, values = _named(part), dict(known)
+    signals: dict[t.Signal | t.Own, tuple[tuple[Fraction, Fraction], ...]] = {
+        leaf: ((Fraction(0), values[name]),)
+        for leaf, name in named.items()
+        if isinstance(leaf, t.Signal | t.Own) and name in values
+    }
+    sizes = {
+        leaf: values[name] for leaf, name in named.items() if isinstance(leaf, t.Size) and name in values
+    }
+    return judge(part, AbstractSignals(signals, sizes)).holds
+
+
+@once
+def _named(part: f.Compare) -> Mapping[t.Leaf, str]:
+    """What a state calls the signals and sizes of a comparison."""
     found = {leaf for side in terms_of(part) for leaf in t.leaves(side)}
     named: dict[t.Leaf, str] = {
         leaf: f"{leaf.name}({leaf.vehicle})" for leaf in found if isinstance(leaf, t.Signal | t.Size)
     }
-    named |= {leaf: leaf.told for leaf in found if isinstance(leaf, t.Own)}
-    signals: dict[t.Signal | t.Own, tuple[tuple[Fraction, Fraction], ...]] = {
-        leaf: ((Fraction(0), instant.values[name]),)
-        for leaf, name in named.items()
-        if isinstance(leaf, t.Signal | t.Own) and name in instant.values
-    }
-    sizes = {
-        leaf: instant.values[name]
-        for leaf, name in named.items()
-        if isinstance(leaf, t.Size) and name in instant.values
-    }
-    return judge(part, AbstractSignals(signals, sizes)).holds
+    return named | {leaf: leaf.told for leaf in found if isinstance(leaf, t.Own)}
 
 
 def _spread(times: Sequence[Fraction], values: Sequence[bool], held: Held) -> TruthSet:

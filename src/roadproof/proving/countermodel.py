@@ -51,13 +51,13 @@ def realise(
         for held in HELD:
             found = Countermodel(plain, parameters, held, road)
             if fault_of(found, query.formula, bounds) is None:
-                return _shown(found, atoms)
+                return found
         if layout is None:
             break
     return None
 
 
-def _shown(found: Countermodel, atoms: Atoms) -> Countermodel:
+def with_truths(found: Countermodel, atoms: Atoms) -> Countermodel:
     """The countermodel with the truth of every predicate that its road and values decide."""
     truths = {}
     for name, meaning in atoms.named.items():

@@ -17,10 +17,10 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import with_values
-from roadproof.proving.countermodel import realise
+from roadproof.proving.countermodel import realise, with_truths
 from roadproof.proving.roster import Roster, roster_for
 from roadproof.proving.search import GaveUp, InstanceSearch, Model, Proof
-from roadproof.proving.states import StateChecker
+from roadproof.proving.states import Learnt, StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import Specification, is_within
@@ -84,16 +84,14 @@ def prove(
     """
     begun = time.monotonic()
     meter = (effort or Effort()).meter()
-    atoms = Atoms()
     here = values_said(specification, assumed.said)
     demanded = _demanded(specification, query, here)
     pinned = value_texts(specification, demanded)
-    premise, claim = goal_of(specification, query, assumed, atoms, pinned)
     values = {**here, **demanded}
-    defaults = {**default_values(specification.library), **values}
-    bounds = specification.library.bounds
-    states = StateChecker(atoms, bounds, defaults)
-    attempt = _Attempt(query, atoms, bounds, defaults, states, meter, is_moving(assumed.said))
+    states = _states(specification, values)
+    atoms = states.atoms
+    premise, claim = goal_of(specification, query, assumed, atoms, pinned)
+    attempt = _Attempt(query, states, meter, is_moving(assumed.said))
 
     def result(
         verdict: Verdict,
@@ -109,7 +107,7 @@ def prove(
     for goal in conjuncts(claim):
         found = attempt.decide(f.implication(premise, goal), names)
         if isinstance(found, Countermodel):
-            return result(Verdict.REFUTED, "", None, found)
+            return result(Verdict.REFUTED, "", None, with_truths(found, atoms))
         if isinstance(found, GaveUp):
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
@@ -135,6 +133,38 @@ def prove(
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
     return result(Verdict.PROVED, "", certificate)
+
+
+class Hunch:
+    """Whether claims that are much alike have proofs, found quickly: no certificate is made of them.
+
+    What is learnt of states for one claim serves the next. Nobody may rest on the answer: it says for which
+    claim ``prove`` is worth the work.
+    """
+
+    def __init__(self, specification: Specification) -> None:
+        self.specification = specification
+        self.learnt: dict[tuple[str, ...], Learnt] = {}
+
+    def has_proof(self, query: Query, effort: Effort) -> tuple[bool, float]:
+        """Whether a proof of ``query`` is found, and the units of work that were spent. Raises ``Late``."""
+        meter = effort.meter()
+        values = _demanded(self.specification, query, {})
+        pinned = value_texts(self.specification, values)
+        states = _states(self.specification, values, self.learnt.setdefault(pinned, Learnt()))
+        premise, claim = goal_of(self.specification, query, NOTHING, states.atoms, pinned)
+        attempt = _Attempt(query, states, meter, False)
+        names: dict[Site, str] = {}
+        goals = (f.implication(premise, goal) for goal in conjuncts(claim))
+        return all(isinstance(attempt.decide(goal, names), Proof) for goal in goals), meter.spent
+
+
+def _states(
+    specification: Specification, values: Mapping[str, Fraction], learnt: Learnt | None = None
+) -> StateChecker:
+    """Which states there are where parameters have ``values``, for a claim of its own atoms."""
+    library = specification.library
+    return StateChecker(Atoms(), library.bounds, {**default_values(library), **values}, learnt)
 
 
 def _demanded(
@@ -167,12 +197,17 @@ def _premise(formula: Formula) -> Formula | None:
 @dataclass(frozen=True)
 class _Attempt:
     query: Query
-    atoms: Atoms
-    bounds: Mapping[str, str]
-    defaults: Mapping[str, Fraction]
     states: StateChecker
     meter: Meter
     moving: bool
+
+    @property
+    def atoms(self) -> Atoms:
+        return self.states.atoms
+
+    @property
+    def bounds(self) -> Mapping[str, str]:
+        return self.states.bounds
 
     def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
         """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
@@ -206,7 +241,7 @@ class _Attempt:
         return found
 
     def _realised(self, found: Model) -> Countermodel | None:
-        return realise(self.query, self.atoms, found, self.defaults, self.bounds)
+        return realise(self.query, self.atoms, found, self.states.defaults, self.bounds)
 
     def never_holds(self, premise: Formula, condition: Formula) -> bool:
         """Whether it is proved quickly that ``condition`` is false, its query derived apart, too."""

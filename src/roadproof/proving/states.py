@@ -7,6 +7,7 @@ combination comes back as a clause that holds at every instant.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
@@ -35,43 +36,66 @@ TYPICAL_SIZE: Mapping[t.SizeName, Fraction] = {
 }
 
 
-class StateChecker:
-    """States and clauses found so far; one for all searches about a claim."""
+@dataclass(frozen=True)
+class Learnt:
+    """What is known of states, by what their atoms mean, whatever these are called.
 
-    def __init__(self, atoms: Atoms, bounds: Mapping[str, str], defaults: Mapping[str, Fraction]) -> None:
+    ``clauses`` hold at every instant, ``known`` are states with the truth values that were asked for, and
+    ``settled`` are queries of clauses that z3 has answered unsat.
+    """
+
+    clauses: list[tuple[tuple[Formula, bool], ...]] = field(default_factory=list)
+    known: dict[frozenset[tuple[Formula, bool]], Mapping[str, Fraction | bool]] = field(default_factory=dict)
+    settled: set[str] = field(default_factory=set)
+
+
+class StateChecker:
+    """One for all searches about a claim. Claims may share ``learnt``: their bounds and defaults agree."""
+
+    def __init__(
+        self,
+        atoms: Atoms,
+        bounds: Mapping[str, str],
+        defaults: Mapping[str, Fraction],
+        learnt: Learnt | None = None,
+    ) -> None:
         self.atoms = atoms
         self.bounds = bounds
         self.defaults = defaults
-        self.settled: set[str] = set()
-        self.clauses: list[Clause] = []
-        self.known: dict[frozenset[tuple[str, bool]], Mapping[str, Fraction | bool]] = {}
+        self.learnt = learnt or Learnt()
+
+    @property
+    def settled(self) -> set[str]:
+        return self.learnt.settled
 
     def refute(self, wanted: Mapping[str, bool], meter: Meter) -> Clause | str | None:
         """None where a state with these truth values exists; else a clause against it, or why not known."""
-        key = frozenset(wanted.items())
-        if key in self.known:
+        key = self._key(wanted)
+        if key in self.learnt.known:
             return None
-        for clause in self.clauses:
-            if all(wanted.get(name) is (not positive) for name, positive in clause):
-                return clause
+        named = {self.atoms.meaning(name): name for name in wanted}
+        for learnt in self.learnt.clauses:
+            if all((meaning, not positive) in key for meaning, positive in learnt):
+                return tuple((named[meaning], positive) for meaning, positive in learnt)
         literals = list(wanted.items())
         for assumed in ASSUMED:
             question = _Question(self, wanted, assumed)
             answer = question.session.check(list(question.switches), meter.part(QUICK))
             if answer == "sat":
-                self.known[key] = question.values()
+                self.learnt.known[key] = question.values()
                 return None
             if answer == "unsat":
                 literals = question.core()
             clause = tuple((name, not positive) for name, positive in literals)
             if self._always_holds(clause, meter):
-                self.clauses.append(self._shrink(clause, meter))
-                return self.clauses[-1]
+                clause = self._shrink(clause, meter)
+                self.learnt.clauses.append(tuple((self.atoms.meaning(name), p) for name, p in clause))
+                return clause
         symbols = _Question(self, wanted, "nothing").symbols
         for query in derive_lemma_queries(self.atoms, [(n, not p) for n, p in wanted.items()], self.bounds):
             found = solve(query, symbols, meter.part(CASE))
             if found is not None:
-                self.known[key] = found
+                self.learnt.known[key] = found
                 return None
         return "z3 gave no answer about a state: " + ", ".join(
             name if positive else f"not {name}" for name, positive in literals
@@ -99,7 +123,10 @@ class StateChecker:
 
         Numbers that are not rational are left out.
         """
-        return self.known[frozenset(wanted.items())]
+        return self.learnt.known[self._key(wanted)]
+
+    def _key(self, wanted: Mapping[str, bool]) -> frozenset[tuple[Formula, bool]]:
+        return frozenset((self.atoms.meaning(name), true) for name, true in wanted.items())
 
 
 class _Question:

@@ -1,6 +1,6 @@
 """No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,7 +10,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.proving.prover import prove
+from roadproof.proving.prover import Hunch, Result, prove
 from roadproof.spec.compose import negation, of_parts
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
@@ -42,11 +42,17 @@ class Impossibility:
 
 def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
     """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``Late``."""
-    whole = prove(specification, negation(query), effort)
-    if not whole.holds or whole.certificate is None:
+    return explain(specification, query, prove(specification, negation(query), effort), effort)
+
+
+def explain(
+    specification: Specification, query: Query, proof: Result, effort: Effort
+) -> Impossibility | None:
+    """As ``show_impossible``, where the ``proof`` that ``query`` never holds is known already."""
+    if not proof.holds or proof.certificate is None:
         return None
-    core, minimal = _core(specification, query, effort.of(effort.units - whole.work))
-    return Impossibility(core, minimal, whole.certificate)
+    core, minimal = _core(specification, query, effort.of(effort.units - proof.work))
+    return Impossibility(core, minimal, proof.certificate)
 
 
 def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
@@ -55,18 +61,38 @@ def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
 
 
 def _core(specification: Specification, query: Query, effort: Effort) -> tuple[tuple[Formula, ...], bool]:
-    """Leave out one part after the other where the rest still clashes."""
-    kept = tuple(dict.fromkeys(parts(query.formula)))
+    """Leave out one part after the other where the rest still clashes.
+
+    Each step goes by a hunch, and what is left is proved; where that fails, each step is proved instead.
+    """
+    whole = tuple(dict.fromkeys(parts(query.formula)))
+    kept, minimal = _shortened(query, whole, effort, Hunch(specification).has_proof)
+
+    def is_proved(claim: Query, most: Effort) -> tuple[bool, float]:
+        found = prove(specification, claim, most)
+        return found.holds, found.work
+
+    if kept == whole or is_proved(negation(of_parts(query, kept)), effort.of(SHORTER))[0]:
+        return kept, minimal
+    return _shortened(query, whole, effort, is_proved)
+
+
+def _shortened(
+    query: Query,
+    kept: tuple[Formula, ...],
+    effort: Effort,
+    holds: Callable[[Query, Effort], tuple[bool, float]],
+) -> tuple[tuple[Formula, ...], bool]:
+    """The parts that are left, and whether each was tried; ``holds`` says also what the answer cost."""
     for part in kept:
         rest = tuple(p for p in kept if p != part)
         if effort.units <= 0:
             return kept, False
         if not rest:
             continue
-        claim = negation(of_parts(query, rest))
-        found = prove(specification, claim, effort.of(min(effort.units, SHORTER)))
-        effort = effort.of(effort.units - found.work)
-        if found.holds:
+        clashes, work = holds(negation(of_parts(query, rest)), effort.of(min(effort.units, SHORTER)))
+        effort = effort.of(effort.units - work)
+        if clashes:
             kept = rest
     return kept, True
 

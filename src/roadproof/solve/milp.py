@@ -5,6 +5,7 @@ part that is not chosen, so no condition is needed in the other direction. Each 
 its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth`` only.
 """
 
+import gc
 import math
 import sys
 import warnings
@@ -69,6 +70,9 @@ SOLVERS: Mapping[str, SolverFacts] = {
             "time_limit": limits.seconds,
             "mip_rel_gap": limits.gap,
             "mip_heuristic_effort": 0.3,  # we ask for any solution, so heuristics are most of the work
+            # Both solve the root again, which takes longer than the tree below it: for 72 scenarios a third.
+            "mip_heuristic_run_rens": False,
+            "mip_allow_restart": False,
             "random_seed": 1,
             "threads": 1,
             "parallel": "off",
@@ -335,9 +339,11 @@ def _fits(x: Any, limits: Any, matrix: Any, low: Any, high: Any) -> bool:
 
 
 def prepare() -> None:
-    """Import cvxpy now rather than at the first question, for processes that are about to be forked."""
+    """Import cvxpy and HiGHS now rather than at the first question, for processes about to be forked."""
     if find_spec("cvxpy") is not None:
         modelling()
+    if find_spec(SOLVERS["highs"].module) is not None:
+        import_module(SOLVERS["highs"].module)
 
 
 def modelling() -> Any:
@@ -357,6 +363,7 @@ def modelling() -> Any:
                 del sys.modules[name]
         finally:
             sys.modules.pop(_STATISTICS, None)
+        gc.freeze()  # thousands of objects that stay, which each collection would walk through for 0.1 s
     import cvxpy
 
     return cvxpy

@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import cache, cached_property
 from importlib import resources
 from pathlib import Path
-from typing import TypeAlias, assert_never
+from typing import Any, TypeAlias, assert_never
 
 from roadproof.errors import InputError, Position, TextError, raise_all
 from roadproof.files import read_limited
@@ -128,6 +128,11 @@ class Specification:
     set_name: str
     options: Mapping[str, str]
     definitions: Mapping[str, Definition]
+
+    @cached_property
+    def worked_out(self) -> dict[tuple[object, ...], Any]:
+        """What was worked out of these definitions, which do not change, by what was asked."""
+        return {}
 
     def in_set(self, set_name: str) -> "Specification":
         """The same options under another set."""

@@ -90,10 +90,14 @@ def name_of(number: int) -> str:
 
 def vehicles_of(specification: Specification, scenario: Scenario) -> tuple[str, ...]:
     """The vehicles among the arguments of a scenario, which are SV, POVs and L. Raises ``InputError``."""
+    known: tuple[str, ...] | None = specification.worked_out.get(("vehicles", scenario))
+    if known is not None:
+        return known
     name = name_of(scenario.number)
     *vehicles, lane = signature(specification.in_set(scenario.set_name), name)
     if lane != LANE or not vehicles or vehicles[0] != SUBJECT:
         raise InputError(f"{name} takes {', '.join((*vehicles, lane))}: a scenario takes SV, POVs and L")
+    specification.worked_out["vehicles", scenario] = tuple(vehicles)
     return tuple(vehicles)
 
 
@@ -109,8 +113,12 @@ def applied(
     ``walk`` as for ``elaborate``.
     """
     roles = tuple(vehicles) or vehicles_of(specification, scenario)
-    name = _in_set(name_of(scenario.number), scenario, specification)
-    return apply_definition(specification, name, (*roles, lane), walk)
+    known: Query | None = specification.worked_out.get(("applied", scenario, roles, lane))
+    if known is None:
+        name = _in_set(name_of(scenario.number), scenario, specification)
+        known = apply_definition(specification, name, (*roles, lane), walk)
+        specification.worked_out["applied", scenario, roles, lane] = known
+    return known
 
 
 def read_query(specification: Specification, text: str, source: str = "claim") -> tuple[int | None, Query]:
