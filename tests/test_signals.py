@@ -38,7 +38,7 @@ def test_what_the_list_says_is_where_it_says():
     assert {x for x, about in SIGNALS.items() if about.kept == "piece"} == fields(Piece) - {"duration"}
     assert set(RECORDED) | set(SIZES) <= fields(Recording)
     assert set(LIMITED) | set(SIZES) <= fields(Vehicle)
-    assert all(hasattr(State(*map(Fraction, range(7))), name) for name in SIGNALS)
+    assert all(hasattr(State(*map(Fraction, range(8))), name) for name in SIGNALS)
     assert {about.unit for about in SIGNALS.values()} | set(SIZES.values()) <= set(SI.values())
 
 

@@ -5,9 +5,9 @@
 <Verdict.PROVED: 'PROVED'>
 
 What is here: definitions (``load``), formulas built with operators (``SV POV L F G U some every …``),
-questions (``prove witness compare overlap order redundancy coverage classify explore catalogue monitor
-evaluate simulate check``, and ``ask`` for studies of yours), ``export`` for other tools, and the errors that
-they raise. Each is imported when it is first used.
+questions (``prove witness compare overlap order redundancy coverage classify explore catalogue preventable
+monitor evaluate simulate check``, and ``ask`` for studies of yours), drives that are given (``motion
+drive``), ``export`` for other tools, and the errors that they raise. Each is imported when it is first used.
 """
 
 from importlib import import_module
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from roadproof.api.diagnosing import Proofreader as Proofreader
     from roadproof.api.diagnosing import diagnose as diagnose
     from roadproof.api.drives import witness as witness
+    from roadproof.api.driving import drive as drive
+    from roadproof.api.driving import motion as motion
     from roadproof.api.exploring import explore as explore
     from roadproof.api.exporting import export as export
     from roadproof.api.phrases import POV as POV
@@ -46,6 +48,7 @@ if TYPE_CHECKING:
     from roadproof.api.phrases import some as some
     from roadproof.api.phrases import vehicle as vehicle
     from roadproof.api.phrases import zone as zone
+    from roadproof.api.preventing import preventable as preventable
     from roadproof.api.proofs import prove as prove
     from roadproof.api.recordings import evaluate as evaluate
     from roadproof.api.reporting import page as page
@@ -85,6 +88,8 @@ _HOMES = {
     "Definitions": "api.definitions",
     "prove": "api.proofs",
     "witness": "api.drives",
+    "motion": "api.driving",
+    "drive": "api.driving",
     "diagnose": "api.diagnosing",
     "Proofreader": "api.diagnosing",
     "compare": "api.comparing",
@@ -95,6 +100,7 @@ _HOMES = {
     "classify": "api.classifying",
     "catalogue": "api.cataloguing",
     "explore": "api.exploring",
+    "preventable": "api.preventing",
     "ask": "api.asking",
     "monitor": "api.traces",
     "trace": "api.traces",

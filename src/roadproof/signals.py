@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias, get_args
 
 from roadproof.units import UNITS, Dimension
 
-SignalName: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "a_lat"]
+SignalName: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "j_lon"]
 SizeName: TypeAlias = Literal["length", "width", "kind"]
 Kind: TypeAlias = Literal["car", "truck", "bus", "motorcycle", "other"]
 
@@ -27,7 +27,8 @@ class About:
 
     ``kept``: what a drive keeps of it. Of ``start`` its value at time 0, and a grid has an unknown for
     each sample; of ``piece`` its value on each piece of the motion; ``nothing`` where it follows from
-    the others. ``rate_of``: what it is the rate of change of. ``recorded``: whether recordings and CSV
+    the others. ``rate_of``: what it is the rate of change of, at all times: accelerations may jump, so that
+    jerk is the rate of none. ``recorded``: whether recordings and CSV
     files of samples have it. ``limited``: whether models of vehicles bound it.
     """
 
@@ -45,6 +46,7 @@ SIGNALS: Mapping[SignalName, About] = {
     "v_lat": About("m/s", "start", rate_of="d", limited=True),
     "a_lon": About("m/s^2", "piece", rate_of="v_lon", limited=True),
     "a_lat": About("m/s^2", "piece", rate_of="v_lat", limited=True),
+    "j_lon": About("m/s^3", "piece", recorded=False),
 }
 SIZES: Mapping[SizeName, str] = {"length": "m", "width": "m"}
 """The box of a vehicle, which never changes, and its unit."""

@@ -246,7 +246,7 @@ def test_mistakes_of_meaning_have_a_caret() -> None:
 
 
 def test_a_vehicle_has_signals_only() -> None:
-    with pytest.raises(AttributeError, match="v_long: a vehicle has s, d, v_lon, v_lat, a_lon, a_lat"):
+    with pytest.raises(AttributeError, match="v_long: a vehicle has s, d, v_lon, v_lat, a_lon, a_lat, j_lon"):
         SV.v_long  # noqa: B018
     with pytest.raises(AttributeError):
         (SV.v_lon + 1).v_lon  # noqa: B018

@@ -17,7 +17,7 @@ from roadproof.analysis.coverage import study
 from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.cli.main import COMMANDS, main
-from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import Judged
 from roadproof.formats.write_highd import write_highd
@@ -32,7 +32,10 @@ ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "schema"
 SCHEMAS: Mapping[str, Any] = {x.name: json.loads(x.read_text("utf-8")) for x in sorted(FOLDER.glob("*.json"))}
 NAMES = {
-    x["properties"]["schema"]["const"]: n for n, x in SCHEMAS.items() if "schema" in x.get("properties", {})
+    version: name
+    for name, schema in SCHEMAS.items()
+    if (said := schema.get("properties", {}).get("schema"))
+    for version in said.get("enum", [said.get("const")])
 }
 DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
 # What evaluate keeps of one recording, and convert, and what a page gives to the viewer in it: for this very
@@ -58,6 +61,7 @@ MAPS = {
     *("options", "parameters", "values", "vehicles", "lanes", "seconds", "sizes", "detectors", "scenarios"),
     *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered"),
     "open",
+    *("fixed", "at"),
 }
 Place = tuple[str | int, ...]
 Run = Callable[..., Any]
@@ -238,6 +242,14 @@ def of_evaluate(run: Run, out: Path, traffic: Path) -> None:
     examine(told)
 
 
+def of_preventable(run: Run, out: Path, traffic: Path) -> None:
+    asked = ("cut-out", "--at", "Ve0=60km/h", "--lines", 3, "--jobs", 1)
+    told = run("preventable", *asked, "--no-pictures", "--out", out)
+    assert {x["verdict"] for x in (*told["plates"], *told["lemmas"])} == {"WITNESSED", "PROVED"}
+    examine(told, folder=out)
+    examine(run("preventable", *asked, "--no-lemmas"))
+
+
 def of_overlap(run: Run, out: Path, traffic: Path) -> None:
     asked = ("--among", "4,5,8", "--jobs", 1)
     told = run("overlap", *asked, "--no-pictures", "--out", out)
@@ -360,8 +372,21 @@ def test_shipped_evidence_is_what_its_schema_says() -> None:
         accept(NAMES[data["schema"]], data)
 
 
+def with_jerk() -> dict[str, Any]:
+    """A judged drive of the second version."""
+    data: dict[str, Any] = json.loads(DRIVE.read_text("utf-8")) | {"schema": "roadproof/drive/2"}
+    for motion in data["vehicles"].values():
+        for piece in motion["pieces"]:
+            piece["j_lon"] = "0"
+        motion["pieces"][0]["j_lon"] = "1/1000"
+    return Judged(read_drive(data, "test"), bundled_library()).as_data()
+
+
 def test_spoiled_evidence_is_refused() -> None:
     refuse_spoiled("drive.json", json.loads(DRIVE.read_text("utf-8")))
+    accept("drive.json", with_jerk())
+    assert with_jerk()["schema"] == "roadproof/drive/2"
+    refuse_spoiled("drive.json", with_jerk())
     proof = ROOT / "proofs" / "P1-scenario-04-base.json"
     refuse_spoiled("certificate.json", json.loads(proof.read_text("utf-8")))
 

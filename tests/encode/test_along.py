@@ -37,6 +37,7 @@ def starts(text, road="main-2"):
     [
         "s(SV) - s(POV) > 10 m",
         "F G v_lon(SV) > 20 m/s",
+        "j_lon(SV) > 1 m/s^3",
         "rear(SV) > front(POV) and d(SV) > 3 m",
         "max(s(SV), s(POV)) - s(SV) < 3 m",
         "(s(SV) - s(POV))^2 > 9 * 1 m * 1 m",

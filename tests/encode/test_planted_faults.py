@@ -311,7 +311,7 @@ def test_boxes_measured_wrongly_are_caught(fault, monkeypatch):
     assert overlap_differs()
 
 
-@pytest.mark.parametrize("signal", ["j_lon", "a_up", "v", "x_lat", ""])
+@pytest.mark.parametrize("signal", ["j_up", "a_up", "v", "x_lat", ""])
 def test_a_signal_that_is_not_known_is_refused(signal):
     with pytest.raises(AssertionError, match=f"'{signal}'$"):
         Layout(("A",), Grid(Fraction(1), 1)).state("A", signal, 0)

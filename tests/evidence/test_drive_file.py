@@ -3,6 +3,7 @@
 import copy
 import json
 import random
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -64,6 +65,52 @@ def test_the_contract_of_the_file():
     assert data["vehicles"]["SV"]["length"] == "9/2"
 
 
+def with_jerk(*jerks):
+    """The file with pieces of a second with these jerks (m/s³) before those of SV, for which it is still."""
+    before = tuple(Piece(Fraction(1), Fraction(0), Fraction(0), Fraction(x)) for x in jerks)
+    subject = FILE.drive.vehicles["SV"]
+    jerking = replace(subject, pieces=(*before, *subject.pieces))
+    return replace(FILE, drive=Drive({**FILE.drive.vehicles, "SV": jerking}))
+
+
+def test_a_drive_with_jerk_is_of_the_next_version():
+    file = with_jerk("1/3", "-1/2")
+    data = json.loads(json.dumps(drive_data(file, {"verdict": "WITNESSED"})))
+    assert data["schema"] == "roadproof/drive/2"
+    assert data["vehicles"]["SV"]["pieces"][1] == {
+        "duration": "1",
+        "a_lon": "0",
+        "a_lat": "0",
+        "j_lon": "-1/2",
+    }
+    assert [piece["j_lon"] for piece in data["vehicles"]["POV"]["pieces"]] == ["0", "0"]
+    assert read_drive(data, "test") == file
+    assert judge_file(file, LIBRARY).accepted
+
+
+def test_a_drive_without_jerk_is_of_the_first_version_whatever_it_was_read_from():
+    data = json.loads(json.dumps(drive_data(with_jerk(1), {})))
+    data["vehicles"]["SV"]["pieces"][0]["j_lon"] = "0"
+    assert drive_data(read_drive(data, "test"), {})["schema"] == "roadproof/drive/1"
+
+
+@pytest.mark.parametrize(
+    ("place", "field", "value", "message"),
+    [
+        (-1, "j_lon", "1", "the last piece has j_lon=1"),
+        (0, "j_lon", 1, "no rational as text"),
+        (0, "j_lon", "1/0", "divides by zero"),
+        (0, "j_lon", None, "no rational as text"),
+        (1, "j_lat", "0", "nobody reads 'j_lat'"),
+    ],
+)
+def test_damaged_jerks_are_refused(place, field, value, message):
+    data = json.loads(json.dumps(drive_data(with_jerk(1), {})))
+    data["vehicles"]["SV"]["pieces"][place][field] = value
+    with pytest.raises(InputError, match=message):
+        read_drive(data, "test")
+
+
 def changed(path, value):
     data = json.loads(json.dumps(drive_data(FILE, {})))
     place = data
@@ -79,7 +126,9 @@ def changed(path, value):
 @pytest.mark.parametrize(
     ("path", "value", "message"),
     [
-        (("schema",), "roadproof/drive/2", "schema="),
+        (("schema",), "roadproof/drive/3", "schema="),
+        (("schema",), "roadproof/drive/2", "'j_lon' is missing"),
+        (("vehicles", "SV", "pieces", 0, "j_lon"), "0", "nobody reads 'j_lon'"),
         (("horizon",), 6, "no rational as text"),
         (("horizon",), "1/0", "divides by zero"),
         (("horizon",), "-1", "negative"),

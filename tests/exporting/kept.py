@@ -34,12 +34,12 @@ def subjects() -> list[Subject]:
 
 
 def motion(
-    *pieces: tuple[str | None, str, str],
+    *pieces: tuple[str | None, str, str] | tuple[str, str, str, str],
     start: tuple[str, str, str, str] = ("10", "2.6", "30", "0"),
     size: tuple[str, str] = ("4.5", "1.8"),
 ) -> Motion:
-    """A vehicle from (s, d, v_lon, v_lat), with pieces (duration, a_lon, a_lat)."""
-    made = tuple(Piece(None if t is None else Fraction(t), Fraction(a), Fraction(b)) for t, a, b in pieces)
+    """A vehicle from (s, d, v_lon, v_lat), with pieces (duration, a_lon, a_lat) or (…, a_lat, j_lon)."""
+    made = tuple(Piece(None if t is None else Fraction(t), *map(Fraction, rates)) for t, *rates in pieces)
     return Motion(*map(Fraction, size), *map(Fraction, start), made)
 
 
@@ -53,3 +53,10 @@ def subject(road: Road | str = "main-2", horizon: str = "4", **motions: Motion) 
 
 TURN = motion(("0.5", "0", "0"), ("1.6", "-1", "1.25"), ("1.6", "0.5", "-1.25"), (None, "0", "0"))
 """A change to the left lane at changing speed."""
+
+SMOOTH = motion(("1", "0", "1.2", "-4"), ("1.5", "-4", "-0.8", "4"), ("1", "3", "0", "-3"), (None, "0", "0"))
+"""A change to the left lane during braking that builds up and goes away again, and speeding up likewise."""
+WEAVING = motion(
+    ("1", "2", "0.3", "-12"), ("2", "-5", "-0.15", "6"), (None, "0", "0"), start=("0", "3", "9", "0.4")
+)
+"""A slow vehicle on its way across, whose speed along is least and greatest inside pieces."""

@@ -35,5 +35,5 @@ def test_a_turned_box_is_turned_about_its_centre() -> None:
     ("v_lon", "v_lat", "turned"), [(30, 0, 0.0), (1, 1, math.pi / 4), (20, -2, -math.atan(0.1)), (0, 0, None)]
 )
 def test_the_heading_is_that_of_the_motion(v_lon: int, v_lat: int, turned: float | None) -> None:
-    state = State(F(0), F(0), F(0), F(v_lon), F(v_lat), F(0), F(0))
+    state = State(F(0), F(0), F(0), F(v_lon), F(v_lat), F(0), F(0), F(0))
     assert points.heading(state) == pytest.approx(turned)

@@ -16,6 +16,9 @@ import pytest
 
 from exporting.kept import kept, subjects
 from fuzz.held import CALLS
+from roadproof.api.definitions import load
+from roadproof.api.driving import drive
+from roadproof.api.driving import motion as given
 from roadproof.api.traces import Monitored, monitor, of_file
 from roadproof.evaluation.one_trace import OneTrace, read_pair, read_samples, sample_drive
 from roadproof.exporting.registry import FORMATS
@@ -110,6 +113,29 @@ def test_verdicts_and_truth_intervals_are_those_of_the_drive(
         assert len(each) == len(again), part
         for one, other in zip(each, again, strict=True):
             assert np.abs(np.subtract(one, other)).max() <= STEP + 1e-9, part
+
+
+@pytest.mark.parametrize("format_", READERS)
+def test_a_drive_with_jerk_is_read_back_as_it_was(format_: str, tmp_path: Path) -> None:
+    vehicles = {
+        "SV": given(0, 2.6, 29, along=[(1, 0, -1), (1, -1, 1)]),
+        "POV": given(70, 2.8, 28, along=[(1, 0, -4), (2, -4, 0), (1, -4, 4)]),
+    }
+    made = Subject("smooth", 1, drive(4, vehicles, load("ext")).file)
+    read = READERS[format_](made, tmp_path)
+    ours = monitor(4, made.file, view="recorded")
+    found = monitor(4, read.trace, of_file(made.file), {"L": read.lane})
+    assert found.verdict == ours.verdict == "true"
+    for each, again in zip(spans(ours), spans(found), strict=True):
+        assert again == pytest.approx(np.array(each), abs=STEP + 1e-9) if each else again == each
+    samples = sample_drive(made.file.drive, made.file.road, F(6), F(1, 25), "drive")
+    for signal in (
+        x for x in RECORDED if (x, format_) != ("a_lat", "commonroad")
+    ):  # which has no place for it
+        for name in vehicles:
+            columns = [x.batch.signals[signal, name][:, 0] for x in (samples, read.trace)]
+            begins = [x[0] if signal in ("s", "d") else 0.0 for x in columns]  # roads begin elsewhere
+            assert columns[1] - begins[1] == pytest.approx(columns[0] - begins[0], abs=1e-6), (signal, name)
 
 
 @pytest.mark.parametrize("name", [*kept()][::9])

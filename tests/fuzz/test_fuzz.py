@@ -1,6 +1,7 @@
 """What the fuzz once found stays found; a few cases of each reader; and faults that it notices."""
 
 import importlib
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -56,19 +57,20 @@ def classic_until(left, low, high, right):
     return truth.intersection([start, truth.until(left, low, high, right)])
 
 
-def full_square(position, speed, acceleration, begin):
+def full_square(name, x):
     """a·t² for a/2·t²."""
-    return TRUE_QUADRATIC(position, speed, 2 * acceleration, begin)
+    doubled = replace(x, a_lon=2 * x.a_lon, a_lat=2 * x.a_lat) if name in ("s", "d") else x
+    return TRUE_COURSE(name, doubled)
 
 
-TRUE_QUADRATIC = signals._quadratic
+TRUE_COURSE = signals._course
 STRICT = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 FAULTS = {
     "held: until asks for its left side too early": (held, exact, "until", classic_until),
     "held: not keeps the view": (held, semantics, "OPPOSITE", {view: view for view in semantics.View}),
     "held: strictness is lost": (held, unroll, "_OPPOSITE", STRICT),
     "truths: until asks for its left side too early": (truths, exact, "until", classic_until),
-    "drives: a square too large": (drives, signals, "_quadratic", full_square),
+    "drives: a square too large": (drives, signals, "_course", full_square),
     "claims: or is and": (claims, exact, "union", truth.intersection),
     "texts: a difference binds like a product": (texts, show, "_LEVEL", {**show._LEVEL, "-": show.PRODUCT}),
     "search: all starts are at 0": (search, question, "starting_range", lambda *_: None),

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from roadproof.judge.truth import from_switches
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.signals import SIGNALS
 from roadproof.world.drive import Drive, Motion, Piece
 
 HALF = Fraction(1, 2)
@@ -80,12 +81,16 @@ def all_sets(points):
         yield from_switches((Fraction(i), bits[2 * i], bits[2 * i + 1]) for i in range(points))
 
 
+NO_JERK = st.just(0)
+
+
 @st.composite
-def motions(draw):
+def motions(draw, jerks=NO_JERK):
     numbers = st.integers(-4, 8).map(lambda n: Fraction(n, 2))
     accelerations = st.integers(-3, 3).map(Fraction)
+    durations = st.integers(1, 4).map(lambda n: n * HALF)
     pieces = [
-        Piece(draw(st.integers(1, 4).map(lambda n: n * HALF)), draw(accelerations), draw(accelerations))
+        Piece(draw(durations), draw(accelerations), draw(accelerations), Fraction(draw(jerks)))
         for _ in range(draw(st.integers(0, 2)))
     ]
     last = Piece(None, draw(accelerations), draw(accelerations))
@@ -94,30 +99,38 @@ def motions(draw):
 
 
 drives = st.builds(lambda a, b: Drive({"A": a, "B": b}), motions(), motions())
+jerks = st.sampled_from([0, 1, -1, 2, -3])
+jerk_drives = st.builds(lambda a, b: Drive({"A": a, "B": b}), motions(jerks), motions(jerks))
 
-signals = st.builds(
-    t.Signal, st.sampled_from(["s", "d", "v_lon", "v_lat", "a_lon", "a_lat"]), st.sampled_from("AB")
-)
-numbers = st.integers(-6, 12).map(lambda n: t.number(Fraction(n, 2)))
-sides = st.one_of(
-    signals,
-    numbers,
-    st.builds(lambda x, y: t.subtract(x, y), signals, signals),
-    st.builds(lambda x, y: t.Maximum((x, y)), signals, st.one_of(signals, numbers)),
-    st.builds(lambda x, y: t.Minimum((x, y)), signals, st.one_of(signals, numbers)),
-    st.builds(
-        lambda x, y: t.Sum((x, t.Product((y, y)))),
-        numbers,
-        st.builds(t.Signal, st.just("v_lon"), st.sampled_from("AB")),
-    ),
-    st.builds(
-        lambda x: t.Quotient(t.Power(x, 2), t.number(3)),
-        st.builds(t.Signal, st.just("v_lat"), st.sampled_from("AB")),
-    ),
-)
 operators = st.sampled_from(["<", "<=", ">", ">="])
-comparisons = st.one_of(
-    st.builds(f.Compare, sides, operators, sides),
-    st.builds(f.Compare, sides.map(t.Inverse), operators, st.one_of(sides, sides.map(t.Inverse))),
-    st.builds(f.Compare, numbers, operators, sides.map(t.Inverse)),
-)
+numbers = st.integers(-6, 12).map(lambda n: t.number(Fraction(n, 2)))
+
+
+def comparisons_of(names):
+    """Comparisons of terms of every kind over signals of these names."""
+    signals = st.builds(t.Signal, st.sampled_from(names), st.sampled_from("AB"))
+    sides = st.one_of(
+        signals,
+        numbers,
+        st.builds(lambda x, y: t.subtract(x, y), signals, signals),
+        st.builds(lambda x, y: t.Maximum((x, y)), signals, st.one_of(signals, numbers)),
+        st.builds(lambda x, y: t.Minimum((x, y)), signals, st.one_of(signals, numbers)),
+        st.builds(
+            lambda x, y: t.Sum((x, t.Product((y, y)))),
+            numbers,
+            st.builds(t.Signal, st.just("v_lon"), st.sampled_from("AB")),
+        ),
+        st.builds(
+            lambda x: t.Quotient(t.Power(x, 2), t.number(3)),
+            st.builds(t.Signal, st.just("v_lat"), st.sampled_from("AB")),
+        ),
+    )
+    return st.one_of(
+        st.builds(f.Compare, sides, operators, sides),
+        st.builds(f.Compare, sides.map(t.Inverse), operators, st.one_of(sides, sides.map(t.Inverse))),
+        st.builds(f.Compare, numbers, operators, sides.map(t.Inverse)),
+    )
+
+
+comparisons = comparisons_of(tuple(x for x in SIGNALS if x != "j_lon"))
+jerk_comparisons = comparisons_of(tuple(SIGNALS))

@@ -115,25 +115,26 @@ def float_pieces(motion):
     found = []
     time, s, d, v, w = 0.0, *(float(x) for x in (motion.s, motion.d, motion.v_lon, motion.v_lat))
     for piece in motion.pieces:
-        a, b = float(piece.a_lon), float(piece.a_lat)
+        a, b, j = float(piece.a_lon), float(piece.a_lat), float(piece.j_lon)
         local = np.poly1d([1, -time])
         found.append(
             (
                 time,
                 {
-                    "s": a / 2 * local**2 + v * local + s,
+                    "s": j / 6 * local**3 + a / 2 * local**2 + v * local + s,
                     "d": b / 2 * local**2 + w * local + d,
-                    "v_lon": a * local + v,
+                    "v_lon": j / 2 * local**2 + a * local + v,
                     "v_lat": b * local + w,
-                    "a_lon": np.poly1d([a]),
+                    "a_lon": j * local + a,
                     "a_lat": np.poly1d([b]),
+                    "j_lon": np.poly1d([j]),
                 },
             )
         )
         if piece.duration is not None:
             h = float(piece.duration)
             time += h
-            s, v = s + v * h + a * h * h / 2, v + a * h
+            s, v = s + v * h + a * h * h / 2 + j * h**3 / 6, v + a * h + j * h * h / 2
             d, w = d + w * h + b * h * h / 2, w + b * h
     return found
 

@@ -33,8 +33,8 @@ SQRT2 = real_roots((-2, 0, 1))[1][0]
 
 
 def motion(s=0, d=0, v_lon=0, v_lat=0, pieces=(), last=(0, 0)):
-    """``pieces`` are (duration, a_lon, a_lat)."""
-    made = [Piece(Fraction(h), Fraction(a), Fraction(b)) for h, a, b in pieces]
+    """``pieces`` are (duration, a_lon, a_lat) or (duration, a_lon, a_lat, j_lon)."""
+    made = [Piece(*map(Fraction, piece)) for piece in pieces]
     state = [Fraction(x) for x in (s, d, v_lon, v_lat)]
     final = Piece(None, Fraction(last[0]), Fraction(last[1]))
     return Motion(Fraction(9, 2), Fraction(9, 5), *state, (*made, final))

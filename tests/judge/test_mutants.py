@@ -1,17 +1,19 @@
 """Deliberate faults in the judge: the pinning checks must notice each of them."""
 
+from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 from hypothesis import HealthCheck, Phase, find, settings
 from hypothesis import strategies as st
 
-from judge.cases import comparisons, drives, every_small_case
+from judge.cases import comparisons, drives, every_small_case, jerk_comparisons, jerk_drives
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
 from roadproof.judge import comparison, exact, piecewise, signals, truth
 from roadproof.judge.algebraic import moved
+from roadproof.judge.polynomial import polynomial
 from roadproof.judge.truth import Cut, Span, TruthSet, complement, eventually, intersection, union
-from roadproof.world.motion import State
 
 search = settings(
     max_examples=2000,
@@ -22,7 +24,7 @@ search = settings(
     suppress_health_check=list(HealthCheck),
 )
 real_until, real_reaching = truth.until, truth._reaching
-real_signs, real_quadratic, real_starts = piecewise._signs, signals._quadratic, signals.starts_of
+real_signs, real_course, real_starts = piecewise._signs, signals._course, signals.starts_of
 
 
 def classic_until(left, low, high, right):
@@ -129,26 +131,41 @@ def roots_at_the_end(p, start, end):
     return [(found[0][0], found[0][2], found[0][2]), *found[1:]]
 
 
-def full_square(position, speed, acceleration, begin):
+def full_square(name, x):
     """a·t² for a/2·t²."""
-    return real_quadratic(position, speed, 2 * acceleration, begin)
+    doubled = replace(x, a_lon=2 * x.a_lon, a_lat=2 * x.a_lat) if name in ("s", "d") else x
+    return real_course(name, doubled)
+
+
+def half_cube(name, x):
+    """j/2·t³ for j/6·t³ in places."""
+    return real_course(name, replace(x, j_lon=3 * x.j_lon) if name == "s" else x)
+
+
+def full_jerk(name, x):
+    """j·t² for j/2·t² in speeds."""
+    return real_course(name, replace(x, j_lon=2 * x.j_lon) if name == "v_lon" else x)
+
+
+def no_jerk(name, x):
+    """Accelerations stay what they are at the start of a piece."""
+    return real_course(name, replace(x, j_lon=Fraction(0)) if name == "a_lon" else x)
+
+
+def absolute_times(begin, *coefficients):
+    """A polynomial in the time since a piece began is taken for one in time since 0."""
+    return polynomial(*coefficients)
+
+
+def loose_jerk(motion):
+    """What jerk adds to the speed is forgotten at the next knot."""
+    return real_starts(replace(motion, pieces=tuple(replace(p, j_lon=Fraction(0)) for p in motion.pieces)))
 
 
 def left_continuous(motion):
     """A knot belongs to the piece that ends there, one piece late."""
     states = real_starts(motion)
-    late = [State(*vars(s).values()) for s in states]
-    for i in range(1, len(late)):
-        late[i] = State(
-            late[i].time,
-            late[i].s,
-            late[i].d,
-            late[i].v_lon,
-            late[i].v_lat,
-            states[i - 1].a_lon,
-            late[i].a_lat,
-        )
-    return tuple(late)
+    return (states[0], *(replace(x, a_lon=before.a_lon) for before, x in pairwise(states)))
 
 
 @pytest.mark.parametrize(
@@ -157,7 +174,7 @@ def left_continuous(motion):
         (piecewise, "_signs", open_roots),
         (piecewise, "_signs", crossing_tangents),
         (piecewise, "_signs", roots_at_the_end),
-        (signals, "_quadratic", full_square),
+        (signals, "_course", full_square),
         (signals, "starts_of", left_continuous),
         (piecewise, "greatest", piecewise.least),
         (comparison, "TRUE_SIGNS", {**comparison.TRUE_SIGNS, ">=": frozenset({1})}),
@@ -170,5 +187,24 @@ def test_a_faulty_comparison_is_noticed(monkeypatch, module, name, fault):
     monkeypatch.setattr(module, name, fault)
     wrong = lambda case: disagreement_on_drive(*case) not in (None, "doubtful")  # noqa: E731
     comparison, drive = find(st.tuples(comparisons, drives), wrong, settings=search)
+    monkeypatch.undo()
+    assert disagreement_on_drive(comparison, drive) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "fault"),
+    [
+        ("_course", half_cube),
+        ("_course", full_jerk),
+        ("_course", no_jerk),
+        ("_from", absolute_times),
+        ("starts_of", loose_jerk),
+    ],
+    ids=lambda x: getattr(x, "__name__", None) if callable(x) else "",
+)
+def test_a_faulty_jerk_is_noticed(monkeypatch, name, fault):
+    monkeypatch.setattr(signals, name, fault)
+    wrong = lambda case: disagreement_on_drive(*case) not in (None, "doubtful")  # noqa: E731
+    comparison, drive = find(st.tuples(jerk_comparisons, jerk_drives), wrong, settings=search)
     monkeypatch.undo()
     assert disagreement_on_drive(comparison, drive) is None

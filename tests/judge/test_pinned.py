@@ -3,7 +3,15 @@
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 
-from judge.cases import comparisons, drives, every_small_case, formulas, opaque_cases
+from judge.cases import (
+    comparisons,
+    drives,
+    every_small_case,
+    formulas,
+    jerk_comparisons,
+    jerk_drives,
+    opaque_cases,
+)
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
 from judge.test_exact import bound, random_drive
 
@@ -35,6 +43,22 @@ def test_comparisons_on_drives(comparison, drive):
 @settings(quiet, max_examples=150)
 @given(formulas(comparisons, leaves=4), drives)
 def test_formulas_on_drives(formula, drive):
+    found = disagreement_on_drive(formula, drive)
+    assume(found != "doubtful")
+    assert found is None
+
+
+@settings(quiet, max_examples=120)
+@given(jerk_comparisons, jerk_drives)
+def test_comparisons_on_drives_with_jerk(comparison, drive):
+    found = disagreement_on_drive(comparison, drive)
+    assume(found != "doubtful")
+    assert found is None
+
+
+@settings(quiet, max_examples=60)
+@given(formulas(jerk_comparisons, leaves=4), jerk_drives)
+def test_formulas_on_drives_with_jerk(formula, drive):
     found = disagreement_on_drive(formula, drive)
     assume(found != "doubtful")
     assert found is None

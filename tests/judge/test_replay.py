@@ -86,6 +86,46 @@ def test_a_breach_is_found_at_its_first_instant(state, rule, time, after):
         assert first_breach(drive, {"A": Car()}, Fraction(time)) is None
 
 
+HALF_A_ROOT = real_roots((1, -4, 2))[0][0]
+"""1 - √2/2, the first root of 1 - 4·t + 2·t²."""
+
+
+@pytest.mark.parametrize(
+    ("state", "rule", "time"),
+    [
+        # 1 - 4·t + 2·t² for 2 s, then 1 again; with 2 its least is 0, which is no reversing.
+        ({"v_lon": 1, "pieces": [(2, -4, 0, 4)]}, "v_lon >= 0", HALF_A_ROOT),
+        ({"v_lon": 2, "pieces": [(2, -4, 0, 4)]}, None, None),
+        # 48 + 4·t - 2·t² is 50 at its greatest; with 49 it passes 50 before it is 51.
+        ({"v_lon": 48, "pieces": [(2, 4, 0, -4)]}, None, None),
+        ({"v_lon": 49, "pieces": [(2, 4, 0, -4)]}, "v_lon <= 50", HALF_A_ROOT),
+        # An acceleration that comes up to its limit where it jumps back; and two that pass it inside a piece.
+        ({"v_lon": 20, "pieces": [(2, 0, 0, 2)]}, None, None),
+        ({"v_lon": 20, "pieces": [(2, 0, 0, 3)]}, "a_lon <= 4", Fraction(4, 3)),
+        ({"v_lon": 40, "pieces": [(3, 0, 0, -3)]}, "a_lon >= -8", Fraction(8, 3)),
+        # |v_lat| = 1/2 is too much below 5 m/s, which 6 - 4·t + 2·t² is in the middle alone.
+        ({"v_lon": 6, "v_lat": "1/2", "pieces": [(2, -4, 0, 4)]}, "heading", HALF_A_ROOT),
+        ({"v_lon": 7, "v_lat": "1/2", "pieces": [(2, -4, 0, 4)]}, None, None),
+    ],
+)
+def test_limits_hold_inside_pieces_with_jerk(state, rule, time):
+    """At the samples none of these breaks anything."""
+    found = first_breach(Drive({"A": motion(**state)}), {"A": Car()}, None)
+    if rule is None:
+        assert found is None
+    else:
+        assert (rule in found.rule, found.time, found.after) == (True, time, True)
+
+
+def test_boxes_that_meet_under_jerk():
+    """A gains t³/6 on the 1 m between the boxes, and is 0.33 m into B when its acceleration jumps to none."""
+    pieces = [(2, 0, 0, 1)]
+    drive = Drive({"A": motion(0, 2, pieces=pieces), "B": motion(Fraction(11, 2), 2)})
+    assert first_overlap(drive, TEN).time == real_roots((-6, 0, 0, 1))[0][0]
+    farther = Drive({"A": motion(0, 2, last=(0, 0), pieces=[(2, 0, 0, 1)]), "B": motion(6, 2, 2)})
+    assert first_overlap(farther, None) is None  # 1.5 m are never gained: A is no faster than B in the end
+
+
 def test_reversing_is_a_breach_even_where_the_range_allows_it():
     roomy = Car(v_lon=(Fraction(-5), Fraction(50)))
     assert "no reversing" in first_breach(Drive({"A": motion(v_lon=-1)}), {"A": roomy}, ONE).rule

@@ -28,9 +28,9 @@ FILE = load_drive(next(DRIVES.glob("*04-base.json")))
 
 def moved(knots: list[list[float]], time: float) -> tuple[float, float]:
     """Where a vehicle is, as the viewer computes it."""
-    begun, s, d, v_lon, v_lat, a_lon, a_lat = [x for x in knots if x[0] <= time][-1]
+    begun, s, d, v_lon, v_lat, a_lon, a_lat, j_lon = [x for x in knots if x[0] <= time][-1]
     t = time - begun
-    return s + t * (v_lon + a_lon * t / 2), d + t * (v_lat + a_lat * t / 2)
+    return s + t * (v_lon + t * (a_lon / 2 + j_lon * t / 6)), d + t * (v_lat + a_lat * t / 2)
 
 
 def test_places_between_knots_and_truth_are_those_of_the_judge() -> None:

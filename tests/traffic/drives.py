@@ -1,5 +1,6 @@
 """Drives written by hand for planting, on lanes of 3.5 m whose right edge is d = 0."""
 
+from dataclasses import replace
 from fractions import Fraction as F
 
 from roadproof.world.drive import Drive, Motion, Piece
@@ -24,6 +25,14 @@ def cut_in() -> Drive:
 def braking() -> Drive:
     """POV ahead in the lane of SV brakes until it is too near: scenario 4."""
     return Drive({"SV": motion(5, F(13, 5), 29), "POV": motion(80, F(13, 5), 28, (F(2), -4, 0))})
+
+
+def building_up() -> Drive:
+    """As braking, but POV's braking builds up and goes away again: scenario 4, with jerk."""
+    smooth = ((F(1), F(0), F(0), F(-5)), (F(1), F(-5), F(0), F(0)), (F(1), F(-5), F(0), F(5)))
+    pieces = (*(Piece(*each) for each in smooth), Piece(None, F(0), F(0)))
+    drive = braking()
+    return Drive({**drive.vehicles, "POV": replace(drive.vehicles["POV"], pieces=pieces)})
 
 
 def cut_out() -> Drive:

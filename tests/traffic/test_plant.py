@@ -17,7 +17,7 @@ from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
-from traffic.drives import braking, cut_in, cut_out
+from traffic.drives import braking, building_up, cut_in, cut_out
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,11 @@ def place_in(recording: Recording, direction: int) -> Place:
 
 
 @pytest.mark.parametrize("direction", [1, 2])
-@pytest.mark.parametrize("drive", [cut_in(), braking(), cut_out()], ids=["cut-in", "braking", "cut-out"])
+@pytest.mark.parametrize(
+    "drive",
+    [cut_in(), braking(), building_up(), cut_out()],
+    ids=["cut-in", "braking", "building-up", "cut-out"],
+)
 def test_planted_samples_and_room(recording: Recording, direction: int, drive: Drive, tmp_path: Path) -> None:
     place = place_in(recording, direction)
     merged, truth = plant(recording, drive, place)
@@ -47,6 +51,7 @@ def test_planted_samples_and_room(recording: Recording, direction: int, drive: D
             assert merged.s[rows][k] == pytest.approx(float(exact.s) + place.s, abs=0.00501)
             assert merged.d[rows][k] == pytest.approx(float(exact.d) + place.d, abs=0.00501)
             assert merged.v_lon[rows][k] == pytest.approx(float(exact.v_lon), abs=0.00501)
+            assert merged.a_lon[rows][k] == pytest.approx(float(exact.a_lon), abs=0.00501)
             assert merged.a_lat[rows][k] == pytest.approx(float(exact.a_lat), abs=0.00501)
     assert list(find_overlaps(merged)) == []
     assert truth.removed

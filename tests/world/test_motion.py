@@ -1,4 +1,4 @@
-"""Motion: exact double integrators, right-continuous accelerations."""
+"""Motion: exact integrators, right-continuous accelerations and jerks."""
 
 from fractions import Fraction
 from itertools import pairwise
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from roadproof.errors import UsageError
 from roadproof.world.drive import Motion, Piece
-from roadproof.world.motion import starts_of, state_at
+from roadproof.world.motion import advance, starts_of, state_at
 
 values = st.fractions(-5, 5, max_denominator=6)
 durations = st.fractions(Fraction(1, 6), 3, max_denominator=6)
@@ -17,9 +17,16 @@ durations = st.fractions(Fraction(1, 6), 3, max_denominator=6)
 
 @st.composite
 def motions(draw):
-    pieces = [Piece(draw(durations), draw(values), draw(values)) for _ in range(draw(st.integers(0, 3)))]
+    accelerations = draw(st.lists(st.tuples(durations, values, values, values), max_size=3))
+    pieces = [Piece(*drawn) for drawn in accelerations]
     state = [draw(values) for _ in range(4)]
     return Motion(Fraction(4), Fraction(2), *state, (*pieces, Piece(None, draw(values), draw(values))))
+
+
+def before(motion, time):
+    """The state at a time as the piece that lasts until then has it, whose acceleration may be another."""
+    begun = [state for state in starts_of(motion) if state.time < time or state.time == 0][-1]
+    return advance(begun, time - begun.time)
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
@@ -29,18 +36,21 @@ def test_within_a_piece_positions_are_areas_under_speeds(motion, one, other):
     times = sorted({one, other, *knots})
     for low, high in pairwise(times):
         begin, end, step = state_at(motion, low), state_at(motion, high), high - low
-        # The trapezoid rule is exact for linear speeds, and speeds are linear between knots.
-        assert end.s - begin.s == step * (begin.v_lon + end.v_lon) / 2
+        # Simpson's rule is exact for quadratic speeds, the trapezoid rule for linear accelerations.
+        middle = state_at(motion, (low + high) / 2)
+        assert end.s - begin.s == step * (begin.v_lon + 4 * middle.v_lon + before(motion, high).v_lon) / 6
         assert end.d - begin.d == step * (begin.v_lat + end.v_lat) / 2
-        assert end.v_lon - begin.v_lon == step * begin.a_lon
+        assert end.v_lon - begin.v_lon == step * (begin.a_lon + before(motion, high).a_lon) / 2
         assert end.v_lat - begin.v_lat == step * begin.a_lat
+        assert before(motion, high).a_lon - begin.a_lon == step * begin.j_lon
 
 
 @settings(max_examples=50, deadline=None, derandomize=True)
 @given(motions())
 def test_a_knot_belongs_to_the_piece_that_begins_there(motion):
     starts = starts_of(motion)
-    assert [(x.a_lon, x.a_lat) for x in starts] == [(p.a_lon, p.a_lat) for p in motion.pieces]
+    told = [(p.a_lon, p.a_lat, p.j_lon) for p in motion.pieces]
+    assert [(x.a_lon, x.a_lat, x.j_lon) for x in starts] == told
     assert starts[0].time == 0
     assert (starts[0].s, starts[0].d) == (motion.s, motion.d)
     assert (starts[0].v_lon, starts[0].v_lat) == (motion.v_lon, motion.v_lat)
@@ -55,6 +65,34 @@ def test_written_out():
     state = state_at(motion, Fraction(4))
     assert (state.s, state.v_lon, state.a_lon) == (10 + 10 + 6 + 22 - 2, 9, -1)
     assert (state.d, state.v_lat, state.a_lat) == (2, 1, Fraction(1, 2))
+
+
+def test_written_out_with_jerk():
+    """From 5 m/s at 3 m/s², which falls by 6 m/s³ to -9 m/s² within 2 s, and jumps to none."""
+    pieces = (
+        Piece(Fraction(2), Fraction(3), Fraction(0), Fraction(-6)),
+        Piece(None, Fraction(0), Fraction(0)),
+    )
+    motion = Motion(*map(Fraction, (4, 2, 10, 1, 5, 0)), pieces)
+    state = state_at(motion, Fraction(1))
+    assert (state.s, state.v_lon, state.a_lon, state.j_lon) == (
+        10 + 5 + Fraction(3, 2) - 1,
+        5 + 3 - 3,
+        -3,
+        -6,
+    )
+    state = state_at(motion, Fraction(3))
+    assert (state.s, state.v_lon, state.a_lon, state.j_lon) == (10 + 10 + 6 - 8 - 1, 5 + 6 - 12, 0, 0)
+
+
+def test_the_last_piece_has_no_jerk():
+    zero, one = Fraction(0), Fraction(1)
+    for last in (Piece(None, zero, zero, one), Piece(None, one, zero, -one)):
+        with pytest.raises(ValueError, match=r"j_lon=-?1 m/s\^3.*let a piece with j_lon=0 follow"):
+            Motion(*(one for _ in range(6)), (last,))
+    assert not Motion(*(one for _ in range(6)), (Piece(None, one, zero),)).has_jerk
+    jerking = (Piece(one, zero, zero, one), Piece(None, one, zero))
+    assert Motion(*(one for _ in range(6)), jerking).has_jerk
 
 
 def test_there_is_nothing_before_the_start():

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from roadproof.api.answer import Row
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.drive_file import SCHEMA, DriveFile, load_drive
+from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
 from roadproof.evidence.judged import Judged, RejectedError
 from roadproof.evidence.strict import read_json
 from roadproof.exporting.registry import FORMATS
@@ -144,9 +144,10 @@ def _paths(path: Path) -> list[Path]:
     """The drive files of a folder, among other evidence; a file as it is."""
     if not path.is_dir():
         return [path]
-    found = [x for x in sorted(path.glob("*.json")) if _schema(x) == SCHEMA]
+    found = [x for x in sorted(path.glob("*.json")) if _schema(x) in SCHEMAS_READ]
     if not found:
-        raise InputError(f"{path}: the folder holds no drive files (*.json of schema {SCHEMA})")
+        known = " or ".join(SCHEMAS_READ)
+        raise InputError(f"{path}: the folder holds no drive files (*.json of schema {known})")
     return found
 
 

@@ -149,7 +149,7 @@ def _read(path: Path) -> Certificate | DriveFile | None:
     """Raises ``InputError`` for a file that is damaged."""
     content = read_json(path)
     schema = content.get("schema") if isinstance(content, dict) else None
-    if schema == drive_file.SCHEMA:
+    if schema in drive_file.SCHEMAS_READ:
         return read_drive(content, str(path))
     return read_certificate_data(content, str(path)) if schema in SCHEMAS_READ else None
 

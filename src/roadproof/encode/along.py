@@ -55,7 +55,7 @@ def _is_place_along(signal: SignalName | OwnName) -> bool:
     match signal:
         case "s":
             return True
-        case "d" | "v_lon" | "v_lat" | "a_lon" | "a_lat":
+        case "d" | "v_lon" | "v_lat" | "a_lon" | "a_lat" | "j_lon":
             return False
         case _:
             assert_never(signal)

@@ -216,7 +216,7 @@ def inequality_for_ever(inequality: Inequality[Quantity], layout: Layout) -> Cir
                 return now + layout.state(vehicle, "v_lon", step) * variable(_LATER)
             case "d":
                 return now + layout.state(vehicle, "v_lat", step) * variable(_LATER)
-            case "v_lon" | "v_lat" | "a_lon" | "a_lat":
+            case "v_lon" | "v_lat" | "a_lon" | "a_lat" | "j_lon":
                 return now
             case _:
                 assert_never(signal)

@@ -1,4 +1,4 @@
-"""Vehicles as pairs of double integrators, exact at the samples (semantics §2).
+"""Vehicles as pairs of double integrators without jerk, exact at the samples (semantics §2).
 
 The unknowns of a vehicle are position and speed along and across the road at each sample; the
 acceleration between two samples is constant, so it is the difference of speeds over dt, and
@@ -56,7 +56,7 @@ class Layout:
                 yield Column(Unknown(x.signal.vehicle, OwnName(x.signal.name), step), *x.range)
 
     def state(self, vehicle: str, signal: SignalName | OwnName, step: int) -> Polynomial[int]:
-        """A signal at a sample; an acceleration is that of the piece which begins there."""
+        """A signal at a sample; an acceleration is that of the piece which begins there, and jerk is none."""
         if isinstance(signal, OwnName):
             return variable(self.own_column(vehicle, signal, step))
         match signal:
@@ -66,6 +66,8 @@ class Layout:
                 return self._change("v_lon", vehicle, step)
             case "a_lat":
                 return self._change("v_lat", vehicle, step)
+            case "j_lon":
+                return constant(Fraction(0))
             case _:
                 assert_never(signal)
 

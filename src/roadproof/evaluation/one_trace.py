@@ -24,7 +24,7 @@ from roadproof.formats.straight import whole
 from roadproof.formats.table import Table
 from roadproof.logic.formula import Formula
 from roadproof.logic.own import code_of, own_of
-from roadproof.logic.rewrite import with_values
+from roadproof.logic.rewrite import signals_of, with_values
 from roadproof.monitoring.batch import Array, Batch
 from roadproof.signals import FIXED, RECORDED, SIGNALS, SIZES, Kind, SizeName
 from roadproof.spec.bind import occupies
@@ -165,7 +165,13 @@ def _codes(kinds: Mapping[str, Kind]) -> dict[tuple[SizeName, str], float]:
 
 
 def refuse_unmeasured(trace: OneTrace, formula: Formula) -> None:
-    """Raise ``InputError`` where a trace lacks an own signal that a formula speaks of."""
+    """Raise ``InputError`` where a trace lacks a signal that a formula speaks of."""
+    for name in signals_of([formula]):
+        if not any((name, vehicle) in trace.batch.signals for vehicle in trace.lanes):
+            raise InputError(
+                f"{trace.source}: no recording has the signal {name}, which the formula needs: ask that of a "
+                "drive"
+            )
     refuse_missing(((x.name, x.vehicle) for x in own_of([formula])), trace.batch.signals, trace.source)
 
 

@@ -48,9 +48,9 @@ class Checker:
             schema = Fields(content, str(path)).text("schema")
             if schema in certificate.SCHEMAS_READ:
                 return self._certificate(path, certificate.read_certificate_data(content, str(path)))
-            if schema == drive_file.SCHEMA:
+            if schema in drive_file.SCHEMAS_READ:
                 return self._drive(path, content)
-            known = f"{certificate.SCHEMA} or {drive_file.SCHEMA}"
+            known = " or ".join((certificate.SCHEMA, *drive_file.SCHEMAS_READ))
             raise InputError(f"its schema is {schema[:60]!r}, but must be {known}")
         except MissingSolverError:
             raise

@@ -1,6 +1,8 @@
-"""Drive files, ``roadproof/drive/1``: a drive with everything that is needed to judge it again.
+"""Drive files: a drive with everything that is needed to judge it again.
 
-Numbers are rationals as text; null is without bound. Reading checks every field; whether the formula
+A drive whose accelerations are constant on every piece is ``roadproof/drive/1``; one with jerk is
+``roadproof/drive/2``, where every piece says its jerk. Both are read. Numbers are rationals as text; null is
+without bound. Reading checks every field; whether the formula
 holds on the drive is for ``judged``.
 """
 
@@ -18,6 +20,8 @@ from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 
 SCHEMA = "roadproof/drive/1"
+JERK_SCHEMA = "roadproof/drive/2"
+SCHEMAS_READ = (SCHEMA, JERK_SCHEMA)
 MOST = {"lanelets": 1000, "adjacent": 1000, "vehicles": 20, "pieces": 2000, "signals": 100, "values": 2000}
 _FIELDS = (
     *("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed"),
@@ -47,7 +51,9 @@ class DriveFile:
 
 def drive_data(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
     """The file as plain data, in the order in which a reader wants it."""
-    data: dict[str, Any] = {"schema": SCHEMA, "scenario": file.scenario, "set": file.set_name}
+    with_jerk = any(motion.has_jerk for motion in file.drive.vehicles.values())
+    schema = JERK_SCHEMA if with_jerk else SCHEMA
+    data: dict[str, Any] = {"schema": schema, "scenario": file.scenario, "set": file.set_name}
     data |= {"formula": file.formula, "horizon": str(file.horizon), "lane": file.lanes.get(LANE)}
     if set(file.lanes) - {LANE}:
         data["lanes"] = dict(file.lanes)
@@ -56,7 +62,7 @@ def drive_data(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
     values = {name: str(value) for name, value in file.values.items()}
     data["parameters"] = values | dict(file.options)
     data["road"] = road_data(file.road)
-    data["vehicles"] = {name: _motion_json(motion) for name, motion in file.drive.vehicles.items()}
+    data["vehicles"] = {name: _motion_json(motion, with_jerk) for name, motion in file.drive.vehicles.items()}
     if file.drive.own:
         data["signals"] = [_course_json(*key, course) for key, course in file.drive.own.items()]
     return data | {"verdict": dict(verdict)}
@@ -83,12 +89,13 @@ def _lanelet_json(lanelet: Lanelet) -> dict[str, Any]:
     }
 
 
-def _motion_json(motion: Motion) -> dict[str, Any]:
+def _motion_json(motion: Motion, with_jerk: bool) -> dict[str, Any]:
     pieces = [
         {
             "duration": None if p.duration is None else str(p.duration),
             "a_lon": str(p.a_lon),
             "a_lat": str(p.a_lat),
+            **({"j_lon": str(p.j_lon)} if with_jerk else {}),
         }
         for p in motion.pieces
     ]
@@ -110,8 +117,10 @@ def load_drive(path: Path) -> DriveFile:
 def read_drive(content: object, where: str) -> DriveFile:
     """The inverse of ``drive_data``. Raises ``InputError``."""
     data = Fields(content, where, _FIELDS)
-    if data.text("schema") != SCHEMA:
-        raise InputError(f"{where}: schema={data.text('schema')!r}, but a drive file has {SCHEMA!r}")
+    schema = data.text("schema")
+    if schema not in SCHEMAS_READ:
+        known = " or ".join(map(repr, SCHEMAS_READ))
+        raise InputError(f"{where}: schema={schema!r}, but a drive file has {known}")
     horizon = data.rational("horizon")
     if horizon < 0:
         raise InputError(f"{where}: horizon={horizon} is negative")
@@ -132,13 +141,15 @@ def read_drive(content: object, where: str) -> DriveFile:
         values,
         options,
         read_road(data.content.get("road"), f"{where}, road"),
-        _drive(data, where),
+        _drive(data, where, schema == JERK_SCHEMA),
         data.flag("overlaps_allowed") if "overlaps_allowed" in data.content else False,
     )
 
 
-def _drive(data: Fields, where: str) -> Drive:
-    vehicles = {k: _motion(v, f"{where}, vehicle {k}") for k, v in data.mapping("vehicles").items()}
+def _drive(data: Fields, where: str, with_jerk: bool) -> Drive:
+    vehicles = {
+        k: _motion(v, f"{where}, vehicle {k}", with_jerk) for k, v in data.mapping("vehicles").items()
+    }
     own: dict[tuple[str, str], Course] = {}
     entries = data.items("signals") if "signals" in data.content else []
     _few(entries, "signals", where)
@@ -230,17 +241,19 @@ def _lanelet(content: object, where: str) -> Lanelet:
     )
 
 
-def _motion(content: object, where: str) -> Motion:
+def _motion(content: object, where: str, with_jerk: bool) -> Motion:
     data = Fields(content, where, (*_NUMBERS, "kind", "pieces"))
     kind = next((x for x in KINDS if data.has("kind") and x == data.text("kind")), None)
     if data.has("kind") and kind is None:
         raise InputError(f"{where}: kind={data.text('kind')!r}, but kinds are {', '.join(KINDS)}")
     _few(data.items("pieces"), "pieces", where)
+    fields = ("duration", "a_lon", "a_lat", *(("j_lon",) if with_jerk else ()))
     pieces = []
     for k, entry in enumerate(data.items("pieces")):
-        piece = Fields(entry, f"{where}, piece {k + 1}", ("duration", "a_lon", "a_lat"))
+        piece = Fields(entry, f"{where}, piece {k + 1}", fields)
         duration = None if piece.get("duration") is None else piece.rational("duration")
-        pieces.append(Piece(duration, piece.rational("a_lon"), piece.rational("a_lat")))
+        jerk = piece.rational("j_lon") if with_jerk else Fraction(0)
+        pieces.append(Piece(duration, piece.rational("a_lon"), piece.rational("a_lat"), jerk))
     numbers = {str(name): data.rational(name) for name in _NUMBERS}
     try:
         return Motion(**numbers, pieces=tuple(pieces), kind=kind)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields
-from roadproof.spec.library import Library, load_library
+from roadproof.spec.library import Library, load_library, on_request, read_specification
 
 
 def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tuple[Library, tuple[Path, ...]]:
@@ -27,8 +27,16 @@ def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tup
     paths = tuple(folder / name for name in names)
     if not paths:
         return below, ()
+    shipped = {file.name: file for file in on_request().values()}
+    asked = [path for path in paths if path.name in shipped]
+    for path in asked:
+        if read_specification(path).text != read_specification(shipped[path.name]).text:
+            raise InputError(
+                f"{path}: it is not the file of that name that comes with roadproof, so what the evidence "
+                "says is not what it seems; name the file with --spec if that is meant"
+            )
     above = load_library((*given, *paths))
-    _check_adds_only(below, above, paths)
+    _check_adds_only(load_library((*given, *asked)), above, paths)
     return above, paths
 
 
@@ -40,7 +48,9 @@ def _check_adds_only(below: Library, above: Library, paths: Sequence[Path]) -> N
     # One more variant replaces definitions under a value that may be the default one.
     for choice, definitions in above.variants.items():
         if definitions != below.variants.get(choice):
-            changed += [definition.name for definition in definitions]
+            changed += [
+                x.name for x in definitions if choice[0] in below.options or x.name in below.definitions
+            ]
     if changed:
         raise InputError(
             f"{', '.join(map(str, paths))}: changes '{changed[0]}' of the library, so what the evidence says "

@@ -11,11 +11,13 @@ from math import ceil, floor
 
 from roadproof.errors import InputError
 from roadproof.world.drive import Motion
-from roadproof.world.motion import State, starts_of, state_at
+from roadproof.world.motion import State, advance, monotone_starts, states_at
 from roadproof.world.road import Lanelet, Road
 
 MARGIN = 100
 """Metres of road beyond the drive and beyond the ends of lanelets, where lanelets have no end."""
+_NEAR = Fraction(1, 2**20)
+"""Seconds: so near to where its speed is 0 a vehicle is where it stands by far less than ``MARGIN``."""
 
 
 @dataclass(frozen=True)
@@ -89,15 +91,33 @@ def span_of(motions: list[Motion], horizon: Fraction) -> tuple[Fraction, Fractio
 
 
 def _extremes(motion: Motion, horizon: Fraction) -> list[State]:
-    """States among which s is least and greatest: both ends, every knot, and where the speed is 0."""
-    starts = [x for x in starts_of(motion) if x.time < horizon]
+    """States among which s is least and greatest: both ends, every knot, and where the speed is 0.
+
+    With jerk that may be an irrational time; then it is one within ``_NEAR`` of it.
+    """
+    starts = [x for x in monotone_starts(motion) if x.time < horizon]
     times = {Fraction(0), horizon, *(x.time for x in starts)}
     ends = [x.time for x in starts[1:]] + [horizon]
     for state, end in zip(starts, ends, strict=True):
-        still = state.time - state.v_lon / state.a_lon if state.a_lon else end
-        if state.time < still < end:
-            times.add(still)
-    return [state_at(motion, time) for time in sorted(times)]
+        times.add(_still(state, end))
+    return list(states_at(motion, sorted(times)))
+
+
+def _still(state: State, end: Fraction) -> Fraction:
+    """When a speed that grows or falls from ``state`` on is 0, or one of both ends where it is so nowhere."""
+    begin = state.time
+    if state.j_lon == 0:
+        still = begin - state.v_lon / state.a_lon if state.a_lon else end
+        return still if begin < still < end else end
+    if state.v_lon * advance(state, end - begin).v_lon >= 0:
+        return end
+    while end - begin > _NEAR:
+        middle = (begin + end) / 2
+        if state.v_lon * advance(state, middle - state.time).v_lon > 0:
+            begin = middle
+        else:
+            end = middle
+    return begin
 
 
 def together(one: Lanelet, other: Lanelet, road: Road) -> bool:

@@ -12,7 +12,7 @@ from math import ceil
 from roadproof.exporting.layout import Layout, Section, together
 from roadproof.exporting.subject import WRITTEN, Subject
 from roadproof.exporting.xml import Element, decimal, document, element
-from roadproof.world.motion import starts_of, state_at
+from roadproof.world.motion import monotone_starts, state_at
 from roadproof.world.road import Attribute, Lanelet
 
 _TYPES: Mapping[Attribute, str] = {"main": "driving", "merge": "entry", "departure": "exit"}
@@ -52,7 +52,7 @@ def _limit(subject: Subject) -> int:
     horizon = subject.file.horizon
     speeds = [state_at(x, horizon).v_lon for x in subject.vehicles.values()]
     for motion in subject.vehicles.values():
-        speeds += [x.v_lon for x in starts_of(motion) if x.time <= horizon]
+        speeds += [x.v_lon for x in monotone_starts(motion) if x.time <= horizon]
     return max(SPEED, 10 * ceil(max(speeds) * Fraction(36, 100)))
 
 

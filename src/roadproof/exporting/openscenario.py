@@ -71,12 +71,8 @@ def _said(subject: Subject, lines: dict[str, Polyline]) -> str:
 
 
 def _corner(motion: Motion, line: Polyline) -> float:
-    """How far a corner of the turned box is from that of the aligned one at most.
-
-    On a piece the heading grows or falls, so it is greatest at a vertex.
-    """
-    turned = max(abs(x) for x in line.headings)
-    return 2 * math.sin(turned / 2) * math.hypot(motion.length, motion.width) / 2
+    """How far a corner of the turned box is from that of the aligned one at most."""
+    return 2 * math.sin(line.turned / 2) * math.hypot(motion.length, motion.width) / 2
 
 
 def _vehicle(motion: Motion, line: Polyline) -> Element:
@@ -87,7 +83,7 @@ def _vehicle(motion: Motion, line: Polyline) -> Element:
             "Dimensions", width=decimal(motion.width), length=decimal(motion.length), height=decimal(HEIGHT)
         ),
     )
-    pulls = [float(x.a_lon) for x in line.vertices]
+    pulls = [float(x) for x in line.pulls]
     can = element(
         "Performance",
         maxSpeed=decimal(max(x.v_lon for x in line.vertices) + 10),

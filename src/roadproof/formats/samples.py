@@ -27,7 +27,7 @@ from roadproof.formats.source import TRACK_FILES, Files, Format, beside, first_l
 from roadproof.formats.straight import StraightRoad, of_road, place
 from roadproof.formats.table import Kind, Table, count_lines, read_pieces, read_table
 from roadproof.formats.windows import Divided
-from roadproof.signals import RECORDED, SIZES
+from roadproof.signals import RECORDED, SIGNALS, SIZES
 from roadproof.world.models import load_recorded_road
 
 HEADER = ("time", "vehicle", *RECORDED, *SIZES)
@@ -75,8 +75,8 @@ def _header_of(path: Path) -> tuple[tuple[str, ...], dict[str, Kind]]:
 
 
 def own_columns(names: Iterable[str]) -> tuple[str, ...]:
-    """Those of the columns that may be own signals."""
-    return tuple(name for name in names if name not in (*HEADER, "kind", LABEL))
+    """Those of the columns that may be own signals, which none is of the list of signals."""
+    return tuple(name for name in names if name not in (*HEADER, *SIGNALS, "kind", LABEL))
 
 
 def read_recording(path: Path) -> Recording:

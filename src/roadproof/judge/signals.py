@@ -32,7 +32,7 @@ class Signals(Protocol):
 
 @dataclass(frozen=True)
 class DriveSignals:
-    """The signals of a drive: quadratic positions, linear speeds, constant accelerations."""
+    """The signals of a drive, polynomials in time on each piece: positions of degree 3 at most."""
 
     drive: Drive
     _starts: dict[str, tuple[State, ...]] = field(default_factory=dict, repr=False, compare=False)
@@ -157,24 +157,33 @@ def _course(name: t.SignalName, x: State) -> Polynomial:
     begin = x.time
     match name:
         case "s":
-            return _quadratic(x.s, x.v_lon, x.a_lon, begin)
+            return _from(begin, x.s, x.v_lon, x.a_lon / 2, x.j_lon / 6)
         case "d":
-            return _quadratic(x.d, x.v_lat, x.a_lat, begin)
+            return _from(begin, x.d, x.v_lat, x.a_lat / 2)
         case "v_lon":
-            return polynomial(x.v_lon - x.a_lon * begin, x.a_lon)
+            return _from(begin, x.v_lon, x.a_lon, x.j_lon / 2)
         case "v_lat":
-            return polynomial(x.v_lat - x.a_lat * begin, x.a_lat)
+            return _from(begin, x.v_lat, x.a_lat)
         case "a_lon":
-            return polynomial(x.a_lon)
+            return _from(begin, x.a_lon, x.j_lon)
         case "a_lat":
             return polynomial(x.a_lat)
+        case "j_lon":
+            return polynomial(x.j_lon)
         case _:
             assert_never(name)
 
 
-def _quadratic(position: Fraction, speed: Fraction, acceleration: Fraction, begin: Fraction) -> Polynomial:
-    half = acceleration / 2
-    return polynomial(position - begin * (speed - half * begin), speed - acceleration * begin, half)
+def _from(begin: Fraction, *coefficients: Fraction) -> Polynomial:
+    """A polynomial in time since 0, from the coefficients of the one in time since ``begin``."""
+    found = list(coefficients)
+    while found and found[-1] == 0:
+        found.pop()
+    # Horner's division by t - (-begin), once for each coefficient: what is left are those of the other one.
+    for lowest in range(len(found) - 1):
+        for k in range(len(found) - 2, lowest - 1, -1):
+            found[k] -= begin * found[k + 1]
+    return polynomial(*found)
 
 
 def _product(left: Polynomial, right: Polynomial) -> Polynomial:

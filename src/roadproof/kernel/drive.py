@@ -87,6 +87,8 @@ class ClaimText:
 
 def claim_text(shown: Shown) -> ClaimText:
     """Raises ``InputError`` for what is not printed."""
+    for name, motion in shown.file.drive.vehicles.items():
+        _refuse_jerk(name, motion)
     printer = Printer(shown.formals)
     claim = printer.formula(shown.formula)
     return ClaimText(claim, printer.things, printer.definitions)
@@ -163,7 +165,14 @@ def _rectangle(x: Lanelet) -> str:
     )
 
 
+def _refuse_jerk(name: str, motion: Motion) -> None:
+    """Drive.v has accelerations that are constant on every piece, and no others."""
+    if motion.has_jerk:
+        raise InputError(f"jerk: the acceleration of {name} is not constant on every piece")
+
+
 def _body(name: str, motion: Motion) -> str:
+    _refuse_jerk(name, motion)
     along = _course(motion.s, motion.v_lon, motion, lambda p: p[0])
     across = _course(motion.d, motion.v_lat, motion, lambda p: p[1])
     return (

@@ -249,5 +249,7 @@ def _on_a_motorway(signal: t.SignalName) -> tuple[int, int]:
             return -8, 5
         case "a_lat":
             return -3, 3
+        case "j_lon":
+            return -10, 10
         case _:
             assert_never(signal)

@@ -64,7 +64,7 @@ def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> dict[st
         return [round(float(x), 4) for x in batch.signals[signal, name][:count, 0]]
 
     columns = [column(x) for x, about in SIGNALS.items() if about.kept == "start"]
-    knots = [[round(k * dt, 6), *row, 0.0, 0.0] for k, row in enumerate(zip(*columns, strict=True))]
+    knots = [[round(k * dt, 6), *row, 0.0, 0.0, 0.0] for k, row in enumerate(zip(*columns, strict=True))]
     length, width = (float(batch.sizes[x, name][0]) for x in ("length", "width"))
     return {"length": length, "width": width, "knots": knots}
 

@@ -25,7 +25,7 @@ class Limits:
     ``road`` and, unless ``collisions``, apart. ``vehicles``: model by vehicle; ``lanes``: free lanes that
     stand for one lane only; ``values``: parameters (SI); ``reach``: how far apart vehicles start (m);
     ``starts``: where fronts are at time 0 (m), None where it makes no difference. ``own``: own signals,
-    which keep their values between samples, and their ranges.
+    which keep their values between samples, and their ranges. ``jerk``: whether the formula speaks of it.
     """
 
     road: str
@@ -38,6 +38,7 @@ class Limits:
     collisions: bool
     shown: tuple[str, ...] = ()
     own: Mapping[str, str] = field(default_factory=dict)
+    jerk: bool = False
 
     def text(self, options: Sequence[str] = SEARCH_OPTIONS) -> str:
         """One sentence that names every limit, and the ``options`` that widen them."""
@@ -45,7 +46,7 @@ class Limits:
         parts = [
             f"no drive on road {self.road} with samples every {dt:g} s up to {horizon:g} s",
             "the formula read at them and the last standing for all later time",
-            "accelerations constant between them",
+            f"accelerations constant between them{', so that jerk is 0' if self.jerk else ''}",
             f"boxes on the road{'' if self.collisions or len(self.vehicles) < 2 else ' and apart'} at them",
             f"vehicles {_listed(self.vehicles)}",
         ]
@@ -72,7 +73,8 @@ class Limits:
             "dt": str(self.grid.dt),
             "horizon": str(self.grid.horizon),
             "read": "at samples, the last for all later time",
-            "accelerations": "constant between samples, none after the last",
+            "accelerations": "constant between samples, none after the last"
+            + (", no jerk" if self.jerk else ""),
             "boxes": "on the road at samples" + ("" if self.collisions else ", apart at samples"),
             "vehicles": dict(self.vehicles),
             "lanes": dict(self.lanes),

@@ -17,7 +17,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.own import told_range
-from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.rewrite import parameters_of, signals_of
 from roadproof.searching.grid import fitting_grid, make_grid
 from roadproof.searching.kinds import refuse_unknown, usual_model
 from roadproof.searching.limits import Limits
@@ -99,6 +99,7 @@ class Posed:
             self.assumptions.collisions,
             tuple(sorted(set(shown))),
             self._own_ranges(),
+            "j_lon" in signals_of([self.query.formula]),
         )
 
     def _own_ranges(self) -> dict[str, str]:

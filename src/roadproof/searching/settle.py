@@ -14,6 +14,7 @@ from roadproof.evidence.judged import Judged
 from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
+from roadproof.searching.steady import steady_drive
 from roadproof.spec.library import Specification
 from roadproof.spec.motion import Assumed, is_moving, under_limits
 from roadproof.spec.query import Query
@@ -74,12 +75,16 @@ def settle(
         return in_doubt(str(late), begun)
     if not seek_drive or result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
         return Settled(result)
+    against = under_limits(specification, query, said)
     try:
-        return Settled(
-            result, _drive_against(under_limits(specification, query, said), specification, effort)
-        )
+        drive = _drive_against(against, specification, effort)
     except Late as late:
-        return Settled(result) if result.verdict is Verdict.REFUTED else in_doubt(str(late), begun)
+        if result.verdict is not Verdict.REFUTED:
+            return in_doubt(str(late), begun)
+        drive = None
+    if drive is None and result.countermodel is not None:
+        drive = steady_drive(specification, against, result.countermodel)
+    return Settled(result, drive)
 
 
 def _settle_of_motions(

@@ -158,8 +158,18 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
     return f"there is no {what} '{name}'" + (f"; there are {listed}" if names else "")
 
 
+def on_request() -> dict[str, Path]:
+    """The specification files that come with roadproof and are read where they are named, by name."""
+    folder = Path(__file__).parent / "library" / "on_request"
+    return {file.stem: file for file in sorted(folder.glob("*.spec"))}
+
+
 def read_specification(path: Path) -> Source:
-    """The text of a user's file. Raises ``InputError`` where it cannot be read as UTF-8 text."""
+    """The text of a user's file, or of one that is read ``on_request`` and is named without its ending.
+
+    Raises ``InputError`` where it cannot be read as UTF-8 text.
+    """
+    path = on_request().get(str(path), path)
     data = read_limited(path, LARGEST_FILE, "split it, or name another file")
     try:
         return Source(str(path), data.decode("utf-8"))

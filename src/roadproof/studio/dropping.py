@@ -14,7 +14,7 @@ from typing import Any
 import roadproof as rp
 from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.evaluation.one_trace import OneTrace, read_pair, read_samples
-from roadproof.evidence.drive_file import SCHEMA as DRIVE
+from roadproof.evidence.drive_file import SCHEMAS_READ as DRIVES
 from roadproof.evidence.drive_file import read_drive
 from roadproof.evidence.strict import Fields, parse_json
 from roadproof.report.viewer_recorded import recorded_data
@@ -60,7 +60,7 @@ def pair(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
 def _evidence(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
     [(name, content)] = _files(ask)
     data = parse_json(content, name)
-    if isinstance(data, dict) and data.get("schema") == DRIVE:
+    if isinstance(data, dict) and data.get("schema") in DRIVES:
         file = read_drive(data, name)
         return {"drive": data, "view": view(draft_of(ask), file, {**ask, "formula": file.formula})}
     say("checking it")

@@ -1,6 +1,7 @@
-"""A synthesised drive: rational initial states and piecewise constant rational accelerations.
+"""A synthesised drive: rational initial states, and accelerations and jerks in pieces, rational too.
 
-At a knot the acceleration is that of the piece which begins there; the last piece lasts for ever.
+Along the road the jerk is constant on each piece, across it the acceleration is. At a knot acceleration and
+jerk are those of the piece which begins there, so an acceleration may jump; the last piece lasts for ever.
 """
 
 from collections.abc import Mapping
@@ -21,11 +22,15 @@ def value_at(course: Course, time: Fraction) -> Fraction:
 
 @dataclass(frozen=True)
 class Piece:
-    """Constant accelerations in m/s² for ``duration`` seconds; None is for ever (the last piece)."""
+    """Accelerations in m/s² for ``duration`` seconds; None is for ever (the last piece).
+
+    ``a_lon`` is that at the start of the piece, and grows by ``j_lon`` (m/s³); ``a_lat`` is constant.
+    """
 
     duration: Fraction | None
     a_lon: Fraction
     a_lat: Fraction
+    j_lon: Fraction = Fraction(0)
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,16 @@ class Motion:
             raise ValueError("the last piece must last for ever: duration None")
         if any(p is None or p.duration is None or p.duration <= 0 for p in before):
             raise ValueError("every piece but the last needs a duration > 0")
+        if last.j_lon != 0:
+            raise ValueError(
+                f"the last piece has j_lon={last.j_lon} m/s^3, but it lasts for ever, and no acceleration "
+                "grows for ever: give it a duration, and let a piece with j_lon=0 follow"
+            )
+
+    @property
+    def has_jerk(self) -> bool:
+        """Whether the acceleration is not constant on some piece."""
+        return any(piece.j_lon != 0 for piece in self.pieces)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Entry
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import is_pair
-from roadproof.evidence.drive_file import SCHEMA
+from roadproof.evidence.drive_file import SCHEMAS_READ
 from roadproof.formats.samples import HEADER
 from roadproof.formats.source import TRACK_FILES, first_line
 from roadproof.spec.compose import always, both
@@ -101,7 +101,8 @@ def is_test(path: Path) -> bool:
     """
     match path.suffix:
         case ".json":
-            return f'"{SCHEMA}"' in _beginning(path)
+            begun = _beginning(path)
+            return any(f'"{schema}"' in begun for schema in SCHEMAS_READ)
         case ".csv":
             header = {x.strip() for x in first_line(path).split(",")}
             return header >= {*HEADER} and not TRACK_FILES.fullmatch(path.name) and _is_alone(path)

@@ -36,7 +36,7 @@ class FoundGap:
         start off the middle of a lane; and how long it takes (s)."""
         motions = self.file.drive.vehicles.values()
         movers = sum(m.v_lat != 0 or any(p.a_lat for p in m.pieces) for m in motions)
-        changes = sum((p.a_lon != 0) + (p.a_lat != 0) for m in motions for p in m.pieces)
+        changes = sum((p.a_lon != 0 or p.j_lon != 0) + (p.a_lat != 0) for m in motions for p in m.pieces)
         middles = {sum(lanelet.d, Fraction(0)) for lanelet in self.file.road.lanelets}
         off = sum(2 * m.d - m.width not in middles for m in motions)
         longest = max(sum((p.duration or Fraction(0) for p in m.pieces), Fraction(0)) for m in motions)

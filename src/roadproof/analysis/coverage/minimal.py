@@ -58,7 +58,7 @@ def _steady_across(motion: Motion) -> Motion:
 
 
 def _steady_along(motion: Motion) -> Motion:
-    return replace(motion, pieces=tuple(replace(p, a_lon=ZERO) for p in motion.pieces))
+    return replace(motion, pieces=tuple(replace(p, a_lon=ZERO, j_lon=ZERO) for p in motion.pieces))
 
 
 _ROUNDER: tuple[Callable[[Motion], Motion], ...] = (
@@ -70,7 +70,7 @@ _ROUNDER: tuple[Callable[[Motion], Motion], ...] = (
 
 def _without_acceleration(motion: Motion, place: int) -> Motion:
     pieces = list(motion.pieces)
-    pieces[place] = replace(pieces[place], a_lon=ZERO)
+    pieces[place] = replace(pieces[place], a_lon=ZERO, j_lon=ZERO)
     return replace(motion, pieces=tuple(pieces))
 
 
@@ -80,7 +80,9 @@ def _with_mean(motion: Motion, place: int) -> Motion:
     if first.duration is None or second.duration is None:
         return motion
     whole = first.duration + second.duration
-    lon = (first.duration * first.a_lon + second.duration * second.a_lon) / whole
+    lon = (
+        sum(x.duration * (x.a_lon + x.j_lon * x.duration / 2) for x in (first, second) if x.duration) / whole
+    )
     lat = (first.duration * first.a_lat + second.duration * second.a_lat) / whole
     one = Piece(whole, lon, lat)
     return replace(motion, pieces=(*motion.pieces[:place], one, *motion.pieces[place + 2 :]))
@@ -95,14 +97,19 @@ def _stays(motion: Motion, road: Road) -> bool:
 
 
 def _merged(motion: Motion) -> Motion:
-    """Neighbouring pieces with the same accelerations as one."""
+    """Neighbouring pieces with the same accelerations as one, where they have no jerk."""
     pieces: list[Piece] = []
     for piece in motion.pieces:
         before = pieces[-1] if pieces else None
-        if before is not None and (before.a_lon, before.a_lat) == (piece.a_lon, piece.a_lat):
+        if before is not None and _constant(before) == _constant(piece) is not None:
             ends = piece.duration is None or before.duration is None
             duration = None if ends else before.duration + piece.duration  # type: ignore[operator]
             pieces[-1] = replace(before, duration=duration)
         else:
             pieces.append(piece)
     return replace(motion, pieces=tuple(pieces))
+
+
+def _constant(piece: Piece) -> tuple[Fraction, Fraction] | None:
+    """The accelerations of a piece; None where one of them is not constant."""
+    return None if piece.j_lon else (piece.a_lon, piece.a_lat)

@@ -15,7 +15,7 @@ from typing import Literal, TypeAlias
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence import certificate
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.drive_file import SCHEMA, DriveFile, read_drive
+from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, read_drive
 from roadproof.evidence.strict import Fields, rational, read_json
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -109,7 +109,7 @@ def one_of(data: Fields, shows: Shows, proof: str = "certificate", drive: str = 
 def read_evidence(path: Path) -> Certificate | DriveFile:
     """A certificate or a drive file. Raises ``InputError``."""
     content = read_json(path)
-    if Fields(content, str(path)).text("schema") == SCHEMA:
+    if Fields(content, str(path)).text("schema") in SCHEMAS_READ:
         return read_drive(content, str(path))
     return certificate.read_certificate_data(content, str(path))
 

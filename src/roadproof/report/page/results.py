@@ -12,7 +12,7 @@ from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.study.shelf import INDEX
 
 TRAFFIC = "results.json"
-EVIDENCE = (certificate.SCHEMA, drive_file.SCHEMA)
+EVIDENCE = (certificate.SCHEMA, *drive_file.SCHEMAS_READ)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 // What can be computed from the document of a drive: where a vehicle is, what is true, what is needed.
-// Units are those of the document: m, m/s, m/s^2, s.
+// Units are those of the document: m, m/s, m/s^2, m/s^3, s.
 
-/** The state of a vehicle at a time: [time, s, d, v_lon, v_lat, a_lon, a_lat] of its last knot, moved on. */
+/** The state of a vehicle at a time: [time, s, d, v_lon, v_lat, a_lon, a_lat, j_lon] of its last knot, moved on. */
 export function stateAt(vehicle, time) {
   const knots = vehicle.knots;
   let knot = knots[0];
@@ -9,14 +9,14 @@ export function stateAt(vehicle, time) {
     if (next[0] > time) break;
     knot = next;
   }
-  const [begun, s, d, vLon, vLat, aLon, aLat] = knot;
+  const [begun, s, d, vLon, vLat, aLon, aLat, jLon] = knot;
   const t = time - begun;
   return {
-    s: s + t * (vLon + (aLon * t) / 2),
+    s: s + t * (vLon + t * (aLon / 2 + (jLon * t) / 6)),
     d: d + t * (vLat + (aLat * t) / 2),
-    vLon: vLon + aLon * t,
+    vLon: vLon + t * (aLon + (jLon * t) / 2),
     vLat: vLat + aLat * t,
-    aLon,
+    aLon: aLon + jLon * t,
     aLat,
   };
 }

@@ -1,0 +1,315 @@
+"""Which initial values of a manoeuvre a driver can prevent a collision from: exact lines, drives, lemmas.
+
+A question in pieces: a plate for each model and choice of fixed values, and the lemmas which say that the
+formula is the boundary.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import Any, TypeAlias
+
+from roadproof.analysis.basis import Basis
+from roadproof.effort import Late
+from roadproof.errors import InputError
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
+from roadproof.judge.algebraic import Point, Root, approximate
+from roadproof.judge.truth import TruthSet
+from roadproof.logic.formula import Formula
+from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.driving import Reading
+from roadproof.preventing.lemmas import Lemma, lemmas_for
+from roadproof.preventing.manoeuvres import Manoeuvre, Values
+from roadproof.preventing.models import Model, unpreventable
+from roadproof.preventing.sides import SIDES, Side, claim_of, first_drive
+from roadproof.proving.prover import prove
+from roadproof.spec.bind import bind
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.motion import Assumed, statement, value_texts
+from roadproof.study.shelf import Question, Shelf
+from roadproof.verdict import Verdict
+from roadproof.world.road import Road
+
+SCHEMA = "roadproof/preventable/1"
+_PLACES = 6
+_NO_ROAD = Road("none", (), frozenset())
+
+
+@dataclass(frozen=True)
+class End:
+    """An end of a span: a number near it, and what it is exactly: a fraction, or a root of a polynomial."""
+
+    near: float
+    exact: str
+
+
+@dataclass(frozen=True)
+class Line:
+    """At a value of the other side (SI), where along the line a collision is unpreventable."""
+
+    at: Fraction
+    spans: tuple[tuple[End, End], ...]
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A drive on one side of the boundary with its initial values; or why there is none."""
+
+    side: Side
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    drive: Judged | None = None
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Plate:
+    """One model over one plane."""
+
+    name: str
+    model: str
+    fixed: Values
+    lines: tuple[Line, ...] = ()
+    shown: tuple[Shown, ...] = ()
+    reason: str = ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """WITNESSED where each side that the plane has is shown by a drive."""
+        lacking = any(x.drive is None and not _is_absent(x) for x in self.shown)
+        return Verdict.UNKNOWN if lacking or not self.lines else Verdict.WITNESSED
+
+
+def _is_absent(shown: Shown) -> bool:
+    return shown.reason.startswith("no place")
+
+
+@dataclass(frozen=True)
+class Proved:
+    """A lemma with its verdict."""
+
+    lemma: Lemma
+    verdict: Verdict
+    assuming: tuple[str, ...] = ()
+    certificate: Certificate | None = None
+    reason: str = ""
+
+
+Answer: TypeAlias = Plate | Proved
+
+
+@dataclass(frozen=True)
+class PlatePiece:
+    """One plate to be drawn."""
+
+    name: str
+    model: Model
+    fixed: Values
+
+
+Piece: TypeAlias = PlatePiece | Lemma
+
+
+@dataclass(frozen=True)
+class Preventable:
+    """The question as a ``study.frame.Study``: ``sheet`` has the values that differ from plate to plate."""
+
+    basis: Basis
+    manoeuvre: Manoeuvre
+    models: tuple[Model, ...]
+    fixed: Values
+    sheet: Mapping[str, tuple[Fraction, ...]]
+    along: tuple[Fraction, Fraction]
+    across: tuple[Fraction, Fraction]
+    rows: int = 100
+    with_lemmas: bool = True
+
+    @property
+    def question(self) -> Question:
+        said = {
+            "set": self.basis.specification.set_name,
+            "manoeuvre": self.manoeuvre.name,
+            "along": [self.manoeuvre.line, *map(str, self.along)],
+            "across": [self.manoeuvre.across, *map(str, self.across), str(self.rows)],
+        }
+        return Question(SCHEMA, said | self.basis.said(), {}, self.basis.library)
+
+    @cached_property
+    def plates(self) -> dict[str, PlatePiece]:
+        """The plates by name: for each choice of the sheet's values, each model."""
+        found: dict[str, PlatePiece] = {}
+        for chosen in product(*self.sheet.values()):
+            fixed = {**self.fixed, **dict(zip(self.sheet, chosen, strict=True))}
+            told = "-".join(f"{name}-{value}".replace("/", "_") for name, value in fixed.items())
+            for model in self.models:
+                name = f"{model.name}-{told}" if told else model.name
+                found[name] = PlatePiece(name, model, fixed)
+        return found
+
+    @cached_property
+    def lemmas(self) -> dict[str, Lemma]:
+        """The lemmas by name."""
+        asked = lemmas_for(self.manoeuvre.name, self.models) if self.with_lemmas else []
+        return {f"lemma-{lemma.name}": lemma for lemma in asked}
+
+    def pieces(self, known: Mapping[str, Answer]) -> Sequence[Piece]:
+        left: dict[str, Piece] = {**self.plates, **self.lemmas}
+        return [piece for name, piece in left.items() if name not in known]
+
+    def settle(self, piece: Piece) -> dict[str, Answer]:
+        if isinstance(piece, Lemma):
+            return {f"lemma-{piece.name}": self._prove(piece)}
+        return {piece.name: self._plate(piece)}
+
+    def doubt(self, piece: Piece, reason: str) -> dict[str, Answer]:
+        if isinstance(piece, Lemma):
+            return {f"lemma-{piece.name}": Proved(piece, Verdict.UNKNOWN, self._said(piece), reason=reason)}
+        return {piece.name: Plate(piece.name, piece.model.name, piece.fixed, reason=reason)}
+
+    def is_sure(self, answer: Answer) -> bool:
+        return answer.verdict is not Verdict.UNKNOWN
+
+    @cached_property
+    def reading(self) -> Reading:
+        """Values of parameters, and options."""
+        return Reading(self.basis.all_values(), self.basis.specification.options)
+
+    def plane(self, fixed: Values) -> Plane:
+        """The plane of a plate: up to where POV would go backwards."""
+        low, high = self.across
+        if self.manoeuvre.across == "dV0":
+            high = min(high, self.manoeuvre.values(fixed)["Ve0"])
+        return Plane(self.manoeuvre, fixed, self.along, (low, high), self.rows)
+
+    def formula(self, model: str) -> Formula:
+        """The boundary with values put in."""
+        text = unpreventable(self.manoeuvre.name, model, self.manoeuvre.vehicles)
+        query = read_claim(self.basis.specification, text)
+        return bind(query.formula, _NO_ROAD, {}, self.basis.all_values())
+
+    def _plate(self, piece: PlatePiece) -> Plate:
+        plane, model = self.plane(piece.fixed), piece.model.name
+        formula = self.formula(model)
+        true = tuple(line(plane, formula, row) for row in plane.rows)
+        lines = tuple(Line(row, _spans(x)) for row, x in zip(plane.rows, true, strict=True))
+        shown = tuple(self._show(plane, model, true, side) for side in SIDES)
+        return Plate(piece.name, model, piece.fixed, lines, shown)
+
+    def _show(self, plane: Plane, model: str, true: tuple[TruthSet, ...], side: Side) -> Shown:
+        found = first_drive(plane, model, true, side, self.basis.specification, self.reading)
+        return Shown(side, reason=found) if isinstance(found, str) else Shown(side, *found)
+
+    def _said(self, lemma: Lemma) -> tuple[str, ...]:
+        values = self.basis.all_values()
+        return value_texts(self.basis.specification, {name: values[name] for name in lemma.parameters})
+
+    def _prove(self, lemma: Lemma) -> Proved:
+        home, said = self.basis.specification, self._said(lemma)
+        try:
+            query, effort = read_claim(home, lemma.claim), self.basis.effort.of(20)
+            result = prove(home, query, effort, assumed=Assumed(said))
+        except Late as late:
+            return Proved(lemma, Verdict.UNKNOWN, said, reason=str(late))
+        return Proved(lemma, result.verdict, said, result.certificate, result.reason)
+
+    # --- answers as plain data -------------------------------------------------------------------
+
+    def record(self, name: str, answer: Answer, shelf: Shelf) -> dict[str, Any]:
+        if isinstance(answer, Proved):
+            return {
+                "lemma": {
+                    "name": answer.lemma.name,
+                    "title": answer.lemma.title,
+                    "claim": answer.lemma.claim,
+                    "assuming": list(answer.assuming),
+                    "verdict": str(answer.verdict),
+                    "certificate": shelf.certificate(f"{name}.json", answer.certificate),
+                    "reason": answer.reason,
+                }
+            }
+        return {
+            "plate": {
+                "name": name,
+                "model": answer.model,
+                "fixed": {key: str(value) for key, value in answer.fixed.items()},
+                "verdict": str(answer.verdict),
+                "formula": unpreventable(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
+                "lines": [_line_data(x) for x in answer.lines],
+                "shown": [self._shown_data(answer, x, shelf) for x in answer.shown],
+                "reason": answer.reason,
+            }
+        }
+
+    def _shown_data(self, plate: Plate, shown: Shown, shelf: Shelf) -> dict[str, Any]:
+        drive = shown.drive
+        claim = "" if drive is None else claim_of(self.manoeuvre, plate.model, shown.values, shown.side)
+        return {
+            "side": shown.side,
+            "at": {name: str(value) for name, value in shown.values.items()},
+            "verdict": str(Verdict.UNKNOWN if drive is None else Verdict.WITNESSED),
+            "formula": claim,
+            "drive": shelf.drive(f"{plate.name}-{shown.side}.json", drive),
+            "reason": shown.reason,
+        }
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answer]:
+        if "lemma" in record:
+            said = record["lemma"]
+            name = f"lemma-{said['name']}"
+            if name not in self.lemmas or self.lemmas[name].claim != said["claim"]:
+                raise InputError(f"{name} is no lemma of this question")
+            certificate = shelf.read_certificate(said["certificate"])
+            verdict, assuming = Verdict(said["verdict"]), tuple(said["assuming"])
+            return name, Proved(self.lemmas[name], verdict, assuming, certificate, said["reason"])
+        said = record["plate"]
+        fixed = {name: Fraction(value) for name, value in said["fixed"].items()}
+        shown = tuple(
+            Shown(
+                x["side"],
+                {name: Fraction(value) for name, value in x["at"].items()},
+                shelf.read_drive(x["drive"]),
+                x["reason"],
+            )
+            for x in said["shown"]
+        )
+        lines = tuple(_read_line(x) for x in said["lines"])
+        return said["name"], Plate(said["name"], said["model"], fixed, lines, shown, said["reason"])
+
+    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+        return {
+            **self.question.heading,
+            "view": "dense",
+            "seconds": round(seconds, 1),
+            "plates": [records[name]["plate"] for name in self.plates],
+            "lemmas": [records[name]["lemma"] for name in self.lemmas],
+        }
+
+
+def said_of(proved: Proved) -> str:
+    """A lemma as a claim, with the values of parameters in front."""
+    return statement(proved.assuming, proved.lemma.claim)
+
+
+def _spans(true: TruthSet) -> tuple[tuple[End, End], ...]:
+    return tuple(
+        (_end(span.begin.point), _end(span.end.point)) for span in true.spans() if span.end is not None
+    )
+
+
+def _end(point: Point) -> End:
+    if isinstance(point, Root):
+        return End(round(approximate(point), _PLACES), f"root of {list(point.polynomial)}, constant first")
+    return End(round(float(point), _PLACES), str(point))
+
+
+def _line_data(line_: Line) -> dict[str, Any]:
+    spans = [[{"near": end.near, "exact": end.exact} for end in span] for span in line_.spans]
+    return {"at": str(line_.at), "unpreventable": spans}
+
+
+def _read_line(said: Mapping[str, Any]) -> Line:
+    spans = tuple((End(a["near"], a["exact"]), End(b["near"], b["exact"])) for a, b in said["unpreventable"])
+    return Line(Fraction(said["at"]), spans)

@@ -1,0 +1,104 @@
+"""``roadproof preventable``: which initial values a driver prevents a collision from, exactly."""
+
+import argparse
+from pathlib import Path
+
+from roadproof.cli.basis import asking, hand_over, read_definitions
+from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options, whole
+from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.errors import UsageError
+
+SUMMARY = "which initial values a driver model prevents a collision from: exact boundaries, drives, proofs"
+
+_EXAMPLES = """\
+examples:
+  roadproof preventable cut-in                            sheets for all models; also by scenario: 1, 2, 4
+  roadproof preventable cut-in --model careful,r157 --at 'Ve0=60km/h' --at Vy=1 --out cut-in
+  roadproof preventable deceleration --at Ve0=60km/h,130km/h --along dx0=0:120
+  roadproof preventable cut-out --option cc_gate=none --param cc_delay=0.5
+  roadproof preventable cut-in --option cc_perception=overlap     another reading of the regulation
+
+A plate varies two initial values and fixes the others. On each of its lines the ends of what is unpreventable
+are exact; a judged drive on each side follows the model, and touches the other vehicle, or never does. The
+lemmas say why the formula (--spec driver) is the boundary. With --out: evidence, plates.csv, plates.png.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("manoeuvre", metavar="MANOEUVRE", help="cut-in (1), cut-out (2) or deceleration (4)")
+    parser.add_argument(
+        "--model", metavar="NAME", action="append", default=[], help="careful, r157, eu1426, rss"
+    )
+    parser.add_argument(
+        "--at",
+        metavar="NAME=VALUE[,…]",
+        action="append",
+        default=[],
+        help="an initial value; several make several plates",
+    )
+    for word, what in (("along", "each line runs along"), ("across", "differs from line to line")):
+        parser.add_argument(f"--{word}", metavar="NAME=LOW:HIGH", help=f"the range of the value that {what}")
+    parser.add_argument(
+        "--lines", type=whole("--lines", 2), default=100, metavar="K", help="lines of a plate (default: 100)"
+    )
+    parser.add_argument("--no-lemmas", action="store_true", help="prove no lemmas")
+    add_specification_options(parser)
+    add_parameter_option(parser)
+    add_effort_options(parser, 60.0, "a lemma")
+    add_working_options(parser)
+    add_sharing_options(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, CSV, pictures")
+    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.api.preventing import DRIVERS, preventable
+    from roadproof.preventing.manoeuvres import MANOEUVRES
+    from roadproof.preventing.models import manoeuvre_of
+
+    if Path(DRIVERS) not in args.specs:
+        args.specs = [Path(DRIVERS), *args.specs]
+    kind = MANOEUVRES[manoeuvre_of(args.manoeuvre)]
+    models = [name.strip() for text in args.model for name in text.split(",")]
+    told = asking(args, args.out)
+    found = preventable(
+        kind.name,
+        models,
+        dict(_named("--at", text) for text in args.at),
+        _range("--along", args.along, kind.line),
+        _range("--across", args.across, kind.across),
+        args.lines,
+        not args.no_lemmas,
+        read_definitions(args, [args.set_name]),
+        told["effort"],
+        told["timeout"],
+        told["out"],
+        told["jobs"],
+        told["progress"],
+        told["say"],
+    )
+    return hand_over(args, found)
+
+
+def _named(option: str, text: str) -> tuple[str, list[str]]:
+    name, equals, value = text.partition("=")
+    if not equals or not value.strip():
+        raise UsageError(
+            f"{option} {text}: write NAME=VALUE, or several with commas, such as Ve0=60km/h,90km/h"
+        )
+    return name.strip(), [x.strip() for x in value.split(",")]
+
+
+def _range(option: str, text: str | None, name: str) -> tuple[str, str] | None:
+    """The range that a text names. Raises ``UsageError`` where it is that of something else."""
+    if text is None:
+        return None
+    said, equals, value = text.partition("=")
+    low, colon, high = value.partition(":")
+    if not equals or not colon:
+        raise UsageError(f"{option} {text}: write {name}=LOW:HIGH")
+    if said.strip() != name:
+        raise UsageError(f"{option} {text}: here it is {name} that varies, so write {name}=LOW:HIGH")
+    return low.strip(), high.strip()

@@ -1,0 +1,1 @@
+"""Preventable or not: drivers of regulations over planes of initial values, exactly."""

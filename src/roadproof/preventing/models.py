@@ -1,0 +1,102 @@
+"""The driver models of ``driver.spec``, and what its definitions are called, which no other file knows."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from roadproof.errors import UsageError
+from roadproof.spec.library import Specification, unknown
+from roadproof.spec.scenarios import number_in
+
+# The scenario of the library that each manoeuvre is the course of.
+SCENARIOS: Mapping[str, int] = MappingProxyType({"cut-in": 1, "cut-out": 2, "deceleration": 4})
+_FORESEEN: Mapping[str, str] = MappingProxyType(
+    {"cut-in": "cutsIn", "cut-out": "cutsOut", "deceleration": "brakesAhead"}
+)
+
+
+@dataclass(frozen=True)
+class Model:
+    """A driver: what it is called, and what it says where."""
+
+    name: str
+    title: str
+    manoeuvres: tuple[str, ...]
+    source: str
+
+
+MODELS: Mapping[str, Model] = MappingProxyType(
+    {
+        model.name: model
+        for model in (
+            Model(
+                "careful",
+                "competent and careful driver",
+                ("cut-in", "cut-out", "deceleration"),
+                "UN R157 (01 series), Annex 3",
+            ),
+            Model("r157", "UN R157 5.2.5.2", ("cut-in",), "UN R157 (01 series), 5.2.5.2"),
+            Model("eu1426", "EU 2022/1426", ("cut-in",), "EU 2022/1426, Annex III Part 1, 1.4.2"),
+            Model(
+                "rss",
+                "RSS proper response",
+                ("cut-in", "deceleration"),
+                "Shalev-Shwartz et al. 2017; values of the paper",
+            ),
+        )
+    }
+)
+
+
+def models_for(manoeuvre: str, names: tuple[str, ...] = ()) -> tuple[Model, ...]:
+    """The models of that name, or all that say something of a manoeuvre. Raises ``UsageError``."""
+    for name in names:
+        if name not in MODELS:
+            raise UsageError(f"model={name}: {unknown('driver model', name, MODELS)}")
+        if manoeuvre not in MODELS[name].manoeuvres:
+            said = ", ".join(x.name for x in MODELS.values() if manoeuvre in x.manoeuvres)
+            raise UsageError(
+                f"model={name}: {MODELS[name].source} says nothing of a {manoeuvre}; these do: {said}"
+            )
+    return tuple(MODELS[name] for name in names) or tuple(
+        x for x in MODELS.values() if manoeuvre in x.manoeuvres
+    )
+
+
+def manoeuvre_of(name: str) -> str:
+    """``cut-in``, or the number of its scenario, as the manoeuvre. Raises ``UsageError``."""
+    numbers = {number: manoeuvre for manoeuvre, number in SCENARIOS.items()}
+    number = int(name) if name.isdecimal() else number_in(name)
+    found = name if number is None else numbers.get(number, name)
+    if found not in SCENARIOS:
+        known = ", ".join(f"{manoeuvre} (scenario {number})" for manoeuvre, number in SCENARIOS.items())
+        raise UsageError(f"'{name}' is no manoeuvre that driver models speak of; these are: {known}")
+    return found
+
+
+def _word(manoeuvre: str) -> str:
+    """``cut-in`` as the middle of a name."""
+    first, *others = manoeuvre.split("-")
+    return first + "".join(x.capitalize() for x in others)
+
+
+def unpreventable(manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> str:
+    """The formula: the manoeuvre, from this state on, ends in a collision though SV is driven so."""
+    return f"unpreventable_{_word(manoeuvre)}_{model}({', '.join(vehicles)})"
+
+
+def foreseen(manoeuvre: str, vehicles: tuple[str, ...]) -> str:
+    """The formula: the manoeuvre begins in this state."""
+    return f"{_FORESEEN[manoeuvre]}({', '.join(vehicles)})"
+
+
+def follows(manoeuvre: str, model: str, vehicles: tuple[str, ...], numbers: tuple[str, ...]) -> str:
+    """The formula: SV drives as the model does; ``numbers`` are of the start, with units."""
+    return f"follows_{_word(manoeuvre)}_{model}({', '.join((*vehicles, *numbers))})"
+
+
+def require(specification: Specification) -> None:
+    """Raises ``UsageError`` where the definitions of the drivers are not read."""
+    name = "unpreventable_cutIn_careful"
+    if name not in specification.definitions:
+        raise UsageError(f"there is no definition '{name}': driver models need --spec driver")

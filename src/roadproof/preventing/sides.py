@@ -1,0 +1,116 @@
+"""Judged drives on both sides of a boundary: SV follows its model, and touches POV, or never does."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from roadproof.errors import InputError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged
+from roadproof.judge.algebraic import bounds
+from roadproof.judge.truth import TruthSet
+from roadproof.preventing.boundary import Plane
+from roadproof.preventing.driving import Reading, drive_of, rest_of, road_of
+from roadproof.preventing.manoeuvres import Manoeuvre, Values, lane_width
+from roadproof.preventing.models import follows, foreseen, unpreventable
+from roadproof.spec.library import Specification
+
+Side: TypeAlias = Literal["unpreventable", "preventable"]
+SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
+_NEAR = Fraction(1, 10)  # m from the boundary
+
+
+def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side) -> str:
+    """What the drive from these values shows: its side, the model followed, and what comes of it."""
+    vehicles = manoeuvre.vehicles
+    boundary = unpreventable(manoeuvre.name, model, vehicles)
+    driven = follows(manoeuvre.name, model, vehicles, _numbers(manoeuvre, values))
+    met = f"touches({vehicles[0]}, {vehicles[-1]})"
+    if side == "unpreventable":
+        return f"{boundary} and {driven} and F {met}"
+    begins = foreseen(manoeuvre.name, vehicles)
+    return f"{begins} and not {boundary} and {driven} and G not {met}"
+
+
+def _numbers(manoeuvre: Manoeuvre, values: Values) -> tuple[str, ...]:
+    lane, speed = lane_width(values), _number(values["Ve0"], "m/s")
+    beside = (lane + values["width"]) / 2
+    match manoeuvre.name:
+        case "cut-in":
+            return (_number(beside + lane, "m"), _number(values["dy0"], "m"), speed)
+        case "cut-out":
+            return (_number(beside, "m"), speed)
+        case _:
+            return (speed, _number(values["Gx"], "m/s^2"))
+
+
+def _number(value: Fraction, unit: str) -> str:
+    """A value in the language, exactly."""
+    return f"{value} {unit}" if value.denominator == 1 else f"{value}*1 {unit}"
+
+
+def judged_drive(
+    manoeuvre: Manoeuvre,
+    model: str,
+    values: Values,
+    side: Side,
+    specification: Specification,
+    reading: Reading,
+) -> Judged:
+    """The drive from these values, judged. Raises ``RejectedError``, and ``InputError`` as ``drive_of``."""
+    drive = drive_of(manoeuvre, model, values, reading)
+    file = DriveFile(
+        None,
+        specification.set_name,
+        claim_of(manoeuvre, model, values, side),
+        rest_of(drive),
+        {},
+        reading.values,
+        reading.options,
+        road_of(values),
+        drive,
+        overlaps_allowed=True,
+    )
+    return Judged(file, specification.library)
+
+
+def beside_boundary(plane: Plane, lines: tuple[TruthSet, ...], side: Side) -> Iterator[dict[str, Fraction]]:
+    """Initial values near the boundary on one side, those of middle rows first."""
+    middle = (plane.across[0] + plane.across[1]) / 2
+    rows = sorted(zip(plane.rows, lines, strict=True), key=lambda x: abs(x[0] - middle))
+    for row, true in rows:
+        for place in _places(plane, true, side):
+            yield plane.values(row, place)
+
+
+def _places(plane: Plane, true: TruthSet, side: Side) -> Iterator[Fraction]:
+    """Places with few digits that are on the wanted side of an end of a span."""
+    low, high = plane.along
+    wanted = side == "unpreventable"
+    ends = [cut.point for cut in reversed(true.cuts)] or [high if side == "preventable" else low]
+    for end in ends:
+        middle = sum(bounds(end, _NEAR / 100)) / 2
+        for step in (_NEAR, -_NEAR, _NEAR / 10, -_NEAR / 10):
+            place = Fraction(round((middle + step) * 100), 100)
+            if low <= place <= high and true.at(place) is wanted:
+                yield place
+
+
+def first_drive(
+    plane: Plane,
+    model: str,
+    lines: tuple[TruthSet, ...],
+    side: Side,
+    specification: Specification,
+    reading: Reading,
+) -> tuple[dict[str, Fraction], Judged] | str:
+    """A judged drive on one side of the boundary with its initial values; or why there is none."""
+    reason = f"no place of the plane is {side}"
+    for tried, values in enumerate(beside_boundary(plane, lines, side)):
+        if tried == 3:
+            break
+        try:
+            return values, judged_drive(plane.manoeuvre, model, values, side, specification, reading)
+        except InputError as error:
+            reason = str(error)
+    return reason

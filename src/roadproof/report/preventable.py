@@ -1,0 +1,176 @@
+"""Plates to look at: which initial values a driver prevents a collision from, as text, CSV and pictures."""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from roadproof.analysis.preventable import Line, Plate, Preventable, Proved
+from roadproof.preventing.manoeuvres import Quantity
+from roadproof.preventing.models import MODELS
+from roadproof.report.figures import as_bytes, make_page
+from roadproof.units import UNITS
+
+COLOURS: Mapping[str, str] = {
+    "careful": "#1f5fa8",
+    "r157": "#c44e1b",
+    "eu1426": "#2c8a4b",
+    "rss": "#7d3c98",
+    "fsm": "#8a6d1b",
+}
+_TOLD = 5  # lines of a plate that the terminal shows
+
+
+def measured(quantity: Quantity, value: Fraction) -> str:
+    """A value in its quantity's unit: ``60 km/h``."""
+    return f"{float(value / UNITS[quantity.unit][0]):g} {quantity.unit}"
+
+
+def fixed_text(study: Preventable, plate: Plate) -> str:
+    """What is fixed on a plate."""
+    known = study.manoeuvre.quantities
+    return ", ".join(f"{name} = {measured(known[name], value)}" for name, value in plate.fixed.items())
+
+
+def share_of(study: Preventable, plate: Plate) -> float:
+    """Which part of the plane is unpreventable: the mean over its lines."""
+    low, high = study.along
+    total = sum(b.near - a.near for x in plate.lines for a, b in x.spans)
+    return total / (float(high - low) * len(plate.lines)) if plate.lines else 0.0
+
+
+def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved]) -> str:
+    """For the terminal: each plate with some of its lines and its drives, and the lemmas."""
+    known = study.manoeuvre.quantities
+    along, across = known[study.manoeuvre.line], known[study.manoeuvre.across]
+    lines: list[str] = []
+    for plate in plates:
+        fixed = fixed_text(study, plate)
+        title = MODELS[plate.model].title
+        lines.append(f"{plate.verdict:<11} {study.manoeuvre.name}, {title}{fixed and f'; {fixed}'}")
+        if plate.reason:
+            lines.append(f"  {plate.reason}")
+        if plate.lines:
+            percent = 100 * share_of(study, plate)
+            lines.append(f"  unpreventable on {percent:.1f} % of the plane; {along.doc} [{along.unit}]:")
+        for line in _some(plate.lines):
+            shown = " and ".join(f"{a.near:.6g} to {b.near:.6g}" for a, b in line.spans) or "nowhere"
+            lines.append(f"    {across.name} = {measured(across, line.at):<14} {shown}")
+        for x in plate.shown:
+            told = x.reason
+            if x.drive is not None:
+                values = ", ".join(
+                    f"{name} = {measured(known[name], x.values[name])}" for name in (across.name, along.name)
+                )
+                told = f"a drive at {values}"
+            lines.append(f"  {x.side}: {told}")
+    for proved in lemmas:
+        lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
+        if proved.reason:
+            lines.append(f"  {proved.reason}")
+    return "\n".join(lines)
+
+
+def _some(lines: Sequence[Line]) -> Sequence[Line]:
+    """A few lines, first and last with them."""
+    if len(lines) <= _TOLD:
+        return lines
+    return [lines[round(k * (len(lines) - 1) / (_TOLD - 1))] for k in range(_TOLD)]
+
+
+def as_csv(study: Preventable, plates: Sequence[Plate]) -> str:
+    """A row for each span of each line: SI units, ends as numbers and exactly."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    fixed = list(dict.fromkeys(name for plate in plates for name in plate.fixed))
+    along, across = study.manoeuvre.line, study.manoeuvre.across
+    ends = [f"{along}_from", f"{along}_to", f"{along}_from_exact", f"{along}_to_exact"]
+    writer.writerow(["model", *fixed, across, *ends])
+    for plate in plates:
+        for line in plate.lines:
+            begins = [plate.model, *(_si(plate.fixed[name]) for name in fixed), _si(line.at)]
+            for a, b in line.spans:
+                writer.writerow([*begins, a.near, b.near, a.exact, b.exact])
+    return out.getvalue()
+
+
+def _si(value: Fraction) -> str:
+    return f"{float(value):.10g}"
+
+
+def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
+    """All plates of a sheet: columns and rows are what is fixed, colours are models."""
+    names = list(study.sheet)
+    columns = study.sheet[names[0]] if names else (Fraction(0),)
+    rows = study.sheet[names[1]] if len(names) > 1 else (Fraction(0),)
+    width, height = 1.1 + 2.5 * len(columns), 1.25 + 2.2 * len(rows)
+    figure = make_page(width, height)
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            box = [
+                (0.75 + 2.5 * j) / width,
+                1 - (0.75 + 2.2 * (i + 1) - 0.42) / height,
+                2.0 / width,
+                1.6 / height,
+            ]
+            axes = figure.add_axes(box)
+            chosen = dict(zip(names, (column, row), strict=False))
+            here = [p for p in plates if all(p.fixed.get(name) == value for name, value in chosen.items())]
+            _draw_plate(axes, study, here)
+            told = [f"{n} {measured(study.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
+            axes.set_title(", ".join(told), fontsize=7, loc="left", pad=3)
+            if j == 0:
+                axes.set_ylabel(_label(study, study.manoeuvre.across), fontsize=7)
+            if i == len(rows) - 1:
+                axes.set_xlabel(_label(study, study.manoeuvre.line), fontsize=7)
+    _head(figure, study, width, height)
+    return as_bytes(figure)
+
+
+def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
+    figure.text(
+        0.2 / width,
+        1 - 0.22 / height,
+        f"{study.manoeuvre.name}: a collision is unpreventable in what is shaded",
+        fontsize=9,
+        va="center",
+    )
+    for k, model in enumerate(study.models):
+        x = (0.2 + 1.9 * k) / width
+        figure.text(
+            x, 1 - 0.45 / height, f"━ {model.title}", fontsize=7, color=COLOURS[model.name], va="center"
+        )
+
+
+def _label(study: Preventable, name: str) -> str:
+    return f"{name} [{study.manoeuvre.quantities[name].unit}]"
+
+
+def _draw_plate(axes: Any, study: Preventable, plates: Sequence[Plate]) -> None:
+    known = study.manoeuvre.quantities
+    unit = float(UNITS[known[study.manoeuvre.across].unit][0])
+    scale = float(UNITS[known[study.manoeuvre.line].unit][0])
+    for plate in plates:
+        colour = COLOURS[plate.model]
+        at = [float(line.at) / unit for line in plate.lines]
+        low = [line.spans[0][0].near / scale if line.spans else 0.0 for line in plate.lines]
+        high = [line.spans[-1][1].near / scale if line.spans else 0.0 for line in plate.lines]
+        some = [bool(line.spans) for line in plate.lines]
+        axes.fill_betweenx(at, low, high, where=some, color=colour, alpha=0.14, linewidth=0)
+        edges = [float(x) / scale for x in study.along]
+        for ends in (low, high):
+            curve = [
+                x if there and x not in edges else float("nan") for x, there in zip(ends, some, strict=True)
+            ]
+            axes.plot(curve, at, color=colour, linewidth=1.1)
+        for x in plate.shown:
+            if x.drive is not None:
+                place = float(x.values[study.manoeuvre.line]) / scale
+                row = float(x.values[study.manoeuvre.across]) / unit
+                filled = colour if x.side == "unpreventable" else "white"
+                axes.plot(place, row, "o", markersize=2.6, color=colour, markerfacecolor=filled, zorder=4)
+    axes.set_xlim(*(float(x) / scale for x in study.along))
+    rows = [float(line.at) / unit for plate in plates for line in plate.lines]
+    axes.set_ylim(min(rows, default=0), max(rows, default=1))
+    axes.tick_params(labelsize=6)

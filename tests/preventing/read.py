@@ -1,0 +1,36 @@
+"""Formulas of driver.spec, bound, for tests."""
+
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+
+from roadproof.logic.formula import Formula
+from roadproof.preventing.manoeuvres import MANOEUVRES
+from roadproof.preventing.models import unpreventable
+from roadproof.spec.bind import bind, values_with
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Library, Specification, load_library
+from roadproof.world.road import Road
+
+
+@cache
+def library() -> Library:
+    return load_library([Path("driver")])
+
+
+def specification(**options: str) -> Specification:
+    return library().select("base", options)
+
+
+def boundary(manoeuvre: str, model: str, **options: str) -> Formula:
+    text = unpreventable(manoeuvre, model, MANOEUVRES[manoeuvre].vehicles)
+    return bound(text, **options)
+
+
+def bound(text: str, **options: str) -> Formula:
+    query = read_claim(specification(**options), text)
+    return bind(query.formula, Road("none", (), frozenset()), {}, values())
+
+
+def values() -> dict[str, Fraction]:
+    return values_with(library(), {})

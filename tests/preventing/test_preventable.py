@@ -1,0 +1,228 @@
+"""Plates: exact lines, drives on both sides, lemmas, and evidence that cannot be exchanged."""
+
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import roadproof as rp
+from preventing.read import boundary, specification, values
+from roadproof.cli.main import main
+from roadproof.judge.truth import TruthSet
+from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.driving import Reading
+from roadproof.preventing.lemmas import lemmas_for
+from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
+from roadproof.preventing.models import MODELS, manoeuvre_of, models_for
+from roadproof.preventing.sides import SIDES, first_drive, judged_drive
+
+OPTIONS = (
+    {},
+    {"cc_perception": "distance"},
+    {"cc_perception": "overlap"},
+    {"cc_gate": "before_perception"},
+    {"cc_gate": "before_delay"},
+    {"cc_threshold": "hard"},
+)
+EACH = [(m, model.name, {}) for m in MANOEUVRES for model in models_for(m)]
+EACH += [("cut-in", "careful", x) for x in OPTIONS[1:5]] + [("deceleration", "careful", OPTIONS[5])]
+
+
+def plane(manoeuvre: str, lines: int = 5, **fixed: Fraction) -> Plane:
+    kind = MANOEUVRES[manoeuvre]
+    high = min(kind.range[1], kind.quantities["Ve0"].value) if kind.across == "dV0" else kind.range[1]
+    return Plane(kind, fixed, kind.along, (kind.range[0], high), lines)
+
+
+def lines_of(manoeuvre: str, model: str, options: dict[str, str], where: Plane) -> tuple[TruthSet, ...]:
+    formula = boundary(manoeuvre, model, **options)
+    return tuple(line(where, formula, row) for row in where.rows)
+
+
+@pytest.mark.parametrize(("manoeuvre", "model", "options"), EACH)
+def test_drives_on_both_sides_are_within_a_span_of_the_boundary(manoeuvre, model, options):
+    where = plane(manoeuvre)
+    true = lines_of(manoeuvre, model, options, where)
+    home = specification(**options)
+    for side in SIDES:
+        found = first_drive(where, model, true, side, home, Reading(values(), home.options))
+        assert not isinstance(found, str), found
+        at, judged = found
+        assert side in judged.file.formula
+        assert at["Ve0"] == judged.file.drive.vehicles["SV"].v_lon
+
+
+@pytest.mark.parametrize(("manoeuvre", "model", "options"), EACH[:7])
+def test_a_drive_on_the_wrong_side_is_rejected(manoeuvre, model, options):
+    where = plane(manoeuvre)
+    true = lines_of(manoeuvre, model, options, where)
+    home = specification(**options)
+    reading = Reading(values(), home.options)
+    for side, other in (SIDES, SIDES[::-1]):
+        found = first_drive(where, model, true, side, home, reading)
+        assert not isinstance(found, str)
+        with pytest.raises(rp.InputError, match="does not hold on the drive"):
+            judged_drive(where.manoeuvre, model, found[0], other, home, reading)
+
+
+@pytest.mark.parametrize("changed", ["cc_delay", "cc_ramp", "cc_braking", "cc_wander", "cc_evaluation"])
+def test_a_driver_with_another_constant_is_not_the_model(changed):
+    """The drive is made with one value, and judged with the other."""
+    home = specification()
+    other = values() | {changed: values()[changed] * Fraction(101, 100)}
+    given = CUT_IN.values({"dx0": Fraction(30)})
+    judged = judged_drive(CUT_IN, "careful", given, "preventable", home, Reading(values(), home.options))
+    assert judged.file.values[changed] == values()[changed]
+    from roadproof.preventing.driving import drive_of
+
+    wrong = drive_of(CUT_IN, "careful", given, Reading(other, home.options))
+    from dataclasses import replace
+
+    from roadproof.evidence.judged import judge_file
+
+    assert judge_file(judged.file, home.library).accepted
+    assert not judge_file(replace(judged.file, drive=wrong), home.library).accepted
+
+
+def test_the_closed_form_of_a_cut_in():
+    """u·theta + u²/(2A) - c, and the place from which POV has been passed; computed apart."""
+    u, vy = 40 * KMH, Fraction(1)
+    braking, ramp = Fraction("7.59294"), Fraction("0.6")
+    theta = Fraction("0.375") / vy + Fraction("1.15") + ramp / 2
+    expected = u * theta + u**2 / (2 * braking) - braking * ramp**2 / 24
+    where = plane("cut-in")
+    true = line(where, boundary("cut-in", "careful"), u)
+    assert true.cuts[-1].point == expected
+
+
+def test_two_seconds_suffice_for_every_braking_to_1_g_and_130_kmh():
+    for speed in (30, 60, 100, 130):
+        where = plane("deceleration", 40, Ve0=speed * KMH)
+        for true in lines_of("deceleration", "careful", {}, where):
+            assert not true.at(2 * speed * KMH)
+
+
+def test_a_leader_that_brakes_gently_is_never_perceived_under_the_letter():
+    where = plane("deceleration", 3)
+    gentle = line(where, boundary("deceleration", "careful", cc_threshold="hard"), Fraction("4.9"))
+    hard = line(where, boundary("deceleration", "careful", cc_threshold="hard"), Fraction(5))
+    assert gentle.at(Fraction(80))
+    assert not hard.at(Fraction(80))
+
+
+def test_lemmas_name_values_of_the_model_that_they_are_about():
+    names = {x.name for x in lemmas_for("cut-in", tuple(MODELS.values()))}
+    assert {"careful-greatest", "r157-greatest", "careful-falls-slow"} <= names
+    assert "r157-falls-slow" not in names  # it has no ramp
+
+
+def test_a_false_lemma_is_refuted():
+    claim = next(
+        x for x in lemmas_for("cut-in", models_for("cut-in", ("r157",))) if x.name == "r157-greatest"
+    )
+    false = claim.claim.replace("-> gains(v, w, g,", "-> gains(v, w, g + 1 m,")
+    assert false != claim.claim
+    answer = rp.prove(false, using=rp.load(specs=["driver"]), declared=True, jobs=1)
+    assert str(answer.verdict) == "REFUTED"
+
+
+def test_manoeuvres_by_name_and_by_scenario():
+    assert [manoeuvre_of(x) for x in ("1", "scenario_2", "4", "cut-in")] == [
+        *("cut-in", "cut-out", "deceleration", "cut-in")
+    ]
+    with pytest.raises(rp.UsageError, match=r"'3' is no manoeuvre .* cut-in \(scenario 1\)"):
+        manoeuvre_of("3")
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["cut-in", "--model", "carefull"], "there is no driver model 'carefull'; did you mean 'careful'?"),
+        (["cut-out", "--model", "r157"], "says nothing of a cut-out; these do: careful"),
+        (["cut-in", "--at", "Vy=0"], "Vy=0 (SI): the lateral speed of POV has to be > 0"),
+        (["cut-in", "--at", "dx=3"], "there is no initial value of a cut-in 'dx'"),
+        (["cut-in", "--at", "dx0=3"], "dx0 varies over the plane"),
+        (["cut-in", "--along", "dx0=-3:5"], "the gap along the road has to be >= 0"),
+        (["cut-in", "--along", "dx0=5:5"], "the range ends where it begins"),
+        (["cut-in", "--along", "Vy=1:5"], "here it is dx0 that varies"),
+        (["cut-in", "--at", "Ve0"], "write NAME=VALUE"),
+        (["deceleration", "--at", "dV0=200km/h"], "SV cannot be more than Ve0"),
+        (["cut-in", "--param", "cc_delay=-1"], "cc_delay"),
+        (["cut-in", "--param", "cc_braking=0"], "cc_braking"),
+        (["cut-in", "--param", "cc_sleep=1"], "cc_sleep"),
+        (["cut-in", "--option", "cc_gate=maybe"], "cc_gate"),
+        (["cut-in", "--lines", "1"], "--lines"),
+    ],
+)
+def test_mistakes_are_named(words, told, capsys):
+    assert main(["preventable", *words, "--no-lemmas"]) in (2, 3)
+    assert told in " ".join(capsys.readouterr().err.split())
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    out = tmp_path_factory.mktemp("plates")
+    found = rp.preventable("cut-in", ["r157"], at={"Ve0": "60 km/h", "Vy": 1}, lines=5, jobs=1, out=out)
+    found.add_files(False)
+    assert found.exit_code == 0
+    return out
+
+
+def test_check_accepts_it(folder):
+    checked = rp.check(folder)
+    assert checked.exit_code == 0
+    assert len(checked.rows()) == 2 + len(lemmas_for("cut-in", models_for("cut-in", ("r157",))))
+
+
+def test_another_drive_in_its_place_is_told(folder, tmp_path):
+    out = tmp_path / "forged"
+    copy(folder, out)
+    index = json.loads((out / "index.json").read_text("utf-8"))
+    shown = index["plates"][0]["shown"]
+    shown[0]["drive"], shown[1]["drive"] = shown[1]["drive"], shown[0]["drive"]
+    (out / "index.json").write_text(json.dumps(index), "utf-8")
+    assert rp.check(out).exit_code != 0
+
+
+def test_another_driver_spec_beside_it_is_told(folder, tmp_path):
+    out = tmp_path / "forged"
+    copy(folder, out)
+    spec = out / "driver.spec"
+    spec.write_text(spec.read_text("utf-8").replace("0.35 s", "0.36 s"), "utf-8")
+    checked = rp.check(out)
+    assert checked.exit_code != 0
+    assert "is not the file of that name that comes with roadproof" in str(checked)
+
+
+def copy(source: Path, target: Path) -> None:
+    for path in source.rglob("*"):
+        if path.is_file():
+            (target / path.relative_to(source)).parent.mkdir(parents=True, exist_ok=True)
+            (target / path.relative_to(source)).write_bytes(path.read_bytes())
+
+
+def test_a_run_goes_on_where_it_was(folder):
+    before = {path.name: path.read_bytes() for path in (folder / "answers").iterdir()}
+    again = rp.preventable("cut-in", ["r157"], at={"Ve0": "60 km/h", "Vy": 1}, lines=5, jobs=1, out=folder)
+    assert {path.name: path.read_bytes() for path in (folder / "answers").iterdir()} == before
+    assert len(again.plates) == 1
+    assert again.plates[0].lines[-1].spans
+
+
+def test_the_table_has_a_row_for_each_span(folder):
+    rows = (folder / "plates.csv").read_text("utf-8").splitlines()
+    assert rows[0].startswith("model,Ve0,Vy,dV0,dx0_from,dx0_to")
+    assert len(rows) > 3
+
+
+def test_touching_is_at_the_edges():
+    sizes = "length(SV) = length(POV) and width(SV) = width(POV)"
+    same = f"s(SV) = s(POV) - length(POV) and d(SV) = d(POV) and {sizes}"
+    answer = rp.prove(f"{same} -> touches(SV, POV)", using=rp.load(specs=["driver"]), jobs=1)
+    assert str(answer.verdict) == "PROVED"
+
+
+def test_every_manoeuvre_has_vehicles_that_its_formula_speaks_of():
+    for kind in (CUT_IN, CUT_OUT, DECELERATION):
+        assert kind.vehicles[0] == "SV"

@@ -1,0 +1,32 @@
+"""A claim about one instant that no search can refute is refuted by constant motion from there."""
+
+import pytest
+
+import roadproof as rp
+from roadproof.judge.exact import judge
+from roadproof.spec.bind import bind
+from roadproof.spec.elaborate import read_claim
+
+
+def test_a_cubic_claim_is_refuted_by_a_steady_drive():
+    home = rp.load()
+    claim = "v_lon(SV)*v_lon(SV)*v_lon(SV) <= v_lon(SV)*v_lon(POV)*v_lon(POV) or v_lon(SV) <= v_lon(POV)"
+    answer = rp.prove(claim, using=home, jobs=1)
+    [drive] = answer.evidence
+    assert str(answer.verdict) == "REFUTED"
+    formula = bind(read_claim(home.specification, claim).formula, drive.file.road, {}, drive.file.values)
+    assert not judge(formula, drive.file.drive).holds
+    assert all(len(x.pieces) == 1 for x in drive.file.drive.vehicles.values())
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        "given v: m/s: v*v*v <= v*v_lon(SV)^2",  # a number of the claim's own
+        "G v_lon(SV)*v_lon(SV)*v_lon(SV) <= v_lon(SV)*v_lon(POV)^2",  # more than one instant
+    ],
+)
+def test_others_are_refuted_by_a_trace(claim):
+    answer = rp.prove(claim, jobs=1)
+    assert str(answer.verdict) == "REFUTED"
+    assert "by a trace" in str(answer)
