@@ -71,7 +71,7 @@ def test_windows_that_forget_or_repeat_are_caught(
 ) -> None:
     """Planted faults: what is in two windows counted twice, and what is new with what is not left out."""
     questions = ask(default_settings(), 25, traffic.zone_names)
-    whole, made = evaluate_recording(traffic, questions), cut(traffic, 6_000)
+    whole, made = evaluate_recording(traffic, questions), cut(traffic, 15_000)
     for fault in (
         lambda self, *vehicles: np.ones(len(vehicles[0]), bool),
         lambda self, *vehicles: np.logical_and.reduce([self.new[index] for index in vehicles]),
