@@ -1,6 +1,7 @@
 """A long question of numbers: pieces that rest on others, doubts, and processes that die."""
 
 import os
+import shutil
 import signal
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from roadproof.errors import UsageError
+from roadproof.errors import InputError, UsageError
 from roadproof.spec.library import bundled_library
 from roadproof.study.frame import conduct
 from roadproof.study.shelf import Question, Shelf
@@ -106,3 +107,18 @@ def test_no_processes_are_too_few() -> None:
 
 def test_nothing_to_ask_is_nothing_found() -> None:
     assert conduct(replace(Sums(()))).answers == {}
+
+
+def test_a_folder_that_goes_away_ends_the_run_and_can_be_taken_up_again(tmp_path) -> None:
+    """Its evidence is lost, so no index may name it."""
+    folder = tmp_path / "answers"
+
+    def remove(name: str, answer: int | None) -> None:
+        if name == "square-2" and folder.exists():
+            shutil.rmtree(folder)
+
+    with pytest.raises(InputError, match="was there when the run began, and is gone"):
+        conduct(Sums((1, 2, 3)), folder, hands=1, each=remove)
+    assert not list(folder.rglob("*.json"))
+    again = conduct(Sums((1, 2, 3)), folder, hands=1)
+    assert again.answers["sum-2"] == 10

@@ -101,6 +101,7 @@ class Shelf:
         return Judged(read_drive(content, where), self.library, natural_of(content, where))
 
     def _put(self, folder: Path, name: str, content: bytes) -> str:
+        refuse_vanished(folder)
         write_whole(folder / name, content)
         self.written.append(name)
         return name
@@ -146,6 +147,7 @@ class Shelf:
         names, self.written = self.written, []
         self.names |= set(names)
         if self.folder is not None and sure:
+            refuse_vanished(self.folder)
             sealed = {"evidence": names, **record}
             sealed["seal"] = seal_of(sealed, self.question, self.folder)
             write_json(self.folder / ANSWERS / f"{name}.json", sealed)
@@ -166,7 +168,17 @@ class Shelf:
 
 def write_index(folder: Path, data: Mapping[str, Any]) -> None:
     """The index of a folder; files in it are named as they are from there. Raises ``InputError``."""
+    refuse_vanished(folder)
     write_json(folder / INDEX, inside(dict(data), folder))
+
+
+def refuse_vanished(folder: Path) -> None:
+    """Raises ``InputError`` where a folder of answers has gone since they were begun, and their evidence."""
+    if not (folder / HEAD).is_file():
+        raise InputError(
+            f"{folder} was there when the run began, and is gone or has lost {HEAD}, and with it evidence that "
+            "the answers name; run the command again, which asks anew what is lost"
+        )
 
 
 def inside(data: Any, folder: Path) -> Any:
