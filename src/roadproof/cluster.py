@@ -101,7 +101,10 @@ def _client(cluster: Cluster) -> "Client":
         raise MissingSolverError(
             "a cluster needs dask, which is not installed: pip install 'roadproof[cluster]'"
         ) from None
-    dask.config.set({"distributed.scheduler.allowed-failures": 1})
+    # A worker looks at its own stack every 10 ms otherwise.
+    dask.config.set(
+        {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
+    )
     if cluster.local:
         here = LocalCluster(
             n_workers=cluster.local, threads_per_worker=1, dashboard_address=":0", silence_logs=50
