@@ -53,6 +53,7 @@ OPTIONAL = {
     "index.json": {"roadproof", "library", "options", "specs", "counterexample", "road", "assuming"},
     "monitor.json": {"exact"},
     "redundancy.json": {"road"},
+    "traffic-results.json": {"drivers"},
     "verdicts.json": {"limits", "road"},
     "witness.json": {"limits"},
 }
@@ -239,7 +240,8 @@ def of_monitor(run: Run, out: Path, traffic: Path) -> None:
 def of_evaluate(run: Run, out: Path, traffic: Path) -> None:
     told = run("evaluate", traffic, "--out", out, "--no-pictures", "--jobs", 1)
     assert json.loads((out / "results.json").read_text("utf-8")) == told
-    examine(told)
+    asked = ("--among", "1,4", "--drivers", "careful,r157", "--no-pictures", "--jobs", 1)
+    examine(told, run("evaluate", traffic, "--out", out / "drivers", *asked))
 
 
 def of_preventable(run: Run, out: Path, traffic: Path) -> None:

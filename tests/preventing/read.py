@@ -27,6 +27,7 @@ def boundary(manoeuvre: str, model: str, **options: str) -> Formula:
     return bound(text, **options)
 
 
+@cache
 def bound(text: str, **options: str) -> Formula:
     query = read_claim(specification(**options), text)
     return bind(query.formula, Road("none", (), frozenset()), {}, values())

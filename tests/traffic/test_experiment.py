@@ -14,8 +14,9 @@ import pytest
 
 from roadproof.errors import InputError
 from roadproof.evaluation import experiment as module
-from roadproof.evaluation.evaluate import Findings, Match, Trace
+from roadproof.evaluation.evaluate import Findings, Trace
 from roadproof.evaluation.experiment import Experiment, run_experiment
+from roadproof.evaluation.matching import Match
 from roadproof.evaluation.questions import default_settings
 from roadproof.evaluation.results import add_findings, as_json, begin_totals
 from roadproof.formats.sources import find_sources

@@ -16,7 +16,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.hands import Jobs
 from roadproof.preventing.manoeuvres import MANOEUVRES, Manoeuvre
-from roadproof.preventing.models import manoeuvre_of, models_for, require
+from roadproof.preventing.models import DRIVERS, manoeuvre_of, models_for, require
 from roadproof.report import preventable as report
 from roadproof.report.drive import draw_drive
 from roadproof.spec.library import unknown
@@ -24,7 +24,6 @@ from roadproof.spec.values import Number, exact
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import Verdict
 
-DRIVERS = "driver"
 _MOST_LINES = 2000
 _MOST_PLATES = 200
 

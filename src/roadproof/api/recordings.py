@@ -22,15 +22,16 @@ from roadproof.evaluation.experiment import (
 )
 from roadproof.evaluation.questions import Settings, askable
 from roadproof.evaluation.recheck import recheck
-from roadproof.evaluation.results import Totals, as_json, question_mark
+from roadproof.evaluation.results import Totals, as_json, driver_cells, driver_columns, question_mark
 from roadproof.files import hold_folder
 from roadproof.formats.sources import find_sources
 from roadproof.formats.table import Frame, frame_of
 from roadproof.hands import Jobs, hands_of
 from roadproof.monitoring.answers import Convention
+from roadproof.preventing.models import DRIVERS
 from roadproof.report.answers import answer_questions
 from roadproof.report.tables import as_text
-from roadproof.report.traffic import comparison_table, results_tables
+from roadproof.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.report.traffic_figures import draw_figures
 from roadproof.report.write_traffic import remove_report, write_report
 from roadproof.spec.scenarios import COMPARISON, MIN_DANGER
@@ -120,6 +121,7 @@ class Evaluated:
                 "set": m.set_name,
                 "scenario": m.scenario,
                 "uncertain": m.uncertain,
+                **dict(zip(driver_columns(self.settings), driver_cells(self.settings, m), strict=True)),
             }
             for x in self.findings
             for m in x.matches
@@ -154,6 +156,7 @@ class Evaluated:
         tables = [
             *results_tables(self.totals, self.failed).values(),
             comparison_table(self.totals, self.failed),
+            drivers_table(self.totals),
         ]
         lines = [as_text(table) for table in tables if table is not None]
         section = answer_questions(self.totals, self.failed).partition("## Facts")[2].partition("\n\n")[2]
@@ -191,6 +194,7 @@ def evaluate(
     pictures: bool = True,
     jobs: Jobs = None,
     tell: Say | None = None,
+    drivers: Iterable[str] = (),
 ) -> Evaluated:
     """Find where danger arises in recordings, and match it with scenarios (paper, RQ1 to RQ5).
 
@@ -198,10 +202,13 @@ def evaluate(
     taken up again; None keeps nothing. ``using``: base, extA and ext where None. ``among``: all scenarios of
     two or three vehicles where None; those of road sectors that a recording does not have are not asked.
     ``min_danger`` in s; ``classes`` of vehicles; ``end``: what the end of a trace means. ``detectors``: also
-    those of earlier works; ``check``: ask the plain recursive evaluator again. Raises ``InputError``,
-    ``UsageError``.
+    those of earlier works; ``check``: ask the plain recursive evaluator again. ``drivers``: models of
+    ``driver.spec`` (``load(specs=["driver"])``), such as careful, that matches are put to. Raises
+    ``InputError``, ``UsageError``.
     """
-    settings = _settings_of(using or load("base", "extA", "ext"), among, min_danger, classes, end, detectors)
+    models = tuple(drivers)
+    home = using or load("base", "extA", "ext", specs=[DRIVERS] if models else [])
+    settings = replace(_settings_of(home, among, min_danger, classes, end, detectors), drivers=models)
     if out is None:
         if hands_of(jobs).shard is not None:
             raise UsageError("a shard needs a folder in which the runs keep what they find: name out")

@@ -41,6 +41,7 @@ examples:
   roadproof evaluate highd/data --out out --set base,ext --among 1,3-8 --min-danger 0
   roadproof evaluate highd/data --out out --class Car --class Truck --end clip --keep-going
   roadproof evaluate highd/data --out out --option lateral_rss=signed --check
+  roadproof evaluate highd/data --out out --drivers careful,r157 --option cc_gate=before_delay
   roadproof evaluate us101/window.xml --list      lanes and zones, and which of them were inferred
 """
 
@@ -69,6 +70,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="truncated",
         help="what the end of a trace means (default: truncated)",
     )
+    parser.add_argument(
+        "--drivers",
+        metavar="NAME,…",
+        help="whether driver models (careful, r157, eu1426, rss) prevent a collision from where the "
+        "manoeuvre of a match begins: of scenarios 1, 2, 4 and the like on other road sectors",
+    )
     add_parameter_option(parser)
     add_working_options(parser)
     add_sharing_options(parser)
@@ -92,6 +99,7 @@ def run(args: argparse.Namespace) -> int:
         return ExitCode.AS_EXPECTED
     if not args.out:
         raise UsageError("--out is missing: name the folder where results go, or ask for --list")
+    drivers = _drivers(args)
     found = evaluate(
         args.path,
         args.out,
@@ -106,6 +114,7 @@ def run(args: argparse.Namespace) -> int:
         pictures=not args.no_pictures,
         jobs=read_hands(args),
         tell=note,
+        drivers=drivers,
     )
     if args.json:
         write_json(found.as_data(), args.json)
@@ -125,6 +134,20 @@ def _tell_notes(out: Path, totals: "Totals") -> None:
         print(f"note: recording {name}: {remark}", file=sys.stderr)
     if len(remarks) > MOST_NOTES:
         print(f"… {len(remarks) - MOST_NOTES} more notes in {out / 'results.json'}", file=sys.stderr)
+
+
+def _drivers(args: argparse.Namespace) -> list[str]:
+    """The driver models, whose definitions are then read too. Raises ``UsageError``."""
+    from roadproof.preventing.models import DRIVERS
+
+    if args.drivers is None:
+        return []
+    names = [name.strip() for name in args.drivers.split(",")]
+    if not all(names):
+        raise UsageError(f"--drivers {args.drivers}: write names separated by commas, such as careful,r157")
+    if Path(DRIVERS) not in args.specs:
+        args.specs = [Path(DRIVERS), *args.specs]
+    return names
 
 
 def _definitions(args: argparse.Namespace) -> "Definitions":

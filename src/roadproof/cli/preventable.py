@@ -54,9 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.api.preventing import DRIVERS, preventable
+    from roadproof.api.preventing import preventable
     from roadproof.preventing.manoeuvres import MANOEUVRES
-    from roadproof.preventing.models import manoeuvre_of
+    from roadproof.preventing.models import DRIVERS, manoeuvre_of
 
     if Path(DRIVERS) not in args.specs:
         args.specs = [Path(DRIVERS), *args.specs]

@@ -1,7 +1,7 @@
 """The highD experiment on one recording (semantics §7): which disturbance matches which scenario."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +14,9 @@ from roadproof.evaluation.disturbances import (
     cut_triples,
     find_disturbances,
 )
+from roadproof.evaluation.foretelling import foretell
 from roadproof.evaluation.lane_atoms import OTHER_LANE
+from roadproof.evaluation.matching import Match
 from roadproof.evaluation.questions import START, MonitorKey, Questions
 from roadproof.evaluation.traces import gather
 from roadproof.formats.overlaps import Overlap, find_overlaps, told_overlap
@@ -27,31 +29,6 @@ from roadproof.monitoring.compiled import Monitor, Observation
 from roadproof.spec.scenarios import LANE, PAIR, TRIPLE
 
 OTHER: Mapping[Convention, Convention] = {"truncated": "clip", "clip": "truncated"}
-
-
-@dataclass(frozen=True)
-class Match:
-    """One row of matches.csv; ``min_danger`` is an index into the settings', ids are the recording's.
-
-    ``uncertain``: on a measured road, it depends on less than places may be off (``boundary``).
-    """
-
-    sv: int
-    pov: int
-    pov2: int | None
-    lane: str
-    start_frame: int
-    end_frame: int
-    min_danger: int
-    set_name: str
-    scenario: int
-    uncertain: bool = field(default=False, compare=False)
-
-    @property
-    def pair(self) -> tuple[int, int]:
-        """The unordered pair that the match counts for: SV and its POV, or POV2 where there is one."""
-        other = self.pov if self.pov2 is None else self.pov2
-        return min(self.sv, other), max(self.sv, other)
 
 
 @dataclass(frozen=True)
@@ -167,7 +144,7 @@ def _evaluate(window: Window, questions: Questions) -> _Part:
         triples=0 if cut is None else len(cut.triples),
         tally=tally,
         traces=tuple(_traces(recording, questions, found)),
-        matches=tuple(matches),
+        matches=tuple(foretell(recording, questions, matches)),
         detections=detections,
         overlaps=tuple(_overlapping(recording, found)),
         seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),

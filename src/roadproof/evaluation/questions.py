@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError, UsageError
+from roadproof.evaluation.courses import Course, courses_of
 from roadproof.evaluation.lane_atoms import OTHER_LANE, LaneAtom, lane_atoms
 from roadproof.evaluation.sectors import Sector, is_possible, sectors_of
 from roadproof.formats.pairs import Reach, Sight
@@ -21,6 +22,7 @@ from roadproof.logic.rewrite import all_with_values, with_values, without_names
 from roadproof.monitoring.answers import Convention, Key
 from roadproof.monitoring.batch import steps_of
 from roadproof.monitoring.compiled import Monitor, compile
+from roadproof.preventing.models import check_drivers, require
 from roadproof.spec.bind import default_values
 from roadproof.spec.elaborate import apply_definition
 from roadproof.spec.elaboration import Elaborator
@@ -58,7 +60,8 @@ class Settings:
     """How traffic is evaluated. ``values`` gives every parameter but minDanger, in SI units.
 
     ``detectors`` are definitions of (SV, POV, L) that are asked for beside the scenarios, such as
-    COMPARISON; they look at all common frames of a pair, and at every lane.
+    COMPARISON; they look at all common frames of a pair, and at every lane. ``drivers`` are models that the
+    matches are put to (``foretelling``), which need the definitions of ``driver.spec``.
     """
 
     library: Library
@@ -70,6 +73,7 @@ class Settings:
     classes: tuple[str, ...] = ("Car",)
     convention: Convention = "truncated"
     detectors: tuple[str, ...] = ()
+    drivers: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("sets", "min_danger", "scenarios", "classes"):
@@ -82,6 +86,9 @@ class Settings:
             raise UsageError(f"evaluate: scenarios={self.scenarios}: {message}")
         if min(self.min_danger) < 0:
             raise UsageError("evaluate: minDanger must not be negative")
+        if self.drivers:
+            check_drivers(self.drivers, self.scenarios)
+            require(self.library.select(self.sets[0], self.options))
 
 
 def default_settings(library: Library | None = None) -> Settings:
@@ -149,7 +156,7 @@ class Questions:
     whether a pair is in one. ``safe_steps`` and ``danger_steps`` are how far initSafe and each danger look
     ahead. ``pairs`` and ``triples`` hold one monitor a minDanger. ``reach`` is None where the specification's
     rssViolation is not the library's, so that no pair may be left out; ``sight`` is its like for
-    ``detectors``.
+    ``detectors``. ``courses``: what driver models are asked about matches.
     """
 
     settings: Settings
@@ -168,6 +175,7 @@ class Questions:
     reach: Reach | None
     detectors: Monitor[DetectorKey] | None
     sight: Sight | None
+    courses: tuple[Course, ...] = ()
 
 
 def ask(settings: Settings, rate: int, zones: Iterable[str] = ZONES) -> Questions:
@@ -208,6 +216,7 @@ def ask(settings: Settings, rate: int, zones: Iterable[str] = ZONES) -> Question
         reach=_reach(settings, near),
         detectors=compile(_all_with_values(settings, detectors)) if detectors else None,
         sight=_sight(settings, detectors),
+        courses=tuple(courses_of(tuple(sets.values()), settings.values, settings.drivers, (*two, *three))),
     )
 
 

@@ -1,19 +1,25 @@
 """Answers of an evaluation asked once more, one by one, of the plain recursive evaluator."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
 
 import numpy as np
 
-from roadproof.evaluation.evaluate import Findings, Match
-from roadproof.evaluation.lane_atoms import OTHER_LANE
-from roadproof.evaluation.questions import MonitorKey, Questions, of_three
+from roadproof.evaluation.courses import BEGINS
+from roadproof.evaluation.evaluate import Findings
+from roadproof.evaluation.foretelling import LABELS
+from roadproof.evaluation.lane_atoms import OTHER_LANE, LaneAtom
+from roadproof.evaluation.matching import Match
+from roadproof.evaluation.questions import Danger, MonitorKey, Questions, of_three
 from roadproof.evaluation.traces import gather
 from roadproof.formats.recording import Integers, Recording
 from roadproof.logic.formula import Formula, transform
+from roadproof.logic.terms import Own
 from roadproof.monitoring.batch import Batch
 from roadproof.monitoring.compiled import Monitor
 from roadproof.monitoring.recursive import ReadAs, Reading, Trace
-from roadproof.spec.scenarios import LANE, PAIR, TRIPLE
+from roadproof.signals import SignalName
+from roadproof.spec.scenarios import LANE, PAIR, TRIPLE, endangered
 
 
 def recheck(recording: Recording, questions: Questions, findings: Findings) -> Iterator[str]:
@@ -49,6 +55,44 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
             formula = triples[match.min_danger][of_three(match.set_name, match.scenario)]
             if not _holds_for_three(recording, questions, match, formula, place, names):
                 yield _line(recording, match, True)
+        if match.labels:
+            begun, labels = _foretold(recording, questions, match, place)
+            if (begun, labels) != (match.begun, match.labels):
+                yield (
+                    f"{_about(recording, match)}: found {_told(match.begun, match.labels)}, but the "
+                    f"recursive evaluator has {_told(begun, labels)}"
+                )
+
+
+def _foretold(
+    recording: Recording, questions: Questions, match: Match, place: Mapping[int, int]
+) -> tuple[int | None, tuple[str, ...]]:
+    """When the manoeuvre of a match begins, sample by sample, and its labels there."""
+    course = next(x for x in questions.courses if match.scenario in x.scenarios)
+    ids = [match.sv, match.pov] if match.pov2 is None else [match.sv, match.pov, match.pov2]
+    vehicles = dict(zip(course.vehicles, (place[x] for x in ids), strict=True))
+    frames = match.start_frame, match.end_frame
+    signals = (*course.begins.signals, *course.collides.signals)
+    reading = _reading(recording, vehicles, frames, signals)
+    pair = dict(zip(PAIR, (vehicles[x] for x in endangered(course.vehicles)), strict=True))
+    near = _reading(recording, pair, frames, questions.danger.signals)
+    danger = questions.danger.formulas[Danger(match.min_danger)]
+    for k in range(frames[1] - frames[0] + 1):
+        if reading.holds(course.begins.formulas[BEGINS], k, "strong"):
+            labels = (
+                LABELS[reading.holds(course.collides.formulas[x], k, "strong")]
+                if x in course.collides.formulas
+                else ""
+                for x in questions.settings.drivers
+            )
+            return frames[0] + k, tuple(labels)
+        if near.holds(danger, k, "strong"):
+            break
+    return None, tuple(LABELS[2] if x in course.collides.formulas else "" for x in questions.settings.drivers)
+
+
+def _told(begun: int | None, labels: Iterable[str]) -> str:
+    return f"{', '.join(x or 'nothing' for x in labels)}" + ("" if begun is None else f" at frame {begun}")
 
 
 def _shared(monitors: Iterable[Monitor[MonitorKey]]) -> list[dict[MonitorKey, Formula]]:
@@ -82,6 +126,18 @@ def _read(
     lanes: Mapping[str, int],
     frames: tuple[int, int],
 ) -> Reading:
+    signals = [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals]
+    return _reading(recording, vehicles, frames, signals, lanes, questions.lane_atoms)
+
+
+def _reading(
+    recording: Recording,
+    vehicles: Mapping[str, int],
+    frames: tuple[int, int],
+    signals: Iterable[SignalName | Own],
+    lanes: Mapping[str, int] = MappingProxyType({}),
+    atoms: Mapping[Formula, LaneAtom] = MappingProxyType({}),
+) -> Reading:
     def one(value: int) -> Integers:
         return np.array([value])
 
@@ -90,9 +146,9 @@ def _read(
         {name: one(k) for name, k in vehicles.items()},
         one(frames[0]),
         one(frames[1]),
-        [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals],
+        signals,
         {name: one(k) for name, k in lanes.items()},
-        questions.lane_atoms,
+        atoms,
     )
     return Reading(trace_of(batch))
 
@@ -114,13 +170,17 @@ def _view(questions: Questions) -> ReadAs:
 
 
 def _line(recording: Recording, match: Match, found: bool) -> str:
-    who = ", ".join(str(x) for x in (match.sv, match.pov, match.pov2) if x is not None)
     said = (
         "found, but the recursive evaluator denies it"
         if found
         else "missed, but the recursive evaluator has it"
     )
+    return f"{_about(recording, match)}: {said}"
+
+
+def _about(recording: Recording, match: Match) -> str:
+    who = ", ".join(str(x) for x in (match.sv, match.pov, match.pov2) if x is not None)
     return (
         f"recording {recording.name}, vehicles {who}, frames {match.start_frame} to {match.end_frame}, "
-        f"{match.set_name}, scenario {match.scenario}: {said}"
+        f"{match.set_name}, scenario {match.scenario}"
     )

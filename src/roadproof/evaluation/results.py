@@ -16,16 +16,19 @@ from importlib.metadata import version
 from io import TextIOWrapper
 from itertools import product
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, NamedTuple, TextIO
 
 from roadproof.evaluation.counting import Counted, Repeat, without_repeats
 from roadproof.evaluation.detectors import Detection
-from roadproof.evaluation.evaluate import Findings, Match, Trace
+from roadproof.evaluation.evaluate import Findings, Trace
+from roadproof.evaluation.foretelling import LABELS
+from roadproof.evaluation.matching import Match
 from roadproof.evaluation.questions import Settings
 from roadproof.evaluation.sectors import Sector, sectors_of
 from roadproof.evidence.heading import heading
 from roadproof.files import make_folder, whole_file
 from roadproof.formats.repeats import Seen
+from roadproof.preventing.models import MODELS, course_in
 from roadproof.spec.scenarios import MIN_DANGER
 from roadproof.spec.words import Called, called_in
 
@@ -70,18 +73,26 @@ def describe(settings: Settings) -> dict[str, Any]:
         "detectors": list(settings.detectors),
         "options": dict(sorted(settings.options.items())),
         "parameters": {k: str(v) for k, v in sorted(settings.values.items()) if k != MIN_DANGER},
-    }
+    } | ({"drivers": list(settings.drivers)} if settings.drivers else {})
 
 
 def save_findings(path: Path, findings: Findings, mark: str) -> None:
     """Write the findings of one recording; ``mark`` is their fingerprint."""
     found: dict[str, Any] = {**vars(findings)}
     for name in _ROWS:
-        found[name] = [list(vars(row).values()) for row in found[name]]
+        found[name] = [_saved(row) for row in found[name]]
     found["seen"] = [list(vars(pair).values()) for pair in findings.seen]
     told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "seal": seal(mark, found), "findings": found}
     with whole_text(path) as file:
         file.write(json.dumps(told) + "\n")
+
+
+def _saved(row: Match | Trace | Detection) -> list[Any]:
+    """The fields of a row; those about driver models where there are any."""
+    fields = vars(row)
+    if isinstance(row, Match) and not row.labels:
+        fields = {name: value for name, value in fields.items() if name not in ("begun", "labels")}
+    return list(fields.values())
 
 
 def seal(mark: str, found: Mapping[str, Any]) -> str:
@@ -100,6 +111,7 @@ def load_findings(path: Path, mark: str) -> Findings | None:
             return None
         made = {name: tuple(kind(*row) for row in found[name]) for name, kind in _ROWS.items()}
         made["traces"] = tuple(replace(x, sectors=tuple(x.sectors)) for x in made["traces"])
+        made["matches"] = tuple(replace(x, labels=tuple(x.labels)) for x in made["matches"])
         seen = tuple(Seen(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
         return Findings(**{**found, **made, **_texts(found, "notes", "sectors"), "seen": seen})
     except (OSError, ValueError, KeyError, TypeError):
@@ -150,12 +162,23 @@ class Row:
         return self.matching / self.traces if self.traces else None
 
 
+class Foretold(NamedTuple):
+    """What driver models say of matches: ``min_danger`` is an index into the settings'."""
+
+    min_danger: int
+    set_name: str
+    scenario: int
+    driver: str
+    label: str
+
+
 @dataclass
 class Totals:
     """Everything that the tables need, added up recording by recording.
 
     ``tables``: the rows of each road sector by its name, the first being the paper's main road unless it is
-    not asked for; ``met``: the sectors that a road of the recordings has.
+    not asked for; ``met``: the sectors that a road of the recordings has. ``foretold`` counts the labels that
+    driver models give to matches.
     """
 
     settings: Settings
@@ -173,6 +196,7 @@ class Totals:
     broken: list[str] = field(default_factory=list)
     notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
     repeats: list[Repeat] = field(default_factory=list)
+    foretold: Counter[Foretold] = field(default_factory=Counter)
 
     @property
     def rows(self) -> list[Row]:
@@ -204,6 +228,11 @@ def add_findings(totals: Totals, findings: Findings) -> None:
         setattr(totals, name, getattr(totals, name) + getattr(findings, name))
     totals.detected.update(name for name, _ in {(x.detector, x.pair) for x in findings.detections})
     totals.met.update(findings.sectors)
+    for match in findings.matches:
+        for driver, label in zip(totals.settings.drivers, match.labels, strict=bool(match.labels)):
+            if label:
+                of = (match.min_danger, match.set_name, match.scenario)
+                totals.foretold[Foretold(*of, driver, label)] += 1
     for place, (k, set_name) in enumerate(
         product(range(len(totals.settings.min_danger)), totals.settings.sets)
     ):
@@ -277,7 +306,7 @@ def write_results(
     words = words_in(settings)
     with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
-        match_rows.writerow(MATCH_COLUMNS)
+        match_rows.writerow((*MATCH_COLUMNS, *driver_columns(settings)))
         pair_rows.writerow((*PAIR_COLUMNS, *settings.sets))
         for all_found in findings:
             found = without_repeats(all_found, counted)
@@ -324,7 +353,43 @@ def as_json(totals: Totals, failed: Mapping[str, str]) -> dict[str, Any]:
         "repeats": [_repeat_as_json(totals, x) for x in totals.repeats],
         "notes": {name: list(notes) for name, notes in totals.notes.items()},
         "failed": dict(failed),
-    }
+    } | ({"drivers": _drivers_as_json(totals)} if totals.settings.drivers else {})
+
+
+def foretold_rows(totals: Totals) -> Iterator[tuple[Fraction, str, int, str, tuple[int, ...]]]:
+    """For each minDanger, set, scenario and model that speaks of it how many matches have each of LABELS.
+
+    Scenarios of road sectors that no road has are left out.
+    """
+    settings = totals.settings
+    asked = [i for rows in totals.shown.values() for i in rows[0].sector.scenarios]
+    for (k, danger), set_name in product(enumerate(settings.min_danger), settings.sets):
+        for number, driver in product(asked, settings.drivers):
+            if course_in(number) in MODELS[driver].manoeuvres:
+                of = (k, set_name, number, driver)
+                counts = tuple(totals.foretold[Foretold(*of, label)] for label in LABELS)
+                yield danger, set_name, number, driver, counts
+
+
+def _drivers_as_json(totals: Totals) -> list[dict[str, Any]]:
+    return [
+        {"min_danger": str(danger), "set": set_name, "scenario": number, "driver": driver}
+        | dict(zip((label.replace(" ", "_") for label in LABELS), counts, strict=True))
+        for danger, set_name, number, driver, counts in foretold_rows(totals)
+    ]
+
+
+def driver_columns(settings: Settings) -> list[str]:
+    """What the columns about driver models are called in matches.csv: a label, and the frame it is about."""
+    return [column for name in settings.drivers for column in (name, f"{name}_frame")]
+
+
+def driver_cells(settings: Settings, match: Match) -> list[str | int | None]:
+    """Their values for a match; None where a model says nothing of the scenario."""
+    cells: list[str | int | None] = []
+    for label in match.labels or ("",) * len(settings.drivers):
+        cells += [label or None, match.begun if label else None]
+    return cells
 
 
 def words_in(settings: Settings) -> Called:
@@ -350,7 +415,8 @@ def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[
         pov2 = "" if m.pov2 is None else m.pov2
         frames = (m.start_frame, m.end_frame, dangers[m.min_danger])
         happens = (m.set_name, m.scenario, words[m.scenario].title)
-        yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, *happens, int(m.uncertain)]
+        models = driver_cells(settings, m)
+        yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, *happens, int(m.uncertain), *models]
 
 
 def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:

@@ -1,6 +1,6 @@
 """The driver models of ``driver.spec``, and what its definitions are called, which no other file knows."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -8,8 +8,12 @@ from roadproof.errors import UsageError
 from roadproof.spec.library import Specification, unknown
 from roadproof.spec.scenarios import number_in
 
+DRIVERS = "driver"
+"""What the file of the definitions is called, among those that are read on request."""
 # The scenario of the library that each manoeuvre is the course of.
 SCENARIOS: Mapping[str, int] = MappingProxyType({"cut-in": 1, "cut-out": 2, "deceleration": 4})
+_SECTORS = (0, 8, 16)
+"""How much later in the library's list a scenario of the main road stands for each road sector."""
 _FORESEEN: Mapping[str, str] = MappingProxyType(
     {"cut-in": "cutsIn", "cut-out": "cutsOut", "deceleration": "brakesAhead"}
 )
@@ -61,6 +65,27 @@ def models_for(manoeuvre: str, names: tuple[str, ...] = ()) -> tuple[Model, ...]
     return tuple(MODELS[name] for name in names) or tuple(
         x for x in MODELS.values() if manoeuvre in x.manoeuvres
     )
+
+
+def course_in(number: int) -> str | None:
+    """The manoeuvre that a scenario is the course of, on any road sector; None where it is of none."""
+    return next((x for x, first in SCENARIOS.items() if number - first in _SECTORS), None)
+
+
+def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
+    """Each model is there, once, and speaks of one of the scenarios. Raises ``UsageError``."""
+    if len({*names}) < len(names):
+        raise UsageError(f"drivers={','.join(names)}: one is named twice; name different models")
+    for name in names:
+        if name not in MODELS:
+            raise UsageError(f"drivers={','.join(names)}: {unknown('driver model', name, MODELS)}")
+        said = [SCENARIOS[x] + later for x in MODELS[name].manoeuvres for later in _SECTORS]
+        if not {*said} & {*numbers}:
+            raise UsageError(
+                f"drivers={','.join(names)}: {name} says nothing of any scenario that is asked for "
+                f"({', '.join(map(str, numbers))}); it speaks of {', '.join(map(str, sorted(said)))}: "
+                "ask for one of these, or leave the model out"
+            )
 
 
 def manoeuvre_of(name: str) -> str:

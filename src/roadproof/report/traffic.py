@@ -5,7 +5,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
 
-from roadproof.evaluation.results import Row, Totals, words_in
+from roadproof.evaluation.foretelling import LABELS
+from roadproof.evaluation.results import Row, Totals, foretold_rows, words_in
+from roadproof.preventing.models import MODELS
 from roadproof.report.paper import COMPARISON, MARK, RESULTS, PaperRow
 from roadproof.report.tables import Table
 from roadproof.spec.scenarios import DETECTORS, Metric
@@ -77,6 +79,27 @@ def _names(scenarios: Sequence[int], words: Called) -> Iterator[str]:
 def _papers(rows: Sequence[Row]) -> Iterator[str]:
     if any(paper_row(row) is not None for row in rows):
         yield f"{PAPER}: {MARK}; a comparison of methods, not of the same traffic."
+
+
+def drivers_table(totals: Totals) -> Table | None:
+    """What driver models say of the matches; None where none were asked for."""
+    if not totals.settings.drivers:
+        return None
+    rows = [
+        (decimal(danger), set_name, f"s{number}", driver, *map(str, counts))
+        for danger, set_name, number, driver, counts in foretold_rows(totals)
+    ]
+    said = [f"{name}: {MODELS[name].title} ({MODELS[name].source})" for name in totals.settings.drivers]
+    return Table(
+        "Matches by whether a driver model prevents a collision from where the manoeuvre begins",
+        ("minDanger", "set", "scenario", "model", *LABELS),
+        tuple(rows),
+        (
+            "; ".join(said) + ".",
+            "Rows of matches.csv, so a pair may count in both roles. The other vehicle is supposed to go on "
+            "as it moves where the manoeuvre begins; floating point, no evidence.",
+        ),
+    )
 
 
 def paper_row(row: Row) -> PaperRow | None:

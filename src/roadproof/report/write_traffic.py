@@ -7,17 +7,19 @@ from roadproof.evaluation.results import Totals
 from roadproof.files import cannot_write, write_whole
 from roadproof.report.answers import answer_questions
 from roadproof.report.tables import LOOKS
-from roadproof.report.traffic import comparison_table, results_tables
+from roadproof.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.report.traffic_figures import draw_figures
 
 
 def write_report(folder: Path, totals: Totals, failed: Mapping[str, str], pictures: bool = True) -> None:
-    """``results`` of each sector and ``comparison`` in four looks, ``answers.md``, ``figures/``; all whole.
+    """``results`` of each sector and of drivers, ``comparison``, ``answers.md`` and ``figures/``.
 
-    ``failed`` are the recordings that are left out, and why; tables and text say so. Without
-    ``pictures`` matplotlib is not needed. Raises ``InputError`` where a file cannot be written.
+    Tables have four looks, and all files are whole. ``failed`` are the recordings that are left out, and
+    why; tables and text say so. Without ``pictures`` matplotlib is not needed. Raises
+    ``InputError`` where a file cannot be written.
     """
     tables = {**results_tables(totals, failed), "comparison": comparison_table(totals, failed)}
+    tables |= {"results-drivers": drivers_table(totals)} if totals.settings.drivers else {}
     for name, table in tables.items():
         for ending, look in LOOKS.items():
             if table is None:  # an earlier run may have had one
