@@ -15,7 +15,7 @@ from roadproof.preventing.driving import Reading
 from roadproof.preventing.lemmas import lemmas_for
 from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
 from roadproof.preventing.models import MODELS, manoeuvre_of, models_for
-from roadproof.preventing.sides import SIDES, first_drive, judged_drive
+from roadproof.preventing.sides import SIDES, beside_boundary, first_drive, judged_drive
 
 OPTIONS = (
     {},
@@ -46,7 +46,9 @@ def test_drives_on_both_sides_are_within_a_span_of_the_boundary(manoeuvre, model
     true = lines_of(manoeuvre, model, options, where)
     home = specification(**options)
     for side in SIDES:
-        found = first_drive(where, model, true, side, home, Reading(values(), home.options))
+        found = first_drive(
+            where, model, beside_boundary(where, true, side), side, home, Reading(values(), home.options)
+        )
         assert not isinstance(found, str), found
         at, judged = found
         assert side in judged.file.formula
@@ -60,7 +62,7 @@ def test_a_drive_on_the_wrong_side_is_rejected(manoeuvre, model, options):
     home = specification(**options)
     reading = Reading(values(), home.options)
     for side, other in (SIDES, SIDES[::-1]):
-        found = first_drive(where, model, true, side, home, reading)
+        found = first_drive(where, model, beside_boundary(where, true, side), side, home, reading)
         assert not isinstance(found, str)
         with pytest.raises(rp.InputError, match="does not hold on the drive"):
             judged_drive(where.manoeuvre, model, found[0], other, home, reading)

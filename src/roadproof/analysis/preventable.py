@@ -4,7 +4,7 @@ A question in pieces: a plate for each model and choice of fixed values, and the
 formula is the boundary.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -23,8 +23,9 @@ from roadproof.preventing.boundary import Plane, line
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.lemmas import Lemma, lemmas_for
 from roadproof.preventing.manoeuvres import Manoeuvre, Values
-from roadproof.preventing.models import Model, unpreventable
-from roadproof.preventing.sides import SIDES, Side, claim_of, first_drive
+from roadproof.preventing.models import MODELS, Model, boundary_of, unpreventable
+from roadproof.preventing.sides import SIDES, Side, beside_boundary, claim_of, first_drive
+from roadproof.preventing.stepped import TOLD, beside_change, labels_of, places_of, spans_of
 from roadproof.proving.prover import prove
 from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
@@ -48,7 +49,10 @@ class End:
 
 @dataclass(frozen=True)
 class Line:
-    """At a value of the other side (SI), where along the line a collision is unpreventable."""
+    """At a value of the other side (SI), where along the line a collision is unpreventable.
+
+    Of a controller that is stepped, spans are from the first to the last of neighbouring places looked at.
+    """
 
     at: Fraction
     spans: tuple[tuple[End, End], ...]
@@ -74,6 +78,11 @@ class Plate:
     lines: tuple[Line, ...] = ()
     shown: tuple[Shown, ...] = ()
     reason: str = ""
+
+    @property
+    def stepped(self) -> str:
+        """What is said of a plate whose lines are no exact boundary; empty where they are one."""
+        return TOLD if MODELS[self.model].is_stepped else ""
 
     @property
     def verdict(self) -> Verdict:
@@ -191,14 +200,29 @@ class Preventable:
 
     def _plate(self, piece: PlatePiece) -> Plate:
         plane, model = self.plane(piece.fixed), piece.model.name
+        if piece.model.is_stepped:
+            return self._stepped(piece, plane)
         formula = self.formula(model)
         true = tuple(line(plane, formula, row) for row in plane.rows)
         lines = tuple(Line(row, _spans(x)) for row, x in zip(plane.rows, true, strict=True))
-        shown = tuple(self._show(plane, model, true, side) for side in SIDES)
+        shown = tuple(self._show(plane, model, beside_boundary(plane, true, side), side) for side in SIDES)
         return Plate(piece.name, model, piece.fixed, lines, shown)
 
-    def _show(self, plane: Plane, model: str, true: tuple[TruthSet, ...], side: Side) -> Shown:
-        found = first_drive(plane, model, true, side, self.basis.specification, self.reading)
+    def _stepped(self, piece: PlatePiece, plane: Plane) -> Plate:
+        """The plate of a controller: what it does from each place that is looked at."""
+        model, places, labels = piece.model.name, places_of(plane), labels_of(plane)
+        lines = tuple(
+            Line(row, tuple((_end(a), _end(b)) for a, b in spans_of(places, found)))
+            for row, found in zip(plane.rows, labels, strict=True)
+        )
+        shown = tuple(
+            self._show(plane, model, beside_change(plane, labels, side == "unpreventable"), side)
+            for side in SIDES
+        )
+        return Plate(piece.name, model, piece.fixed, lines, shown)
+
+    def _show(self, plane: Plane, model: str, candidates: Iterable[dict[str, Fraction]], side: Side) -> Shown:
+        found = first_drive(plane, model, candidates, side, self.basis.specification, self.reading)
         return Shown(side, reason=found) if isinstance(found, str) else Shown(side, *found)
 
     def _said(self, lemma: Lemma) -> tuple[str, ...]:
@@ -235,7 +259,8 @@ class Preventable:
                 "model": answer.model,
                 "fixed": {key: str(value) for key, value in answer.fixed.items()},
                 "verdict": str(answer.verdict),
-                "formula": unpreventable(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
+                "formula": boundary_of(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
+                "stepped": answer.stepped,
                 "lines": [_line_data(x) for x in answer.lines],
                 "shown": [self._shown_data(answer, x, shelf) for x in answer.shown],
                 "reason": answer.reason,

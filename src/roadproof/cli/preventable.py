@@ -20,7 +20,9 @@ examples:
 
 A plate varies two initial values and fixes the others. On each of its lines the ends of what is unpreventable
 are exact; a judged drive on each side follows the model, and touches the other vehicle, or never does. The
-lemmas say why the formula (--spec driver) is the boundary. With --out: evidence, plates.csv, plates.png.
+lemmas say why the formula (--spec driver) is the boundary. The fuzzy safety model (fsm) is a controller that
+looks ten times a second: its lines are places decided one by one, and nothing is claimed between them.
+With --out: evidence, plates.csv, plates.png.
 """
 
 
@@ -28,7 +30,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("manoeuvre", metavar="MANOEUVRE", help="cut-in (1), cut-out (2) or deceleration (4)")
     parser.add_argument(
-        "--model", metavar="NAME", action="append", default=[], help="careful, r157, eu1426, rss"
+        "--model",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="careful, r157, eu1426, rss; by name only: fsm",
     )
     parser.add_argument(
         "--at",

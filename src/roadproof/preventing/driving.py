@@ -9,6 +9,8 @@ from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.preventing.manoeuvres import FIRST, OTHER, SECOND, Manoeuvre, Values, lane_width
+from roadproof.preventing.models import MODELS
+from roadproof.preventing.stepped import course_of
 from roadproof.spec.scenarios import SUBJECT
 from roadproof.world.drive import Drive, Motion
 from roadproof.world.pieces import Across, Along, motion_of
@@ -34,13 +36,14 @@ def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: Reading)
     box = (values["length"], width)
     speed, apart = values["Ve0"], values["length"]
     ego = (_STILL, middle), (speed, _STILL)
+    stepped = course_of(manoeuvre, values).along if MODELS[model].is_stepped else None
     match manoeuvre.name:
         case "cut-in":
             other, w = speed - values["dV0"], values["Vy"]
             return Drive(
                 {
                     SUBJECT: motion_of(
-                        box, *ego, _along(model, speed, _onset(model, values, reading), reading)
+                        box, *ego, _cut_in(model, values, reading) if stepped is None else stepped
                     ),
                     OTHER: motion_of(
                         box,
@@ -57,7 +60,9 @@ def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: Reading)
             obstacle = (first + values["dx0_f"] + apart, middle), (values["Vf0"], _STILL)
             return Drive(
                 {
-                    SUBJECT: motion_of(box, *ego, _along(model, speed, onset, reading)),
+                    SUBJECT: motion_of(
+                        box, *ego, _along(model, speed, onset, reading) if stepped is None else stepped
+                    ),
                     FIRST: motion_of(
                         box, (first, middle), (speed, values["Vy"]), (), _across(lane, values["Vy"])
                     ),
@@ -69,7 +74,9 @@ def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: Reading)
             pieces: list[Along] = [(other / braking, -braking, _STILL)] if other > 0 else []
             return Drive(
                 {
-                    SUBJECT: motion_of(box, *ego, _deceleration(model, values, reading)),
+                    SUBJECT: motion_of(
+                        box, *ego, _deceleration(model, values, reading) if stepped is None else stepped
+                    ),
                     OTHER: motion_of(box, (values["dx0"] + apart, middle), (other, _STILL), pieces),
                 }
             )
@@ -139,6 +146,10 @@ def _careful_onset(values: Values, reading: Reading) -> Fraction | None:
     if options["cc_gate"] == "before_perception":
         return max(seen, opens) + weighed + known["cc_delay"]
     return max(seen + weighed, opens) + known["cc_delay"]
+
+
+def _cut_in(model: str, values: Values, reading: Reading) -> list[Along]:
+    return _along(model, values["Ve0"], _onset(model, values, reading), reading)
 
 
 def _deceleration(model: str, values: Values, reading: Reading) -> list[Along]:

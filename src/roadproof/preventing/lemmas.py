@@ -31,7 +31,7 @@ def lemmas_for(manoeuvre: str, models: Sequence[Model]) -> list[Lemma]:
     """The lemmas on which the boundaries of these models rest, each model with its own braking."""
     content = resources.files("roadproof.preventing").joinpath("lemmas.toml").read_text("utf-8")
     found: list[Lemma] = []
-    for model in models:
+    for model in (x for x in models if not x.is_stepped):
         ramp, full = _BRAKING[model.name]
         gradual = ramp != AT_ONCE
         parameters = (full, ramp) if gradual else (full,)

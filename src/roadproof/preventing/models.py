@@ -21,12 +21,16 @@ _FORESEEN: Mapping[str, str] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Model:
-    """A driver: what it is called, and what it says where."""
+    """A driver: what it is called, and what it says where.
+
+    ``is_stepped``: a controller that is looked at place by place, and has no formula.
+    """
 
     name: str
     title: str
     manoeuvres: tuple[str, ...]
     source: str
+    is_stepped: bool = False
 
 
 MODELS: Mapping[str, Model] = MappingProxyType(
@@ -47,13 +51,20 @@ MODELS: Mapping[str, Model] = MappingProxyType(
                 ("cut-in", "deceleration"),
                 "Shalev-Shwartz et al. 2017; values of the paper",
             ),
+            Model(
+                "fsm",
+                "fuzzy safety model",
+                ("cut-in", "cut-out", "deceleration"),
+                "UN R157 (01 series), Annex 3; JRC-FSM",
+                is_stepped=True,
+            ),
         )
     }
 )
 
 
 def models_for(manoeuvre: str, names: tuple[str, ...] = ()) -> tuple[Model, ...]:
-    """The models of that name, or all that say something of a manoeuvre. Raises ``UsageError``."""
+    """The models of that name, or all with a formula for a manoeuvre. Raises ``UsageError``."""
     for name in names:
         if name not in MODELS:
             raise UsageError(f"model={name}: {unknown('driver model', name, MODELS)}")
@@ -63,7 +74,7 @@ def models_for(manoeuvre: str, names: tuple[str, ...] = ()) -> tuple[Model, ...]
                 f"model={name}: {MODELS[name].source} says nothing of a {manoeuvre}; these do: {said}"
             )
     return tuple(MODELS[name] for name in names) or tuple(
-        x for x in MODELS.values() if manoeuvre in x.manoeuvres
+        x for x in MODELS.values() if manoeuvre in x.manoeuvres and not x.is_stepped
     )
 
 
@@ -108,6 +119,21 @@ def _word(manoeuvre: str) -> str:
 def unpreventable(manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> str:
     """The formula: the manoeuvre, from this state on, ends in a collision though SV is driven so."""
     return f"unpreventable_{_word(manoeuvre)}_{model}({', '.join(vehicles)})"
+
+
+def touched(vehicles: tuple[str, ...]) -> str:
+    """The formula about a drive: SV touches the last of the vehicles."""
+    return f"F touches({vehicles[0]}, {vehicles[-1]})"
+
+
+def untouched(vehicles: tuple[str, ...]) -> str:
+    """The formula about a drive: SV never does."""
+    return f"G not touches({vehicles[0]}, {vehicles[-1]})"
+
+
+def boundary_of(manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> str:
+    """What is true where a collision is unpreventable: of the state, or, for want of that, of the drive."""
+    return touched(vehicles) if MODELS[model].is_stepped else unpreventable(manoeuvre, model, vehicles)
 
 
 def foreseen(manoeuvre: str, vehicles: tuple[str, ...]) -> str:

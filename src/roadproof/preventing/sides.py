@@ -1,6 +1,6 @@
 """Judged drives on both sides of a boundary: SV follows its model, and touches POV, or never does."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -12,7 +12,7 @@ from roadproof.judge.truth import TruthSet
 from roadproof.preventing.boundary import Plane
 from roadproof.preventing.driving import Reading, drive_of, rest_of, road_of
 from roadproof.preventing.manoeuvres import Manoeuvre, Values, lane_width
-from roadproof.preventing.models import follows, foreseen, unpreventable
+from roadproof.preventing.models import MODELS, follows, foreseen, touched, unpreventable, untouched
 from roadproof.spec.library import Specification
 
 Side: TypeAlias = Literal["unpreventable", "preventable"]
@@ -21,15 +21,20 @@ _NEAR = Fraction(1, 10)  # m from the boundary
 
 
 def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side) -> str:
-    """What the drive from these values shows: its side, the model followed, and what comes of it."""
+    """What the drive from these values shows: its side, the model followed, and what comes of it.
+
+    Of a controller that is stepped: only how the drive begins, and what comes of it.
+    """
     vehicles = manoeuvre.vehicles
+    begins = foreseen(manoeuvre.name, vehicles)
+    met = touched(vehicles) if side == "unpreventable" else untouched(vehicles)
+    if MODELS[model].is_stepped:
+        return f"{begins} and {met}"
     boundary = unpreventable(manoeuvre.name, model, vehicles)
     driven = follows(manoeuvre.name, model, vehicles, _numbers(manoeuvre, values))
-    met = f"touches({vehicles[0]}, {vehicles[-1]})"
     if side == "unpreventable":
-        return f"{boundary} and {driven} and F {met}"
-    begins = foreseen(manoeuvre.name, vehicles)
-    return f"{begins} and not {boundary} and {driven} and G not {met}"
+        return f"{boundary} and {driven} and {met}"
+    return f"{begins} and not {boundary} and {driven} and {met}"
 
 
 def _numbers(manoeuvre: Manoeuvre, values: Values) -> tuple[str, ...]:
@@ -99,14 +104,14 @@ def _places(plane: Plane, true: TruthSet, side: Side) -> Iterator[Fraction]:
 def first_drive(
     plane: Plane,
     model: str,
-    lines: tuple[TruthSet, ...],
+    candidates: Iterable[dict[str, Fraction]],
     side: Side,
     specification: Specification,
     reading: Reading,
 ) -> tuple[dict[str, Fraction], Judged] | str:
-    """A judged drive on one side of the boundary with its initial values; or why there is none."""
+    """A judged drive from one of the candidates, initial values of that side; or why there is none."""
     reason = f"no place of the plane is {side}"
-    for tried, values in enumerate(beside_boundary(plane, lines, side)):
+    for tried, values in enumerate(candidates):
         if tried == 3:
             break
         try:

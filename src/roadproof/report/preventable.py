@@ -19,7 +19,8 @@ COLOURS: Mapping[str, str] = {
     "rss": "#7d3c98",
     "fsm": "#8a6d1b",
 }
-_TOLD = 5  # lines of a plate that the terminal shows
+_STEPPED = "Single lines: places looked at, stepped at 10 Hz; nothing is claimed between them"
+_TOLD = 5  # lines of a plate, and spans of a line, that the terminal shows
 
 
 def measured(quantity: Quantity, value: Fraction) -> str:
@@ -53,9 +54,16 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved
             lines.append(f"  {plate.reason}")
         if plate.lines:
             percent = 100 * share_of(study, plate)
-            lines.append(f"  unpreventable on {percent:.1f} % of the plane; {along.doc} [{along.unit}]:")
+            what = f"{percent:.1f} % of the plane"
+            if plate.stepped:
+                what = "what follows"
+                lines.append(f"  {plate.stepped};")
+                lines.append("  the drives follow the controller, which their formula does not say")
+            lines.append(f"  unpreventable on {what}; {along.doc} [{along.unit}]:")
         for line in _some(plate.lines):
-            shown = " and ".join(f"{a.near:.6g} to {b.near:.6g}" for a, b in line.spans) or "nowhere"
+            shown = " and ".join(f"{a.near:.6g} to {b.near:.6g}" for a, b in line.spans[:_TOLD]) or "nowhere"
+            if len(line.spans) > _TOLD:
+                shown += f" and {len(line.spans) - _TOLD} more"
             lines.append(f"    {across.name} = {measured(across, line.at):<14} {shown}")
         for x in plate.shown:
             told = x.reason
@@ -86,12 +94,13 @@ def as_csv(study: Preventable, plates: Sequence[Plate]) -> str:
     fixed = list(dict.fromkeys(name for plate in plates for name in plate.fixed))
     along, across = study.manoeuvre.line, study.manoeuvre.across
     ends = [f"{along}_from", f"{along}_to", f"{along}_from_exact", f"{along}_to_exact"]
-    writer.writerow(["model", *fixed, across, *ends])
+    writer.writerow(["model", *fixed, across, *ends, "note"])
     for plate in plates:
         for line in plate.lines:
             begins = [plate.model, *(_si(plate.fixed[name]) for name in fixed), _si(line.at)]
             for a, b in line.spans:
-                writer.writerow([*begins, a.near, b.near, a.exact, b.exact])
+                exact = ("", "") if plate.stepped else (a.exact, b.exact)
+                writer.writerow([*begins, a.near, b.near, *exact, plate.stepped])
     return out.getvalue()
 
 
@@ -129,18 +138,17 @@ def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
 
 
 def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
-    figure.text(
-        0.2 / width,
-        1 - 0.22 / height,
-        f"{study.manoeuvre.name}: a collision is unpreventable in what is shaded",
-        fontsize=9,
-        va="center",
-    )
+    what = "in what is shaded"
+    if all(model.is_stepped for model in study.models):
+        what = "at places on lines"
+    title = f"{study.manoeuvre.name}: a collision is unpreventable {what}"
+    figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
+    if any(model.is_stepped for model in study.models):
+        figure.text(0.2 / width, 0.1 / height, _STEPPED, fontsize=5.5, va="center")
     for k, model in enumerate(study.models):
         x = (0.2 + 1.9 * k) / width
-        figure.text(
-            x, 1 - 0.45 / height, f"━ {model.title}", fontsize=7, color=COLOURS[model.name], va="center"
-        )
+        told = f"─ {model.title}, stepped" if model.is_stepped else f"━ {model.title}"
+        figure.text(x, 1 - 0.45 / height, told, fontsize=7, color=COLOURS[model.name], va="center")
 
 
 def _label(study: Preventable, name: str) -> str:
@@ -153,17 +161,10 @@ def _draw_plate(axes: Any, study: Preventable, plates: Sequence[Plate]) -> None:
     scale = float(UNITS[known[study.manoeuvre.line].unit][0])
     for plate in plates:
         colour = COLOURS[plate.model]
-        at = [float(line.at) / unit for line in plate.lines]
-        low = [line.spans[0][0].near / scale if line.spans else 0.0 for line in plate.lines]
-        high = [line.spans[-1][1].near / scale if line.spans else 0.0 for line in plate.lines]
-        some = [bool(line.spans) for line in plate.lines]
-        axes.fill_betweenx(at, low, high, where=some, color=colour, alpha=0.14, linewidth=0)
-        edges = [float(x) / scale for x in study.along]
-        for ends in (low, high):
-            curve = [
-                x if there and x not in edges else float("nan") for x, there in zip(ends, some, strict=True)
-            ]
-            axes.plot(curve, at, color=colour, linewidth=1.1)
+        if plate.stepped:
+            _draw_places(axes, plate, colour, scale, unit)
+        else:
+            _draw_area(axes, plate, colour, scale, unit, [float(x) / scale for x in study.along])
         for x in plate.shown:
             if x.drive is not None:
                 place = float(x.values[study.manoeuvre.line]) / scale
@@ -174,3 +175,25 @@ def _draw_plate(axes: Any, study: Preventable, plates: Sequence[Plate]) -> None:
     rows = [float(line.at) / unit for plate in plates for line in plate.lines]
     axes.set_ylim(min(rows, default=0), max(rows, default=1))
     axes.tick_params(labelsize=6)
+
+
+def _draw_places(axes: Any, plate: Plate, colour: str, scale: float, unit: float) -> None:
+    """Each span of each line by itself: nothing is claimed of what lies between lines and places."""
+    for line in plate.lines:
+        for a, b in line.spans:
+            ends, at = [a.near / scale, b.near / scale], [float(line.at) / unit] * 2
+            axes.plot(ends, at, "|-", color=colour, linewidth=0.6, markersize=1.5, alpha=0.8)
+
+
+def _draw_area(
+    axes: Any, plate: Plate, colour: str, scale: float, unit: float, edges: Sequence[float]
+) -> None:
+    """From the first to the last end of each line."""
+    at = [float(line.at) / unit for line in plate.lines]
+    low = [line.spans[0][0].near / scale if line.spans else 0.0 for line in plate.lines]
+    high = [line.spans[-1][1].near / scale if line.spans else 0.0 for line in plate.lines]
+    some = [bool(line.spans) for line in plate.lines]
+    axes.fill_betweenx(at, low, high, where=some, color=colour, alpha=0.14, linewidth=0)
+    for ends in (low, high):
+        curve = [x if there and x not in edges else float("nan") for x, there in zip(ends, some, strict=True)]
+        axes.plot(curve, at, color=colour, linewidth=1.1)

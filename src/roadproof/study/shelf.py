@@ -176,8 +176,8 @@ def refuse_vanished(folder: Path) -> None:
     """Raises ``InputError`` where a folder of answers has gone since they were begun, and their evidence."""
     if not (folder / HEAD).is_file():
         raise InputError(
-            f"{folder} was there when the run began, and is gone or has lost {HEAD}, and with it evidence that "
-            "the answers name; run the command again, which asks anew what is lost"
+            f"{folder} was there when the run began, and is gone or has lost {HEAD}, and with it evidence "
+            "that the answers name; run the command again, which asks anew what is lost"
         )
 
 
