@@ -1,5 +1,6 @@
 """Work for a cluster of dask, which lives here: jobs of 0.1 s to minutes, on workers that come and go."""
 
+import gc
 import importlib.metadata
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from roadproof import workers
 from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.hands import Cluster
+from roadproof.memory import keep_freed_memory
 from roadproof.workers import Lost
 
 if TYPE_CHECKING:
@@ -19,6 +21,13 @@ Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
 _PATIENCE = 30  # seconds for a scheduler to answer
+# What kills a worker is not tried again among others; workers neither look at their own stack every 10 ms nor
+# give memory back all the time.
+_SETTINGS = {
+    "distributed.scheduler.allowed-failures": 1,
+    "distributed.worker.profile.enabled": False,
+    "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": 1 << 30,
+}
 _AHEAD = 2  # jobs for each worker that the scheduler has at once, so that none waits for its next one
 
 
@@ -84,7 +93,16 @@ def _serve(version: str, function: Callable[[Job], Answer], job: Job) -> Answer:
     """A job on a worker, which may have come after the versions were checked."""
     _check_version(version, {_our_version()})
     workers.end_here()
-    return function(job)
+    keep_freed_memory()
+    answer = function(job)
+    _freeze()
+    return answer
+
+
+@cache
+def _freeze() -> None:
+    """Once, after the first job: what it has imported stays, and is not walked through at each collection."""
+    gc.freeze()
 
 
 def _count_workers(client: "Client") -> int:
@@ -101,10 +119,7 @@ def _client(cluster: Cluster) -> "Client":
         raise MissingSolverError(
             "a cluster needs dask, which is not installed: pip install 'roadproof[cluster]'"
         ) from None
-    # A worker looks at its own stack every 10 ms otherwise.
-    dask.config.set(
-        {"distributed.scheduler.allowed-failures": 1, "distributed.worker.profile.enabled": False}
-    )
+    dask.config.set(_SETTINGS)
     if cluster.local:
         here = LocalCluster(
             n_workers=cluster.local, threads_per_worker=1, dashboard_address=":0", silence_logs=50
