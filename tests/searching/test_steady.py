@@ -30,3 +30,14 @@ def test_others_are_refuted_by_a_trace(claim):
     answer = rp.prove(claim, jobs=1)
     assert str(answer.verdict) == "REFUTED"
     assert "by a trace" in str(answer)
+
+
+def test_two_formulas_about_one_instant_are_compared_without_a_search():
+    """At the declared values: the engines cannot bound cubes."""
+    first = "v_lon(SV)*v_lon(SV)*v_lon(SV) > rho*a_max*v_lon(POV)^2 and v_lon(POV) > rho*a_max"
+    second = "v_lon(SV)*v_lon(SV)*v_lon(SV) > (rho*a_max)^3"
+    found = rp.compare(first, second, jobs=1)
+    assert [str(x) for x in found.verdicts.values()] == ["PROVED", "REFUTED"]
+    [certificate, drive] = found.evidence
+    assert found.exit_code == 0
+    assert len(drive.file.drive.vehicles) == 2

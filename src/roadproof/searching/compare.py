@@ -6,12 +6,18 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from roadproof.effort import Effort, Late
+from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.judged import Judged
 from roadproof.hands import Hands
+from roadproof.logic.formula import is_state
+from roadproof.logic.rewrite import parameters_of
 from roadproof.proving.prover import prove
 from roadproof.searching.ask import Search, ask
+from roadproof.searching.steady import steady_drive
+from roadproof.spec.bind import values_with
 from roadproof.spec.compose import both, implication, negation
+from roadproof.spec.motion import Assumed, value_texts
 from roadproof.spec.query import Query
 from roadproof.stages import about
 from roadproof.verdict import Verdict
@@ -155,6 +161,22 @@ def _imply(question: _Question) -> Direction:
         return question.doubt(str(late))
 
 
+def _at_values(against: Search, claim: Query, effort: Effort) -> Direction | None:
+    """A claim about one instant that no engine can search: decided with the values of the search put in."""
+    specification = against.specification
+    known = values_with(specification.library, against.setting.values)
+    values = {name: known[name] for name in parameters_of(claim.formula)}
+    said = value_texts(specification, values)
+    result = prove(specification, claim, effort, assumed=Assumed(said))
+    if result.holds:
+        reason = f"with {', '.join(said)}" if said else ""
+        return Direction(claim, Verdict.PROVED, reason, certificate=result.certificate)
+    if result.countermodel is None:
+        return None
+    drive = steady_drive(specification, claim, result.countermodel, known)
+    return None if drive is None else Direction(claim, Verdict.REFUTED, drive=drive)
+
+
 def _decide(against: Search, claim: Query) -> Direction:
     """Ask for a proof first, which takes a moment where there is one, then for a drive against the claim."""
     effort = against.search_options.effort
@@ -163,7 +185,13 @@ def _decide(against: Search, claim: Query) -> Direction:
     if proof.holds and proof.certificate is not None:
         return Direction(claim, Verdict.PROVED, proof.reason, certificate=proof.certificate)
     left = Effort(effort.units, meter.seconds_left())
-    found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
+    try:
+        found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
+    except UsageError:
+        direction = _at_values(against, claim, left) if is_state(claim.formula) else None
+        if direction is None:
+            raise
+        return direction
     if found.drives:
         return Direction(claim, Verdict.REFUTED, drive=found.drives[0])
     if found.impossibility is not None:

@@ -20,12 +20,17 @@ from roadproof.world.drive import Drive, Motion, Piece
 _MOTION = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
 
 
-def steady_drive(specification: Specification, claim: Query, found: Countermodel) -> Judged | None:
+def steady_drive(
+    specification: Specification,
+    claim: Query,
+    found: Countermodel,
+    parameters: Mapping[str, Fraction] | None = None,
+) -> Judged | None:
     """The first state of ``found`` with constant accelerations, judged to refute ``claim``.
 
     None where the claim is about more than one instant, says its numbers or signals itself, needs jerk or
-    other values of parameters than the declared ones and those that its premise demands; and where the judge
-    rejects the drive.
+    other values of ``parameters`` (where None: than the declared ones and those that its premise demands);
+    and where the judge rejects the drive.
     """
     if not is_state(claim.formula):
         return None
@@ -37,7 +42,8 @@ def steady_drive(specification: Specification, claim: Query, found: Countermodel
     if any(name not in known | jerks for name in values) or any(values.get(name, 0) for name in jerks):
         return None
     library = specification.library
-    if dict(found.parameters) != values_with(library, pins(claim.formula)):
+    wanted = values_with(library, pins(claim.formula)) if parameters is None else parameters
+    if dict(found.parameters) != dict(wanted):
         return None
     refuted = negation(claim)
     drive = Drive({vehicle: _steady(vehicle, values) for vehicle in claim.vehicles})
