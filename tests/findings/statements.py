@@ -33,11 +33,23 @@ COVERAGE = {
     "complete": "roadproof coverage --set complete --on recordings",
 }
 
+PLATES = {
+    name: f"roadproof preventable {name} --no-lemmas --out {name}"
+    for name in ("cut-in", "deceleration", "cut-out")
+}
+
 PICTURES = (
     Picture("docs/pictures/overtaking.png", (OVERTAKING,), lambda _: "pictured/formula-01-base.png"),
     Picture("docs/pictures/overlap-base.png", (OVERLAP,), lambda _: "overlap/overlap.png"),
     Picture("docs/pictures/classes-base.png", (CLASSES,), lambda _: "classes/classes.png"),
     Picture("docs/pictures/gap-ext.png", (RECORDINGS, COVERAGE["ext"]), r.picture_of_a_gap_beside_the_lane),
+    Picture("docs/pictures/preventable-cut-in.png", (PLATES["cut-in"],), lambda _: "cut-in/plates.png"),
+    Picture(
+        "docs/pictures/preventable-deceleration.png",
+        (PLATES["deceleration"],),
+        lambda _: "deceleration/plates.png",
+    ),
+    Picture("docs/pictures/preventable-cut-out.png", (PLATES["cut-out"],), lambda _: "cut-out/plates.png"),
 )
 
 HOLD_TOGETHER = (

@@ -42,6 +42,7 @@ from roadproof.formats.source import Files
 from roadproof.formats.straight import StraightRoad
 from roadproof.formats.table import Table, polars_module, require_unchanged, stamp_of
 from roadproof.formats.windows import Divided, Window
+from roadproof.signals import RECORDED
 
 _LEAST = 24
 """Bytes of a row of a CSV file, at least."""
@@ -250,7 +251,7 @@ class _Reading:
 def _without_samples(recording: Recording) -> Recording:
     """What a recording says once, or of vehicles."""
     nothing = np.zeros(0)
-    signals = dict.fromkeys(("s", "d", "v_lon", "v_lat", "a_lon", "a_lat"), nothing)
+    signals = dict.fromkeys(RECORDED, nothing)
     masks = {"occupancy": nothing, "lane": nothing, "zones": nothing, "inside": np.zeros((0, 0), np.bool_)}
     return replace(recording, **signals, **masks, own={})  # type: ignore[arg-type]
 

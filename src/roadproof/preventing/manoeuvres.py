@@ -12,6 +12,7 @@ from roadproof.errors import UsageError
 from roadproof.judge.piecewise import Pieces, constant
 from roadproof.judge.polynomial import Polynomial, polynomial
 from roadproof.logic.terms import Own, Signal, Size
+from roadproof.signals import SIGNALS, STARTING
 from roadproof.spec.library import unknown
 from roadproof.spec.scenarios import PAIR, SUBJECT, TRIPLE
 
@@ -206,11 +207,10 @@ def lane_width(values: Mapping[str, Any]) -> Any:
 def _vehicle(
     name: str, place: Any, left: Any, speed: Any, lateral: Any, acceleration: Any
 ) -> dict[tuple[str, str], Any]:
-    signals = {"s": place, "d": left, "v_lon": speed, "v_lat": lateral, "a_lon": acceleration}
+    begins = zip(STARTING, (place, left, speed, lateral), strict=True)
+    known: dict[str, Any] = {**dict(begins), "a_lon": acceleration}
     nothing = 0 * speed
-    return {(signal, name): value + nothing for signal, value in signals.items()} | {
-        (signal, name): nothing for signal in ("a_lat", "j_lon")
-    }
+    return {(signal, name): known.get(signal, nothing) + nothing for signal in SIGNALS}
 
 
 def spread(low: Fraction, high: Fraction, count: int) -> Sequence[Fraction]:

@@ -150,4 +150,4 @@ def require(specification: Specification) -> None:
     """Raises ``UsageError`` where the definitions of the drivers are not read."""
     name = "unpreventable_cutIn_careful"
     if name not in specification.definitions:
-        raise UsageError(f"there is no definition '{name}': driver models need --spec driver")
+        raise UsageError(f"there is no definition '{name}': driver models need the specification 'driver'")

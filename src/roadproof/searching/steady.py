@@ -11,13 +11,14 @@ from roadproof.logic.formula import is_state
 from roadproof.logic.own import kind_of
 from roadproof.logic.pins import pins
 from roadproof.proving.states import TYPICAL_SIZE
+from roadproof.signals import FIXED, SIGNALS, STARTING
 from roadproof.spec.bind import values_with
 from roadproof.spec.compose import negation
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 from roadproof.world.drive import Drive, Motion, Piece
 
-_MOTION = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
+_JERK = "j_lon"
 
 
 def steady_drive(
@@ -36,9 +37,9 @@ def steady_drive(
         return None
     values = found.instants[0].values
     known = {
-        f"{name}({vehicle})" for vehicle in claim.vehicles for name in (*_MOTION, "length", "width", "kind")
+        f"{name}({vehicle})" for vehicle in claim.vehicles for name in (*SIGNALS, *FIXED) if name != _JERK
     }
-    jerks = {f"j_lon({vehicle})" for vehicle in claim.vehicles}
+    jerks = {f"{_JERK}({vehicle})" for vehicle in claim.vehicles}
     if any(name not in known | jerks for name in values) or any(values.get(name, 0) for name in jerks):
         return None
     library = specification.library
@@ -73,13 +74,7 @@ def _steady(vehicle: str, values: Mapping[str, Fraction]) -> Motion:
         return values.get(f"{name}({vehicle})", usual)
 
     kind = values.get(f"kind({vehicle})")
-    return Motion(
-        of("length", TYPICAL_SIZE["length"]),
-        of("width", TYPICAL_SIZE["width"]),
-        of("s"),
-        of("d"),
-        of("v_lon"),
-        of("v_lat"),
-        (Piece(None, of("a_lon"), of("a_lat")),),
-        None if kind is None else kind_of(kind),
-    )
+    length, width = of("length", TYPICAL_SIZE["length"]), of("width", TYPICAL_SIZE["width"])
+    begins = {name: of(name) for name in STARTING}
+    pieces = (Piece(None, of("a_lon"), of("a_lat")),)
+    return Motion(length, width, **begins, pieces=pieces, kind=None if kind is None else kind_of(kind))
