@@ -36,6 +36,7 @@ class Session:
         self._z3 = z3
         self._unit = unit
         self._counted = 0
+        z3.Context.owner = False  # of one that Ctrl-C meets while it is made, which its end asks for
         self._context = z3.Context()
         self.tell("(set-option :produce-models true)(set-option :produce-unsat-cores true)")
 
