@@ -16,8 +16,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from preventing import stepping
+from preventing.labels import labels
 from preventing.read import boundary
-from roadproof.preventing.labels import labels
 from roadproof.preventing.manoeuvres import CUT_IN
 
 KMH = float(Fraction(5, 18))

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from preventing import stepping
+from preventing.labels import labels
 from preventing.read import boundary
-from roadproof.preventing.labels import labels
 from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION
 
 RATE = 1000

@@ -289,6 +289,7 @@ def test_from_python(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("drivers", "among", "said"),
     [
+        ("fsm", "1", "fsm is a controller and has no formula; these have: careful, r157, eu1426, rss"),
         ("carful", "1-8", "'carful'"),
         ("r157", "4", "r157 says nothing of any scenario that is asked for (4); it speaks of 1, 9, 17"),
         ("careful,careful", "1", "one is named twice"),
@@ -304,5 +305,5 @@ def test_mistakes_are_named(
 
 
 def test_definitions_without_drivers_are_refused(folder: Path) -> None:
-    with pytest.raises(UsageError, match="--spec driver"):
+    with pytest.raises(UsageError, match="the specification 'driver'"):
         rp.evaluate(folder, using=rp.load("base"), drivers=("careful",))

@@ -4,7 +4,7 @@ The judge reads signals as polynomials in time. Here what runs is an initial val
 the set of values at which the formula is true, with algebraic ends.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -45,8 +45,3 @@ def line(plane: Plane, formula: Formula, row: Fraction) -> TruthSet:
         return NEVER
     signals = along_line(plane.manoeuvre, values)
     return intersection([judge(formula, signals).truth(formula), interval(*plane.along)])
-
-
-def lines(plane: Plane, formulas: Mapping[str, Formula]) -> dict[str, tuple[TruthSet, ...]]:
-    """Every row's line for each formula, by name."""
-    return {name: tuple(line(plane, x, row) for row in plane.rows) for name, x in formulas.items()}

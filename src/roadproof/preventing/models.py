@@ -90,6 +90,11 @@ def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
     for name in names:
         if name not in MODELS:
             raise UsageError(f"drivers={','.join(names)}: {unknown('driver model', name, MODELS)}")
+        if MODELS[name].is_stepped:
+            formulas = ", ".join(x.name for x in MODELS.values() if not x.is_stepped)
+            raise UsageError(
+                f"drivers={','.join(names)}: {name} is a controller and has no formula; these have: {formulas}"
+            )
         said = [SCENARIOS[x] + later for x in MODELS[name].manoeuvres for later in _SECTORS]
         if not {*said} & {*numbers}:
             raise UsageError(
