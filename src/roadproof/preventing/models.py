@@ -93,7 +93,8 @@ def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
         if MODELS[name].is_stepped:
             formulas = ", ".join(x.name for x in MODELS.values() if not x.is_stepped)
             raise UsageError(
-                f"drivers={','.join(names)}: {name} is a controller and has no formula; these have: {formulas}"
+                f"drivers={','.join(names)}: {name} is a controller and has no formula; "
+                f"these have: {formulas}"
             )
         said = [SCENARIOS[x] + later for x in MODELS[name].manoeuvres for later in _SECTORS]
         if not {*said} & {*numbers}:
