@@ -67,6 +67,7 @@ LENGTHY = (
     "tests/cli/test_book.py::test_page[docs-interop",
     "tests/cli/test_book.py::test_page[docs-language",
     "tests/cli/test_book.py::test_page[motion-README",
+    "tests/cli/test_book.py::test_page[preventable-README]",
     "tests/cli/test_book.py::test_page[python-README",
     "tests/cli/test_book.py::test_page[signals-README",
     "tests/cli/test_book.py::test_page[time-to-collision-README",
