@@ -228,3 +228,11 @@ def test_touching_is_at_the_edges():
 def test_every_manoeuvre_has_vehicles_that_its_formula_speaks_of():
     for kind in (CUT_IN, CUT_OUT, DECELERATION):
         assert kind.vehicles[0] == "SV"
+
+
+def test_a_side_that_has_no_place_with_few_digits_is_shown_all_the_same():
+    where = Plane(CUT_IN, {}, (Fraction(15), Fraction("15.004")), (30 * KMH, 31 * KMH), 2)
+    true = lines_of("cut-in", "careful", {}, where)
+    assert all(x.at(Fraction("15.002")) for x in true)
+    assert [x["dx0"] for x in beside_boundary(where, true, "unpreventable")] == [Fraction("15.002")] * 2
+    assert not list(beside_boundary(where, true, "preventable"))

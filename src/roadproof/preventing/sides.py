@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from itertools import pairwise
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
-from roadproof.judge.algebraic import bounds
+from roadproof.judge.algebraic import Point, bounds
 from roadproof.judge.truth import TruthSet
 from roadproof.preventing.boundary import Plane
 from roadproof.preventing.driving import Reading, drive_of, rest_of, road_of
@@ -17,6 +18,7 @@ from roadproof.spec.library import Specification
 
 Side: TypeAlias = Literal["unpreventable", "preventable"]
 SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
+_FINE = 10**9  # of a line, for spans that have no place with few digits
 _NEAR = Fraction(1, 10)  # m from the boundary
 
 
@@ -89,16 +91,26 @@ def beside_boundary(plane: Plane, lines: tuple[TruthSet, ...], side: Side) -> It
 
 
 def _places(plane: Plane, true: TruthSet, side: Side) -> Iterator[Fraction]:
-    """Places with few digits that are on the wanted side of an end of a span."""
+    """Places with few digits that are on the wanted side of an end of a span; then one of each span."""
     low, high = plane.along
     wanted = side == "unpreventable"
     ends = [cut.point for cut in reversed(true.cuts)] or [high if side == "preventable" else low]
     for end in ends:
-        middle = sum(bounds(end, _NEAR / 100)) / 2
+        middle = _near(end, _NEAR / 100)
         for step in (_NEAR, -_NEAR, _NEAR / 10, -_NEAR / 10):
             place = Fraction(round((middle + step) * 100), 100)
             if low <= place <= high and true.at(place) is wanted:
                 yield place
+    near = (_near(cut.point, (high - low) / _FINE) for cut in true.cuts)
+    for one, other in pairwise(sorted((low, *near, high))):
+        if true.at((one + other) / 2) is wanted and one < other:
+            yield (one + other) / 2
+
+
+def _near(point: Point, width: Fraction) -> Fraction:
+    """A fraction that is no farther from a point than that."""
+    low, high = bounds(point, width)
+    return (low + high) / 2
 
 
 def first_drive(

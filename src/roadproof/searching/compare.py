@@ -169,7 +169,7 @@ def _at_values(against: Search, claim: Query, effort: Effort) -> Direction | Non
     said = value_texts(specification, values)
     result = prove(specification, claim, effort, assumed=Assumed(said))
     if result.holds:
-        reason = f"with {', '.join(said)}" if said else ""
+        reason = "; ".join(x for x in (result.reason, f"with {', '.join(said)}" if said else "") if x)
         return Direction(claim, Verdict.PROVED, reason, certificate=result.certificate)
     if result.countermodel is None:
         return None
