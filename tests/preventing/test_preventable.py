@@ -16,6 +16,7 @@ from roadproof.preventing.lemmas import lemmas_for
 from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
 from roadproof.preventing.models import MODELS, manoeuvre_of, models_for
 from roadproof.preventing.sides import SIDES, beside_boundary, first_drive, judged_drive
+from roadproof.report import preventable as report
 
 OPTIONS = (
     {},
@@ -236,3 +237,13 @@ def test_a_side_that_has_no_place_with_few_digits_is_shown_all_the_same():
     assert all(x.at(Fraction("15.002")) for x in true)
     assert [x["dx0"] for x in beside_boundary(where, true, "unpreventable")] == [Fraction("15.002")] * 2
     assert not list(beside_boundary(where, true, "preventable"))
+
+
+def test_no_two_plates_of_a_model_are_drawn_over_each_other(monkeypatch):
+    drawn: list[list[str]] = []
+    monkeypatch.setattr(report, "_draw_plate", lambda axes, study, here: drawn.append([x.name for x in here]))
+    at = {"Ve0": ["60 km/h", "90 km/h"], "Vy": [1, 2], "dy0": [1, 2]}
+    found = rp.preventable("cut-in", ["r157", "eu1426"], at=at, lines=2, lemmas=False, jobs=1)
+    report.draw_sheet(found.study, found.plates)
+    assert sorted(name for names in drawn for name in names) == sorted(found.study.plates)
+    assert [len(names) for names in drawn] == [2] * 8

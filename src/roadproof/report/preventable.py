@@ -4,6 +4,8 @@ import csv
 import io
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from itertools import product
+from math import ceil
 from typing import Any
 
 from roadproof.analysis.preventable import Line, Plate, Preventable, Proved
@@ -20,6 +22,7 @@ COLOURS: Mapping[str, str] = {
     "fsm": "#8a6d1b",
 }
 _STEPPED = "Single lines: places looked at, stepped at 10 Hz; nothing is claimed between them"
+_LEGEND = 1.9, 0.2  # inches for the name of a model
 _TOLD = 5  # lines of a plate, and spans of a line, that the terminal shows
 
 
@@ -109,22 +112,25 @@ def _si(value: Fraction) -> str:
 
 
 def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
-    """All plates of a sheet: columns and rows are what is fixed, colours are models."""
+    """All plates of a sheet: rows are the second of what is fixed, columns all else; colours are models."""
     names = list(study.sheet)
-    columns = study.sheet[names[0]] if names else (Fraction(0),)
-    rows = study.sheet[names[1]] if len(names) > 1 else (Fraction(0),)
-    width, height = 1.1 + 2.5 * len(columns), 1.25 + 2.2 * len(rows)
+    beside = [name for name in names if name not in names[1:2]]
+    columns = list(product(*(study.sheet[name] for name in beside)))
+    rows = list(product(*(study.sheet[name] for name in names[1:2])))
+    width = 1.1 + 2.5 * len(columns)
+    top = 0.55 + _LEGEND[1] * ceil(len(study.models) / _models_a_row(width))
+    height = top + 0.5 + 2.2 * len(rows)
     figure = make_page(width, height)
     for i, row in enumerate(rows):
         for j, column in enumerate(columns):
             box = [
                 (0.75 + 2.5 * j) / width,
-                1 - (0.75 + 2.2 * (i + 1) - 0.42) / height,
+                1 - (top + 2.2 * (i + 1) - 0.42) / height,
                 2.0 / width,
                 1.6 / height,
             ]
             axes = figure.add_axes(box)
-            chosen = dict(zip(names, (column, row), strict=False))
+            chosen = dict(zip((*beside, *names[1:2]), (*column, *row), strict=True))
             here = [p for p in plates if all(p.fixed.get(name) == value for name, value in chosen.items())]
             _draw_plate(axes, study, here)
             told = [f"{n} {measured(study.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
@@ -146,9 +152,15 @@ def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
     if any(model.is_stepped for model in study.models):
         figure.text(0.2 / width, 0.1 / height, _STEPPED, fontsize=5.5, va="center")
     for k, model in enumerate(study.models):
-        x = (0.2 + 1.9 * k) / width
+        row, column = divmod(k, _models_a_row(width))
+        x, y = (0.2 + _LEGEND[0] * column) / width, 1 - (0.45 + _LEGEND[1] * row) / height
         told = f"─ {model.title}, stepped" if model.is_stepped else f"━ {model.title}"
-        figure.text(x, 1 - 0.45 / height, told, fontsize=7, color=COLOURS[model.name], va="center")
+        figure.text(x, y, told, fontsize=7, color=COLOURS[model.name], va="center")
+
+
+def _models_a_row(width: float) -> int:
+    """How many names of models stand beside each other on a page so wide (inches)."""
+    return max(1, int((width - 0.2) / _LEGEND[0]))
 
 
 def _label(study: Preventable, name: str) -> str:
