@@ -131,10 +131,14 @@ def test_a_false_lemma_is_refuted():
 
 
 def test_manoeuvres_by_name_and_by_scenario():
-    assert [manoeuvre_of(x) for x in ("1", "scenario_2", "4", "cut-in")] == [
-        *("cut-in", "cut-out", "deceleration", "cut-in")
+    assert [manoeuvre_of(x) for x in ("1", "scenario_2", "4", "6", "cut-in")] == [
+        ("cut-in", 1),
+        ("cut-out", 2),
+        ("deceleration", 4),
+        ("cut-out", 6),
+        ("cut-in", None),
     ]
-    with pytest.raises(rp.UsageError, match=r"'3' is no manoeuvre .* cut-in \(scenario 1\)"):
+    with pytest.raises(rp.UsageError, match=r"'3' is no manoeuvre .* cut-in \(scenarios 1, 5\)"):
         manoeuvre_of("3")
 
 
@@ -198,6 +202,57 @@ def test_another_driver_spec_beside_it_is_told(folder, tmp_path):
     assert "is not the file of that name that comes with roadproof" in str(checked)
 
 
+def test_a_line_that_is_not_where_the_formula_holds_is_told(folder, tmp_path):
+    index = json.loads((folder / "index.json").read_text("utf-8"))
+    for number, change in enumerate((_moved, _without_a_line, _other_row)):
+        out = tmp_path / f"forged-{number}"
+        copy(folder, out)
+        forged = json.loads(json.dumps(index))
+        change(forged["plates"][0]["lines"])
+        (out / "index.json").write_text(json.dumps(forged), "utf-8")
+        checked = rp.check(out)
+        assert checked.exit_code != 0
+        assert "plate r157-" in str(checked)
+
+
+def _moved(lines):
+    lines[-1]["unpreventable"][0][1]["exact"] = "50"
+
+
+def _without_a_line(lines):
+    del lines[2]
+
+
+def _other_row(lines):
+    lines[1]["at"] = "1/2"
+
+
+@pytest.mark.parametrize(
+    ("number", "at", "told"),
+    [
+        (1, {"dy0": "2.2 m", "Vy": "0.5 m/s"}, ("scenario_1(SV, POV, L)",) * 2),
+        (1, {"Vy": "1 m/s"}, ("disturb_1(SV, POV, L)", "scenario_1(SV, POV, L)")),
+        (2, {}, ("scenario_2(SV, POV1, POV2, L)",) * 2),
+        (4, {"dV0": "10 km/h"}, ("disturb_4(SV, POV, L)", "scenario_4(SV, POV, L)")),
+        (6, {}, ("", "")),
+    ],
+)
+def test_drives_are_of_the_scenario_that_is_asked_for(number, at, told, tmp_path):
+    found = rp.preventable(
+        number, ["careful"], at={"Ve0": "60 km/h"} | at, lines=25, lemmas=False, jobs=1, out=tmp_path
+    )
+    shown = found.plates[0].shown
+    assert tuple(x.scenario for x in shown) == told
+    for x in shown:
+        assert x.drive is not None
+        assert x.drive.file.formula.endswith(f" and {x.scenario}") == bool(x.scenario)
+    assert rp.check(tmp_path).exit_code == 0
+    index = json.loads((tmp_path / "index.json").read_text("utf-8"))
+    index["plates"][0]["shown"][0]["scenario"] = f"scenario_{number}(SV, POV)"
+    (tmp_path / "index.json").write_text(json.dumps(index), "utf-8")
+    assert rp.check(tmp_path).exit_code != 0
+
+
 def copy(source: Path, target: Path) -> None:
     for path in source.rglob("*"):
         if path.is_file():
@@ -235,7 +290,9 @@ def test_a_side_that_has_no_place_with_few_digits_is_shown_all_the_same():
     where = Plane(CUT_IN, {}, (Fraction(15), Fraction("15.004")), (30 * KMH, 31 * KMH), 2)
     true = lines_of("cut-in", "careful", {}, where)
     assert all(x.at(Fraction("15.002")) for x in true)
-    assert [x["dx0"] for x in beside_boundary(where, true, "unpreventable")] == [Fraction("15.002")] * 2
+    places = [x["dx0"] for x in beside_boundary(where, true, "unpreventable")]
+    assert places[0] == Fraction("15.002")
+    assert all(15 < x < Fraction("15.004") for x in places)
     assert not list(beside_boundary(where, true, "preventable"))
 
 

@@ -16,56 +16,36 @@ from roadproof.effort import Late
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
-from roadproof.judge.algebraic import Point, Root, approximate
-from roadproof.judge.truth import TruthSet
-from roadproof.logic.formula import Formula
-from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.boundary import Plane, line, plane_of
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.lemmas import Lemma, lemmas_for
+from roadproof.preventing.lines import Line, boundary_formula, end_of, line_data, read_line, told_line
 from roadproof.preventing.manoeuvres import Manoeuvre, Values
-from roadproof.preventing.models import MODELS, Model, boundary_of, unpreventable
-from roadproof.preventing.sides import SIDES, Side, beside_boundary, claim_of, first_drive
+from roadproof.preventing.models import MODELS, Model, boundary_of, parts_of
+from roadproof.preventing.sides import SIDES, Side, beside_boundary, far_apart, first_drive
 from roadproof.preventing.stepped import TOLD, beside_change, labels_of, places_of, spans_of
 from roadproof.proving.prover import prove
-from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.motion import Assumed, statement, value_texts
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
-from roadproof.world.road import Road
 
 SCHEMA = "roadproof/preventable/1"
-_PLACES = 6
-_NO_ROAD = Road("none", (), frozenset())
-
-
-@dataclass(frozen=True)
-class End:
-    """An end of a span: a number near it, and what it is exactly: a fraction, or a root of a polynomial."""
-
-    near: float
-    exact: str
-
-
-@dataclass(frozen=True)
-class Line:
-    """At a value of the other side (SI), where along the line a collision is unpreventable.
-
-    Of a controller that is stepped, spans are from the first to the last of neighbouring places looked at.
-    """
-
-    at: Fraction
-    spans: tuple[tuple[End, End], ...]
+_ROWS = 10  # in which a drive of a scenario is looked for
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A drive on one side of the boundary with its initial values; or why there is none."""
+    """A drive on one side of the boundary with its initial values; or why there is none.
+
+    ``scenario``: the scenario that it is of, as a formula, or what happens in that; empty where neither.
+    """
 
     side: Side
     values: Mapping[str, Fraction] = field(default_factory=dict)
     drive: Judged | None = None
     reason: str = ""
+    scenario: str = ""
 
 
 @dataclass(frozen=True)
@@ -123,7 +103,10 @@ Piece: TypeAlias = PlatePiece | Lemma
 
 @dataclass(frozen=True)
 class Preventable:
-    """The question as a ``study.frame.Study``: ``sheet`` has the values that differ from plate to plate."""
+    """The question as a ``study.frame.Study``: ``sheet`` has the values that differ from plate to plate.
+
+    ``scenario``: the number of the one that drives should be of, where the manoeuvre was asked for by it.
+    """
 
     basis: Basis
     manoeuvre: Manoeuvre
@@ -134,12 +117,14 @@ class Preventable:
     across: tuple[Fraction, Fraction]
     rows: int = 100
     with_lemmas: bool = True
+    scenario: int | None = None
 
     @property
     def question(self) -> Question:
         said = {
             "set": self.basis.specification.set_name,
             "manoeuvre": self.manoeuvre.name,
+            "scenario": self.scenario,
             "along": [self.manoeuvre.line, *map(str, self.along)],
             "across": [self.manoeuvre.across, *map(str, self.across), str(self.rows)],
         }
@@ -186,25 +171,16 @@ class Preventable:
         return Reading(self.basis.all_values(), self.basis.specification.options)
 
     def plane(self, fixed: Values) -> Plane:
-        """The plane of a plate: up to where POV would go backwards."""
-        low, high = self.across
-        if self.manoeuvre.across == "dV0":
-            high = min(high, self.manoeuvre.values(fixed)["Ve0"])
-        return Plane(self.manoeuvre, fixed, self.along, (low, high), self.rows)
-
-    def formula(self, model: str) -> Formula:
-        """The boundary with values put in."""
-        text = unpreventable(self.manoeuvre.name, model, self.manoeuvre.vehicles)
-        query = read_claim(self.basis.specification, text)
-        return bind(query.formula, _NO_ROAD, {}, self.basis.all_values())
+        """The plane of a plate."""
+        return plane_of(self.manoeuvre, fixed, self.along, self.across, self.rows)
 
     def _plate(self, piece: PlatePiece) -> Plate:
         plane, model = self.plane(piece.fixed), piece.model.name
         if piece.model.is_stepped:
             return self._stepped(piece, plane)
-        formula = self.formula(model)
+        formula = boundary_formula(self.basis.specification, plane, model, self.basis.all_values())
         true = tuple(line(plane, formula, row) for row in plane.rows)
-        lines = tuple(Line(row, _spans(x)) for row, x in zip(plane.rows, true, strict=True))
+        lines = tuple(map(told_line, plane.rows, true))
         shown = tuple(self._show(plane, model, beside_boundary(plane, true, side), side) for side in SIDES)
         return Plate(piece.name, model, piece.fixed, lines, shown)
 
@@ -212,7 +188,7 @@ class Preventable:
         """The plate of a controller: what it does from each place that is looked at."""
         model, places, labels = piece.model.name, places_of(plane), labels_of(plane)
         lines = tuple(
-            Line(row, tuple((_end(a), _end(b)) for a, b in spans_of(places, found)))
+            Line(row, tuple((end_of(a), end_of(b)) for a, b in spans_of(places, found)))
             for row, found in zip(plane.rows, labels, strict=True)
         )
         shown = tuple(
@@ -222,8 +198,21 @@ class Preventable:
         return Plate(piece.name, model, piece.fixed, lines, shown)
 
     def _show(self, plane: Plane, model: str, candidates: Iterable[dict[str, Fraction]], side: Side) -> Shown:
-        found = first_drive(plane, model, candidates, side, self.basis.specification, self.reading)
+        places = list(candidates) if self._parts else candidates
+        for also in self._parts:
+            rows = far_apart(plane, places, _ROWS)
+            shown = first_drive(
+                plane, model, rows, side, self.basis.specification, self.reading, also, most=len(rows)
+            )
+            if not isinstance(shown, str):
+                return Shown(side, *shown, scenario=also)
+        found = first_drive(plane, model, places, side, self.basis.specification, self.reading)
         return Shown(side, reason=found) if isinstance(found, str) else Shown(side, *found)
+
+    @property
+    def _parts(self) -> tuple[str, ...]:
+        """What drives should be of, the scenario before what happens in it."""
+        return () if self.scenario is None else parts_of(self.scenario, self.manoeuvre.vehicles)
 
     def _said(self, lemma: Lemma) -> tuple[str, ...]:
         values = self.basis.all_values()
@@ -261,7 +250,7 @@ class Preventable:
                 "verdict": str(answer.verdict),
                 "formula": boundary_of(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
                 "stepped": answer.stepped,
-                "lines": [_line_data(x) for x in answer.lines],
+                "lines": [line_data(x) for x in answer.lines],
                 "shown": [self._shown_data(answer, x, shelf) for x in answer.shown],
                 "reason": answer.reason,
             }
@@ -269,12 +258,13 @@ class Preventable:
 
     def _shown_data(self, plate: Plate, shown: Shown, shelf: Shelf) -> dict[str, Any]:
         drive = shown.drive
-        claim = "" if drive is None else claim_of(self.manoeuvre, plate.model, shown.values, shown.side)
+        claim = "" if drive is None else drive.file.formula
         return {
             "side": shown.side,
             "at": {name: str(value) for name, value in shown.values.items()},
             "verdict": str(Verdict.UNKNOWN if drive is None else Verdict.WITNESSED),
             "formula": claim,
+            "scenario": shown.scenario,
             "drive": shelf.drive(f"{plate.name}-{shown.side}.json", drive),
             "reason": shown.reason,
         }
@@ -296,10 +286,11 @@ class Preventable:
                 {name: Fraction(value) for name, value in x["at"].items()},
                 shelf.read_drive(x["drive"]),
                 x["reason"],
+                x["scenario"],
             )
             for x in said["shown"]
         )
-        lines = tuple(_read_line(x) for x in said["lines"])
+        lines = tuple(read_line(x) for x in said["lines"])
         return said["name"], Plate(said["name"], said["model"], fixed, lines, shown, said["reason"])
 
     def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
@@ -316,25 +307,3 @@ class Preventable:
 def said_of(proved: Proved) -> str:
     """A lemma as a claim, with the values of parameters in front."""
     return statement(proved.assuming, proved.lemma.claim)
-
-
-def _spans(true: TruthSet) -> tuple[tuple[End, End], ...]:
-    return tuple(
-        (_end(span.begin.point), _end(span.end.point)) for span in true.spans() if span.end is not None
-    )
-
-
-def _end(point: Point) -> End:
-    if isinstance(point, Root):
-        return End(round(approximate(point), _PLACES), f"root of {list(point.polynomial)}, constant first")
-    return End(round(float(point), _PLACES), str(point))
-
-
-def _line_data(line_: Line) -> dict[str, Any]:
-    spans = [[{"near": end.near, "exact": end.exact} for end in span] for span in line_.spans]
-    return {"at": str(line_.at), "unpreventable": spans}
-
-
-def _read_line(said: Mapping[str, Any]) -> Line:
-    spans = tuple((End(a["near"], a["exact"]), End(b["near"], b["exact"])) for a, b in said["unpreventable"])
-    return Line(Fraction(said["at"]), spans)

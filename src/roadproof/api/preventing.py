@@ -114,15 +114,17 @@ def preventable(
 ) -> Plates:
     """Where a collision is unpreventable for driver models, over planes of initial values.
 
-    ``manoeuvre``: "cut-in", "cut-out" or "deceleration", or its scenario, 1, 2 or 4. ``models``: names, all
-    that say something of it where there are none. ``at``: initial values by name, several for several plates
-    (SI units or with a unit); ``along``, ``across``: ranges of the two that vary; ``lines`` of each plate.
+    ``manoeuvre``: "cut-in", "cut-out" or "deceleration"; or a scenario in which it happens (1, 2 or 4; 5, 6
+    or 8, where SV changes lanes), of which drives are then shown where there are such. ``models``: names,
+    all that say something of it where there are none. ``at``: initial values by name, several for several
+    plates (SI units or with a unit); ``along``, ``across``: ranges of the two that vary; ``lines`` of each.
     ``using``: definitions with those of ``driver.spec`` (``load(specs=["driver"])``). Raises ``InputError``,
     ``UsageError``.
     """
     home = using or load(specs=[DRIVERS])
     require(home.specification)
-    kind = MANOEUVRES[manoeuvre_of(str(manoeuvre))]
+    name, scenario = manoeuvre_of(str(manoeuvre))
+    kind = MANOEUVRES[name]
     if not 2 <= lines <= _MOST_LINES:
         raise UsageError(f"lines={lines}: a plate has between 2 and {_MOST_LINES}")
     given = {name: _values(kind, name, x) for name, x in (at or {}).items()}
@@ -139,6 +141,7 @@ def preventable(
         _range(kind, kind.across, across) or kind.range,
         lines,
         lemmas,
+        scenario,
     )
     count = len(study.plates)
     if count > _MOST_PLATES:

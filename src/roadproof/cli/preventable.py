@@ -12,7 +12,8 @@ SUMMARY = "which initial values a driver model prevents a collision from: exact 
 
 _EXAMPLES = """\
 examples:
-  roadproof preventable cut-in                            sheets for all models; also by scenario: 1, 2, 4
+  roadproof preventable cut-in                            sheets for all models
+  roadproof preventable 1 --at dy0=2.2 --at Vy=0.5        drives of the scenario: they begin safe
   roadproof preventable cut-in --model careful,r157 --at 'Ve0=60km/h' --at Vy=1 --out cut-in
   roadproof preventable deceleration --at Ve0=60km/h,130km/h --along dx0=0:120
   roadproof preventable cut-out --option cc_gate=none --param cc_delay=0.5
@@ -28,7 +29,9 @@ With --out: evidence, plates.csv, plates.png.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    parser.add_argument("manoeuvre", metavar="MANOEUVRE", help="cut-in (1), cut-out (2) or deceleration (4)")
+    parser.add_argument(
+        "manoeuvre", metavar="MANOEUVRE", help="cut-in, cut-out, deceleration; or a scenario: 1, 2 or 4"
+    )
     parser.add_argument(
         "--model",
         metavar="NAME",
@@ -66,11 +69,11 @@ def run(args: argparse.Namespace) -> int:
 
     if Path(DRIVERS) not in args.specs:
         args.specs = [Path(DRIVERS), *args.specs]
-    kind = MANOEUVRES[manoeuvre_of(args.manoeuvre)]
+    kind = MANOEUVRES[manoeuvre_of(args.manoeuvre)[0]]
     models = [name.strip() for text in args.model for name in text.split(",")]
     told = asking(args, args.out)
     found = preventable(
-        kind.name,
+        args.manoeuvre,
         models,
         dict(_named("--at", text) for text in args.at),
         _range("--along", args.along, kind.line),

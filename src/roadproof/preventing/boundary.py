@@ -38,6 +38,20 @@ class Plane:
         return self.manoeuvre.values({**self.fixed, **here})
 
 
+def plane_of(
+    manoeuvre: Manoeuvre,
+    fixed: Values,
+    along: tuple[Fraction, Fraction],
+    across: tuple[Fraction, Fraction],
+    lines: int,
+) -> Plane:
+    """The plane of a plate: up to where POV would go backwards. Raises ``UsageError``."""
+    low, high = across
+    if manoeuvre.across == "dV0":
+        high = min(high, manoeuvre.values(fixed)["Ve0"])
+    return Plane(manoeuvre, fixed, along, (low, high), lines)
+
+
 def line(plane: Plane, formula: Formula, row: Fraction) -> TruthSet:
     """At which places of a row's line a bound formula is true; nowhere where a vehicle would go backwards."""
     values = plane.values(row)

@@ -18,7 +18,9 @@ from roadproof.world.road import Lanelet, Road, pairs
 
 _STILL = Fraction(0)
 _STEERING = Fraction(1, 2)  # s in which a vehicle that has changed lanes ends to move across
-_BOTH_LANES = ("right", "left")
+OWN_LANE = "right"
+"""The lane of SV."""
+_BOTH_LANES = (OWN_LANE, "left")
 
 
 @dataclass(frozen=True)

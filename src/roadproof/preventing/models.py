@@ -6,12 +6,14 @@ from types import MappingProxyType
 
 from roadproof.errors import UsageError
 from roadproof.spec.library import Specification, unknown
-from roadproof.spec.scenarios import number_in
+from roadproof.spec.scenarios import LANE, disturbance_name, name_of, number_in
 
 DRIVERS = "driver"
 """What the file of the definitions is called, among those that are read on request."""
 # The scenario of the library that each manoeuvre is the course of.
 SCENARIOS: Mapping[str, int] = MappingProxyType({"cut-in": 1, "cut-out": 2, "deceleration": 4})
+_CHANGING: Mapping[str, int] = MappingProxyType({"cut-in": 5, "cut-out": 6, "deceleration": 8})
+"""The scenario in which the same happens while SV changes lanes, of which models have no drive."""
 _SECTORS = (0, 8, 16)
 """How much later in the library's list a scenario of the main road stands for each road sector."""
 _FORESEEN: Mapping[str, str] = MappingProxyType(
@@ -105,15 +107,28 @@ def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
             )
 
 
-def manoeuvre_of(name: str) -> str:
-    """``cut-in``, or the number of its scenario, as the manoeuvre. Raises ``UsageError``."""
-    numbers = {number: manoeuvre for manoeuvre, number in SCENARIOS.items()}
+def manoeuvre_of(name: str) -> tuple[str, int | None]:
+    """``cut-in``, or the number of a scenario in which it happens, as manoeuvre and number.
+
+    Raises ``UsageError``.
+    """
+    numbers = {number: manoeuvre for said in (SCENARIOS, _CHANGING) for manoeuvre, number in said.items()}
     number = int(name) if name.isdecimal() else number_in(name)
     found = name if number is None else numbers.get(number, name)
     if found not in SCENARIOS:
-        known = ", ".join(f"{manoeuvre} (scenario {number})" for manoeuvre, number in SCENARIOS.items())
+        known = ", ".join(f"{x} (scenarios {SCENARIOS[x]}, {_CHANGING[x]})" for x in SCENARIOS)
         raise UsageError(f"'{name}' is no manoeuvre that driver models speak of; these are: {known}")
-    return found
+    return found, number
+
+
+def parts_of(number: int, vehicles: tuple[str, ...]) -> tuple[str, str]:
+    """A scenario of those vehicles as a formula, and what happens in it without where and how it begins.
+
+    Where SV changes lanes the scenario has one POV, the first.
+    """
+    those = (*(vehicles[:2] if number in _CHANGING.values() else vehicles), LANE)
+    said = ", ".join(those)
+    return f"{name_of(number)}({said})", f"{disturbance_name(number)}({said})"
 
 
 def _word(manoeuvre: str) -> str:

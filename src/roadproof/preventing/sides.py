@@ -2,7 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from itertools import pairwise
+from itertools import islice, pairwise
+from math import ceil
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
@@ -11,15 +12,17 @@ from roadproof.evidence.judged import Judged
 from roadproof.judge.algebraic import Point, bounds
 from roadproof.judge.truth import TruthSet
 from roadproof.preventing.boundary import Plane
-from roadproof.preventing.driving import Reading, drive_of, rest_of, road_of
+from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, rest_of, road_of
 from roadproof.preventing.manoeuvres import Manoeuvre, Values, lane_width
 from roadproof.preventing.models import MODELS, follows, foreseen, touched, unpreventable, untouched
 from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import LANE
 
 Side: TypeAlias = Literal["unpreventable", "preventable"]
 SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
 _FINE = 10**9  # of a line, for spans that have no place with few digits
 _NEAR = Fraction(1, 10)  # m from the boundary
+_PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
 
 
 def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side) -> str:
@@ -56,6 +59,11 @@ def _number(value: Fraction, unit: str) -> str:
     return f"{value} {unit}" if value.denominator == 1 else f"{value}*1 {unit}"
 
 
+def with_also(claim: str, also: str) -> str:
+    """A claim about a drive, and what else is true of it; empty where nothing else is said."""
+    return f"{claim} and {also}" if also else claim
+
+
 def judged_drive(
     manoeuvre: Manoeuvre,
     model: str,
@@ -63,15 +71,19 @@ def judged_drive(
     side: Side,
     specification: Specification,
     reading: Reading,
+    also: str = "",
 ) -> Judged:
-    """The drive from these values, judged. Raises ``RejectedError``, and ``InputError`` as ``drive_of``."""
+    """The drive from these values, judged, on ``also``, too: a formula about it in the lane of SV.
+
+    Raises ``RejectedError``, and ``InputError`` as ``drive_of``.
+    """
     drive = drive_of(manoeuvre, model, values, reading)
     file = DriveFile(
         None,
         specification.set_name,
-        claim_of(manoeuvre, model, values, side),
+        with_also(claim_of(manoeuvre, model, values, side), also),
         rest_of(drive),
-        {},
+        {LANE: OWN_LANE} if also else {},
         reading.values,
         reading.options,
         road_of(values),
@@ -91,7 +103,7 @@ def beside_boundary(plane: Plane, lines: tuple[TruthSet, ...], side: Side) -> It
 
 
 def _places(plane: Plane, true: TruthSet, side: Side) -> Iterator[Fraction]:
-    """Places with few digits that are on the wanted side of an end of a span; then one of each span."""
+    """Places with few digits that are on the wanted side of an end of a span; then some of each span."""
     low, high = plane.along
     wanted = side == "unpreventable"
     ends = [cut.point for cut in reversed(true.cuts)] or [high if side == "preventable" else low]
@@ -104,7 +116,7 @@ def _places(plane: Plane, true: TruthSet, side: Side) -> Iterator[Fraction]:
     near = (_near(cut.point, (high - low) / _FINE) for cut in true.cuts)
     for one, other in pairwise(sorted((low, *near, high))):
         if true.at((one + other) / 2) is wanted and one < other:
-            yield (one + other) / 2
+            yield from (one + (other - one) * part for part in _PARTS)
 
 
 def _near(point: Point, width: Fraction) -> Fraction:
@@ -120,14 +132,28 @@ def first_drive(
     side: Side,
     specification: Specification,
     reading: Reading,
+    also: str = "",
+    most: int = 3,
 ) -> tuple[dict[str, Fraction], Judged] | str:
-    """A judged drive from one of the candidates, initial values of that side; or why there is none."""
+    """A judged drive from one of the candidates, initial values of that side; or why there is none.
+
+    ``also`` as for ``judged_drive``; ``most`` candidates are tried.
+    """
     reason = f"no place of the plane is {side}"
-    for tried, values in enumerate(candidates):
-        if tried == 3:
-            break
+    for values in islice(candidates, most):
         try:
-            return values, judged_drive(plane.manoeuvre, model, values, side, specification, reading)
+            return values, judged_drive(plane.manoeuvre, model, values, side, specification, reading, also)
         except InputError as error:
             reason = str(error)
     return reason
+
+
+def far_apart(
+    plane: Plane, candidates: Iterable[dict[str, Fraction]], most: int
+) -> list[dict[str, Fraction]]:
+    """The first candidate of each row and the last ones, of at most so many rows."""
+    rows: dict[Fraction, list[dict[str, Fraction]]] = {}
+    for values in candidates:
+        rows.setdefault(values[plane.manoeuvre.across], []).append(values)
+    some = list(rows.values())[:: ceil(len(rows) / most) or 1]
+    return [values for row in some for values in (row[0], *row[1:][-len(_PARTS) :])]

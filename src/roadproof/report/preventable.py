@@ -8,9 +8,10 @@ from itertools import product
 from math import ceil
 from typing import Any
 
-from roadproof.analysis.preventable import Line, Plate, Preventable, Proved
+from roadproof.analysis.preventable import Plate, Preventable, Proved, Shown
+from roadproof.preventing.lines import Line
 from roadproof.preventing.manoeuvres import Quantity
-from roadproof.preventing.models import MODELS
+from roadproof.preventing.models import MODELS, parts_of
 from roadproof.report.figures import as_bytes, make_page
 from roadproof.units import UNITS
 
@@ -74,13 +75,25 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved
                 values = ", ".join(
                     f"{name} = {measured(known[name], x.values[name])}" for name in (across.name, along.name)
                 )
-                told = f"a drive at {values}"
+                told = f"a drive at {values}{_scenario_text(study, x)}"
             lines.append(f"  {x.side}: {told}")
     for proved in lemmas:
         lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
         if proved.reason:
             lines.append(f"  {proved.reason}")
     return "\n".join(lines)
+
+
+def _scenario_text(study: Preventable, shown: Shown) -> str:
+    """What the drive is of, where the scenario was asked for."""
+    if study.scenario is None:
+        return ""
+    whole, happening = parts_of(study.scenario, study.manoeuvre.vehicles)
+    if shown.scenario == whole:
+        return f", of scenario {study.scenario}"
+    if shown.scenario == happening:
+        return f"; what happens in scenario {study.scenario}, but no start that was tried is safe"
+    return f"; no drive that was tried is of scenario {study.scenario}"
 
 
 def _some(lines: Sequence[Line]) -> Sequence[Line]:

@@ -314,6 +314,11 @@ def missing_part(specification: Specification, number: int) -> str:
     return next((name for name in names if name not in specification.definitions), "")
 
 
+def disturbance_name(number: int) -> str:
+    """What the definition of what happens in a scenario is called."""
+    return f"disturb_{number}"
+
+
 def behaviour_words(specification: Specification, number: int) -> tuple[str, str]:
     """What SV and what POVs do in a scenario, in words; empty where nothing is said of it."""
     sv, pov = (_words(specification, f"{kind}_{number}") for kind in _BEHAVIOURS)

@@ -1,16 +1,21 @@
 """The index and the kept answers of ``roadproof preventable``: drives on both sides, and lemmas."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields, read_assuming
+from roadproof.evidence.strict import Fields, rational, read_assuming
+from roadproof.preventing.boundary import Plane, plane_of
+from roadproof.preventing.lines import boundary_formula, line_data, lines_of
+from roadproof.preventing.manoeuvres import MANOEUVRES
+from roadproof.preventing.models import manoeuvre_of, parts_of
 
 SCHEMA = "roadproof/preventable/1"
 DRIVERS = "driver.spec"
 _PLATE = ("name", "model", "fixed", "verdict", "formula", "stepped", "lines", "shown", "reason")
-_SHOWN = ("side", "at", "verdict", "formula", "drive", "reason")
+_SHOWN = ("side", "at", "verdict", "formula", "scenario", "drive", "reason")
 _LEMMA = ("name", "title", "claim", "assuming", "verdict", "certificate", "reason")
 # What a drive on each side has to say, given the formula of the boundary.
 _CLAIMS = {
@@ -28,7 +33,8 @@ _PLACES = "that the places of the plate are where it holds of the controller's d
 _CONTROLLER = "that the accelerations of SV are what the controller of its model computes"
 
 
-def _plate(content: object, background: Background, number: int) -> Iterator[Entry]:
+def _plate(content: object, background: Background, number: int, beyond: tuple[str, ...]) -> Iterator[Entry]:
+    """The entries of a plate; ``beyond``: what is not checked of its lines where they are exact."""
     common = background.home
     plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
     name, model, boundary = plate.text("name"), plate.text("model"), plate.text("formula")
@@ -36,18 +42,39 @@ def _plate(content: object, background: Background, number: int) -> Iterator[Ent
     for x in plate.items("shown"):
         line = Fields(x, f"{plate.where}, drive", _SHOWN)
         side, verdict, claim = line.text("side"), line.text("verdict"), line.text("formula")
+        scenario = line.text("scenario")
         shows, fault = shows_of(verdict, line.where, "proof", "drive"), ""
         if DRIVERS not in background.said.texts("specs"):
             fault = f"{line.where} is about a driver of {DRIVERS}, which is not among its specification files"
-        elif shows == "drive" and not _says(claim, side, boundary, model, stepped):
+        elif scenario and scenario not in _scenarios(background.said):
+            fault = f"{line.where} is of '{scenario[:40]}', which is not what is asked for"
+        elif shows == "drive" and not _says(_without(claim, scenario), side, boundary, model, stepped):
             fault = f"{line.where} is about '{side}' of {boundary}, but its formula is not: {claim[:120]}"
         file = evidence_name(line, "drive")
         what = f"{name}, {side}"
-        beyond = (_PLACES, _CONTROLLER) if stepped else (_LINES,)
         yield Entry(
             common, line.where, ("drive", name, side), verdict, what, shows, claim, file,
-            unchecked=beyond, fault=fault,
+            unchecked=(_PLACES, _CONTROLLER) if stepped else beyond, fault=fault,
         )  # fmt: skip
+
+
+def _scenarios(said: Fields) -> tuple[str, ...]:
+    """What drives may be of. Raises ``InputError`` where that is none of the manoeuvre."""
+    if not said.has("scenario"):
+        return ()
+    number = said.whole("scenario")
+    manoeuvre, _ = manoeuvre_of(str(number))
+    if manoeuvre != said.text("manoeuvre"):
+        raise InputError(f"{said.where}: scenario {number} is no {said.text('manoeuvre')[:20]}")
+    return parts_of(number, MANOEUVRES[manoeuvre].vehicles)
+
+
+def _without(claim: str, scenario: str) -> str:
+    """A claim without what it says of a scenario; nothing where it has to say that and does not."""
+    if not scenario:
+        return claim
+    end = f" and {scenario}"
+    return claim.removesuffix(end) if claim.endswith(end) else ""
 
 
 def _says(claim: str, side: str, boundary: str, model: str, stepped: bool) -> bool:
@@ -87,7 +114,7 @@ def _lemma(content: object, background: Background, number: int) -> Iterator[Ent
 
 def _index(data: Fields, background: Background) -> Iterator[Entry]:
     for number, plate in enumerate(data.items("plates"), 1):
-        yield from _plate(plate, background, number)
+        yield from _plate(plate, background, number, ())
     for number, lemma in enumerate(data.items("lemmas"), 1):
         yield from _lemma(lemma, background, number)
 
@@ -96,14 +123,47 @@ def _record(record: Fields, background: Background) -> Iterator[Entry]:
     if record.has("lemma"):
         yield from _lemma(record.get("lemma"), background, 1)
     else:
-        yield from _plate(record.get("plate"), background, 1)
+        yield from _plate(record.get("plate"), background, 1, (_LINES,))
+
+
+def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+    """Plates whose lines are not where their formula holds; what a controller does is not looked at."""
+    common = background.home
+    for number, content in enumerate(data.items("plates"), 1):
+        plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
+        if plate.text("stepped") or not plate.items("lines"):
+            continue
+        plane = _plane(data, plate)
+        formula = boundary_formula(common.specification, plane, plate.text("model"), common.values or {})
+        told, true = plate.items("lines"), [line_data(x) for x in lines_of(plane, formula)]
+        wrong = [place for place, pair in enumerate(zip(told, true, strict=False)) if pair[0] != pair[1]]
+        if len(told) != len(true):
+            yield f"plate {plate.text('name')} has {len(told)} lines, but {len(true)} are asked for"
+        elif wrong:
+            at = f"{plane.manoeuvre.across}={true[wrong[0]]['at']}"
+            yield f"plate {plate.text('name')} says otherwise at {at} than where its formula holds"
+
+
+def _plane(data: Fields, plate: Fields) -> Plane:
+    """The plane of a plate, as the index says it. Raises ``InputError``, ``UsageError``."""
+    manoeuvre = MANOEUVRES.get(data.text("manoeuvre"))
+    along, across = data.texts("along"), data.texts("across")
+    if manoeuvre is None or (len(along), len(across)) != (3, 4) or not across[3].isdecimal():
+        raise InputError(f"{data.where}: manoeuvre, along and across say no plane")
+    if (along[0], across[0]) != (manoeuvre.line, manoeuvre.across):
+        raise InputError(f"{data.where}: a {manoeuvre.name} varies {manoeuvre.line} and {manoeuvre.across}")
+    fixed = {name: rational(x, f"{plate.where}, fixed.{name}") for name, x in plate.mapping("fixed").items()}
+    low, high = (rational(x, data.where) for x in along[1:])
+    least, most = (rational(x, data.where) for x in across[1:3])
+    return plane_of(manoeuvre, fixed, (low, high), (least, most), int(across[3]))
 
 
 READER = Reader(
     SCHEMA,
-    ("set", "manoeuvre", "along", "across", "options", "parameters", "specs"),
+    ("set", "manoeuvre", "scenario", "along", "across", "options", "parameters", "specs"),
     ("view", "seconds", "plates", "lemmas"),
     _index,
     ("plate", "lemma"),
     _record,
+    _faults,
 )
