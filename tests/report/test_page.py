@@ -61,6 +61,18 @@ def test_proofs_and_drives_with_what_was_found_of_them(tmp_path, drives):
     assert not re.search(r"""(?:src|href|action)\s*=\s*["']?\s*(?:https?:|//)""", text)
 
 
+def test_plates_are_drawn_with_all_their_models_and_drives(tmp_path):
+    at = {"Ve0": "60 km/h", "Vy": [1, 2]}
+    rp.preventable("cut-in", ["careful", "r157"], at=at, lines=5, lemmas=False, jobs=1, out=tmp_path / "p")
+    found, text = made(tmp_path / "p", out=tmp_path / "page.html")
+    seen = body_of(text)
+    assert seen.count('<svg viewBox="0 0 300 190" class="plate"') == 2
+    assert seen.count("<polyline") == 8
+    assert "Ve0 = 60 km/h, Vy = 2 m/s" in seen
+    assert (found.drives, found.exit_code) == (8, 0)
+    assert "4.73244 to 19.6674" in seen  # the line of dV0 = 30 km/h, in m
+
+
 def test_what_does_not_stand_is_said_on_the_page(tmp_path, drives):
     wrong = drive_in(drives) | {"formula": "not danger(SV,POV)"}
     (tmp_path / "wrong.json").write_text(json.dumps(wrong), "utf-8")
@@ -112,7 +124,9 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
         "traffic-results": {
             "table": [{"sector": HOSTILE, "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}],
             "detectors": {HOSTILE: 3},
+            "drivers": [{"min_danger": "3/5", "set": HOSTILE, "driver": CLOSED, "unpreventable": 2}],
         },
+        "preventable": hostile_plates(named),
         "explore": {"explored": [explored(named)]},
         "order": {
             "kinds": [["1@base", f"2@{HOSTILE}"], ["3@base"]],
@@ -130,6 +144,24 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
             "parts": [{"formula": HOSTILE, "true": [[0, None]], "undecided": [[1, 2]]}],
         },
         "other": {"things": [{"formula": HOSTILE, CLOSED: [HOSTILE]}], "note": CLOSED},
+    }
+
+
+def hostile_plates(drive: dict) -> dict:
+    ends = [{"near": 1, "exact": HOSTILE}, {"near": 2.5, "exact": CLOSED}]
+    lines = [{"at": "0", "unpreventable": []}, {"at": "1/2", "unpreventable": [ends]}]
+    shown = {
+        "side": HOSTILE,
+        "at": {HOSTILE: CLOSED},
+        "verdict": CLOSED,
+        "formula": HOSTILE,
+        "reason": CLOSED,
+    }
+    plate = {"name": HOSTILE, "model": CLOSED, "fixed": {HOSTILE: CLOSED}, "verdict": HOSTILE}
+    return {
+        **{"manoeuvre": "cut-in", "along": ["dx0", "0", "3"], "across": ["dV0", "0", "1/2", "2"]},
+        "plates": [plate | {"formula": CLOSED, "lines": lines, "shown": [shown | {"drive": drive}]}],
+        "lemmas": [{"name": HOSTILE, "title": CLOSED, "claim": HOSTILE, "verdict": "PROVED"}],
     }
 
 

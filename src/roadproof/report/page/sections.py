@@ -5,7 +5,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.finding import Finding
-from roadproof.report.page import catalogues, claims, explored, implied, matrices, shares, traced
+from roadproof.report.page import catalogues, claims, explored, implied, matrices, plates, shares, traced
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
 from roadproof.report.page.pieces import behind, filtered, folded, short, verdict
@@ -83,6 +83,7 @@ _SECTIONS: Mapping[str, tuple[str, Section]] = {
     "explore": ("How far it can go", explored.explored),
     "monitor": ("Where it holds on one trace", traced.monitored),
     "catalogue": ("What a catalogue of tests covers", catalogues.catalogue),
+    "preventable": ("From where a driver prevents a collision", plates.plates),
     "traffic-results": ("Recordings, evaluated", shares.traffic),
 }
 _TITLES = {"list": "What the library holds", "show": "A definition", "check": "Evidence that was checked"}

@@ -60,12 +60,36 @@ def traffic(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
         rows = [(name, bar(n / most, str(n))) for name, n in detectors.items()]
         parts.append(tag("h3", "Pairs that detectors of earlier works report"))
         parts.append(table(("detector", "pairs"), rows))
+    parts += _drivers(data.get("drivers") or ())
     called = [(n, words[int(n)]) for n in numbers if words.get(int(n))]
     parts += [folded(("What the scenarios are called",), table(("", ""), called))] if called else []
     broken = (data.get("checks") or {}).get("broken") or ()
     if broken:
         parts.append(tag("p", f"Facts that do not hold, which is our fault: {short(broken)}", class_="wrong"))
     return joined(parts)
+
+
+_LABELS = {"preventable": "preventable", "unpreventable": "unpreventable", "not_foreseen": "not foreseen"}
+
+
+def _drivers(entries: Sequence[Mapping[str, Any]]) -> list[Content]:
+    """What driver models say of matches, where some were asked for."""
+    if not entries:
+        return []
+    rows: list[list[Content]] = []
+    for x in entries:
+        counts = [x.get(key, 0) for key in _LABELS]
+        danger = f"{show(Fraction(x.get('min_danger', 0)))} s"
+        told = f"{100 * counts[1] / sum(counts):.1f} %" if sum(counts) else "–"
+        share = bar(counts[1] / sum(counts), told) if sum(counts) else told
+        rows.append([danger, x.get("set"), x.get("scenario"), x.get("driver"), *counts, share])
+    head = ("minDanger", "set", "scenario", "model", *_LABELS.values(), "share unpreventable")
+    below = (
+        "From the state in which the manoeuvre begins: would a driver of SV who does what the model says "
+        "prevent a collision? Matches count, so a pair may count in both roles; floating point, no evidence."
+    )
+    title = "What driver models say of matches"
+    return [tag("h3", title), table(head, rows), tag("p", below, class_="faint")]
 
 
 def _row(x: Mapping[str, Any], numbers: Sequence[str]) -> list[Content]:
