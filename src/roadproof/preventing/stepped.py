@@ -103,7 +103,7 @@ def _other(manoeuvre: Manoeuvre, values: Values) -> tuple[_Other, int]:
 
 
 def course_of(manoeuvre: Manoeuvre, values: Values, to_the_end: bool = True) -> Course:
-    """How SV drives from these values on; not ``to_the_end``: only whether the boxes touch.
+    """How SV drives from these values on; not ``to_the_end``: only whether the boxes touch, no brakings.
 
     Raises ``InputError`` where SV would have to look too often.
     """
@@ -121,7 +121,7 @@ def course_of(manoeuvre: Manoeuvre, values: Values, to_the_end: bool = True) -> 
         acts = braking > 0 or controller.waits
         if (touches and not to_the_end) or _is_over(other, state, acts and to_the_end):
             touches = touches or _touches_later(other, state)
-            return Course(tuple(_held(other.scale, brakings)), touches)
+            return Course(tuple(_held(other.scale, brakings)) if to_the_end else (), touches)
         touches = touches or _touches(other, state, braking)
         count = 1 if acts else _looks_without(other, state, controller)
         brakings.append((count, braking))
