@@ -37,6 +37,10 @@ PLATES = {
     name: f"roadproof preventable {name} --no-lemmas --out {name}"
     for name in ("cut-in", "deceleration", "cut-out")
 }
+ALL_MODELS = (
+    "roadproof preventable cut-in --model careful,r157,eu1426,rss,fsm --at Ve0=60km/h,90km/h,130km/h "
+    "--at Vy=1 --lines 50 --no-lemmas --out all-models"
+)
 
 PICTURES = (
     Picture("docs/pictures/overtaking.png", (OVERTAKING,), lambda _: "pictured/formula-01-base.png"),
@@ -49,6 +53,7 @@ PICTURES = (
         (PLATES["deceleration"],),
         lambda _: "deceleration/plates.png",
     ),
+    Picture("docs/pictures/preventable-all-models.png", (ALL_MODELS,), lambda _: "all-models/plates.png"),
     Picture("docs/pictures/preventable-cut-out.png", (PLATES["cut-out"],), lambda _: "cut-out/plates.png"),
 )
 
