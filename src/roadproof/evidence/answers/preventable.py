@@ -133,14 +133,15 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
         plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
         if plate.text("stepped") or not plate.items("lines"):
             continue
-        plane = _plane(data, plate)
+        plane, told = _plane(data, plate), plate.items("lines")
+        if len(told) != plane.lines:
+            yield f"plate {plate.text('name')} has {len(told)} lines, but {plane.lines} are asked for"
+            continue
         formula = boundary_formula(common.specification, plane, plate.text("model"), common.values or {})
-        told, true = plate.items("lines"), [line_data(x) for x in lines_of(plane, formula)]
-        wrong = [place for place, pair in enumerate(zip(told, true, strict=False)) if pair[0] != pair[1]]
-        if len(told) != len(true):
-            yield f"plate {plate.text('name')} has {len(told)} lines, but {len(true)} are asked for"
-        elif wrong:
-            at = f"{plane.manoeuvre.across}={true[wrong[0]]['at']}"
+        true = map(line_data, lines_of(plane, formula))
+        wrong = next((x for said, x in zip(told, true, strict=True) if said != x), None)
+        if wrong is not None:
+            at = f"{plane.manoeuvre.across}={wrong['at']}"
             yield f"plate {plate.text('name')} says otherwise at {at} than where its formula holds"
 
 
