@@ -94,6 +94,17 @@ def signal_degree(term: Term) -> int | None:
     return highest if isinstance(term, t.Sum) or highest == 0 else None
 
 
+def is_cubic_state(formula: Formula) -> bool:
+    """Whether it is about one instant and compares signals, sizes and parameters only, by cubes or more."""
+    lanes = (f.Occupies, f.Some, f.Every)
+    if not f.is_state(formula) or any(isinstance(x, lanes) for x in f.subformulas(formula)):
+        return False
+    sides = list(terms_of(formula))
+    if any(isinstance(leaf, t.Own | t.Variable) for side in sides for leaf in t.leaves(side)):
+        return False
+    return any((signal_degree(side) or 0) > 2 for side in sides)
+
+
 @dataclass(frozen=True)
 class Sizes:
     """How large a formula is: distinct sub-formulas, atoms and temporal operators, and its depth."""

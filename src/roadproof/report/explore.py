@@ -26,6 +26,13 @@ _MEANING = {
     Verdict.UNKNOWN: "not decided",
 }
 
+_THERE = "proved that there is none, with the parameters at their values here"
+
+
+def _meaning(verdict: Verdict, findings: Sequence[PointFinding]) -> str:
+    there = any(x.assuming for x in findings if x.verdict is verdict)
+    return _THERE if there else _MEANING[verdict]
+
 
 def as_text(asked: Explorable, explored: Explored) -> str:
     """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below."""
@@ -91,7 +98,9 @@ def _legend(findings: Sequence[PointFinding], notes: Notes) -> list[str]:
             unlike = list({x.reason: x for x in here if x.reason}.values())
             why = [_number(x, notes) for x in unlike[:MOST_NOTES]]
             why += [f"and {len(unlike) - MOST_NOTES} more"] if len(unlike) > MOST_NOTES else []
-            line = f"  {sign} {verdict}: {_MEANING[verdict]}, at {len(here)} of {len(findings)} values"
+            line = (
+                f"  {sign} {verdict}: {_meaning(verdict, findings)}, at {len(here)} of {len(findings)} values"
+            )
             lines.append(" ".join([line, *why]))
     return lines
 
@@ -252,7 +261,7 @@ def _finish(figure: Any, below: Any, asked: Explorable, explored: Explored) -> N
     """Title, and what colours mean."""
     present = {x.verdict for x in explored.findings}
     for verdict in (v for v in SIGNS if v in present):
-        below.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_MEANING[verdict]}")
+        below.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_meaning(verdict, explored.findings)}")
     if len({x.found for x in explored.findings}) > 1:
         below.plot([], [], color="#222222", lw=1.6, label="between values with and without a drive")
     below.legend(fontsize=7, loc="upper left", frameon=False)

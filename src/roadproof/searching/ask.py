@@ -15,12 +15,16 @@ from roadproof.searching.impossible import Impossibility, show_impossible
 from roadproof.searching.limits import Limits
 from roadproof.searching.question import FoundDrive, Posed, SearchOptions, Setting, pose, usual_road
 from roadproof.searching.search import Attempt, find_witness
+from roadproof.searching.starts import is_read
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
 from roadproof.stages import about, begin
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
+
+# Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
+NEVER, NEVER_UNREAD = 10.0, 2.0
 
 
 @dataclass(frozen=True)
@@ -89,6 +93,12 @@ def undecided(search: Search, reason: str, seconds: float = 0.0) -> Outcome:
     return Outcome(*told, Verdict.UNKNOWN, reason, seconds={"all": seconds})
 
 
+def reads_all(search: Search) -> bool:
+    """Whether the engine can read what is asked. Raises ``UsageError``, ``InputError``."""
+    question = pose(search.specification.library, search.query, search.setting)
+    return search.search_options.engine == "smt" or is_read(question)
+
+
 def ask(search: Search) -> Outcome:
     """Search. Raises ``InputError``, ``UsageError``, ``MissingSolverError``, ``Late``."""
     with about(_called(search)):
@@ -111,7 +121,7 @@ def _ask(search: Search) -> Outcome:
     impossibility = None
     if first.found is None:
         effort = search.search_options.effort
-        most = effort.of(max(1.0, min(10.0, effort.units)))
+        most = effort.of(max(1.0, min(NEVER if is_read(question) else NEVER_UNREAD, effort.units)))
         begin("explain", "is there a proof that there is none")
         impossibility = show_impossible(search.specification, search.query, most)
     return Outcome(

@@ -6,14 +6,15 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from roadproof.effort import Effort, Late
-from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.judged import Judged
 from roadproof.hands import Hands
 from roadproof.logic.formula import is_state
+from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
 from roadproof.proving.prover import prove
-from roadproof.searching.ask import Search, ask
+from roadproof.searching.ask import Search, ask, reads_all
+from roadproof.searching.instant import sampled_drive
 from roadproof.searching.steady import steady_drive
 from roadproof.spec.bind import values_with
 from roadproof.spec.compose import both, implication, negation
@@ -26,6 +27,7 @@ from roadproof.workers import Lost, answers_of, is_worker
 Relation: TypeAlias = Literal["equivalent", "stronger", "weaker", "incomparable", "unknown"]
 
 DIRECTIONS = ("first implies second", "second implies first")
+BRIEF = 0.25  # units of work for a proof before sampled states are looked at
 PROOF = 5.0  # units of work for a proof before a drive is looked for
 
 
@@ -161,6 +163,17 @@ def _imply(question: _Question) -> Direction:
         return question.doubt(str(late))
 
 
+def _constant(against: Search, claim: Query) -> Judged | None:
+    """Constant motion against a claim about one instant that no engine reads and no quick proof decides."""
+    if not is_cubic_state(claim.formula) or reads_all(against):
+        return None
+    specification, effort = against.specification, against.search_options.effort
+    if prove(specification, claim, effort.of(min(BRIEF, effort.units))).holds:
+        return None
+    known = values_with(specification.library, against.setting.values)
+    return sampled_drive(specification, claim, known, against.setting)
+
+
 def _at_values(against: Search, claim: Query, effort: Effort) -> Direction | None:
     """A claim about one instant that no engine can search: decided with the values of the search put in."""
     specification = against.specification
@@ -181,17 +194,19 @@ def _decide(against: Search, claim: Query) -> Direction:
     """Ask for a proof first, which takes a moment where there is one, then for a drive against the claim."""
     effort = against.search_options.effort
     meter = effort.meter()
+    drive = _constant(against, claim)
+    if drive is not None:
+        return Direction(claim, Verdict.REFUTED, drive=drive)
     proof = prove(against.specification, claim, effort.of(min(PROOF, effort.units)))
     if proof.holds and proof.certificate is not None:
         return Direction(claim, Verdict.PROVED, proof.reason, certificate=proof.certificate)
     left = Effort(effort.units, meter.seconds_left())
-    try:
-        found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
-    except UsageError:
-        direction = _at_values(against, claim, left) if is_state(claim.formula) else None
-        if direction is None:
-            raise
-        return direction
+    if is_state(claim.formula) and not reads_all(against):
+        direction = _at_values(against, claim, left)
+        return direction or Direction(
+            claim, Verdict.UNKNOWN, "neither a proof nor a state against it was found"
+        )
+    found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
     if found.drives:
         return Direction(claim, Verdict.REFUTED, drive=found.drives[0])
     if found.impossibility is not None:

@@ -21,6 +21,7 @@ from roadproof.logic.rewrite import parameters_of, signals_of
 from roadproof.searching.grid import fitting_grid, make_grid
 from roadproof.searching.kinds import refuse_unknown, usual_model
 from roadproof.searching.limits import Limits
+from roadproof.searching.start import Start
 from roadproof.spec.bind import bind, values_with
 from roadproof.spec.library import Library
 from roadproof.spec.query import Query
@@ -63,7 +64,8 @@ class Setting:
 class Posed:
     """For which drive does ``query`` hold on ``road``?
 
-    ``lanes`` are the assignments of lanes to be tried, in order.
+    ``lanes`` are the assignments of lanes to be tried, in order. With a ``start`` a search is for drives that
+    begin so only, and finds nothing out about others.
     """
 
     query: Query
@@ -73,6 +75,12 @@ class Posed:
     lanes: tuple[Mapping[str, str], ...]
     grid: Grid
     assumptions: Assumptions = field(default_factory=Assumptions)
+    start: Start | None = None
+
+    def asked(self, lanes: Mapping[str, str]) -> Formula:
+        """What is asked of an engine: without the parts in place of which the start is."""
+        formula = self.bound(lanes)
+        return formula if self.start is None else self.start.without(formula)
 
     def bound(self, lanes: Mapping[str, str]) -> Formula:
         """The formula under one assignment of lanes."""

@@ -9,6 +9,8 @@ from fractions import Fraction
 
 from roadproof.encode.motion import Layout
 from roadproof.logic.own import HALF
+from roadproof.logic.terms import Signal
+from roadproof.searching.start import Start
 from roadproof.signals import SignalName
 from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.vehicle import Vehicle
@@ -19,22 +21,36 @@ def round_drive(
     vehicles: Mapping[str, Vehicle],
     values: Sequence[float | Fraction],
     grain: Fraction | None = Fraction(1, 1000),
+    begun: Start | None = None,
 ) -> Drive:
-    """The drive with the given column values; speeds in multiples of ``grain`` m/s, None for exact."""
+    """The drive with the given column values; speeds in multiples of ``grain`` m/s, None for exact.
+
+    What a start says to be one value is that one, whatever the grain.
+    """
+    said = {} if begun is None else begun.exact
 
     def rounded(value: float | Fraction, step: Fraction | None) -> Fraction:
         return Fraction(value) if step is None else round(Fraction(value) / step) * step
 
     def start(name: str, signal: SignalName) -> Fraction:
+        condition = said.get(Signal(signal, name))
+        if condition is not None:
+            other = condition.beside
+            return condition.low + (0 if other is None else start(other.vehicle, other.name))
         return rounded(values[layout.column(name, signal, 0)], None if grain is None else grain * 10)
 
-    def speeds(name: str, signal: SignalName) -> list[Fraction]:
+    def speeds(name: str, signal: SignalName, change: SignalName) -> list[Fraction]:
         columns = [layout.column(name, signal, k) for k in range(layout.grid.steps + 1)]
-        return [rounded(values[column], grain) for column in columns]
+        found = [rounded(values[column], grain) for column in columns]
+        if Signal(signal, name) in said:
+            found[0] = said[Signal(signal, name)].low
+        if Signal(change, name) in said:
+            found[1] = found[0] + said[Signal(change, name)].low * layout.grid.dt
+        return found
 
     motions = {}
     for name in layout.vehicles:
-        along, across = speeds(name, "v_lon"), speeds(name, "v_lat")
+        along, across = speeds(name, "v_lon", "a_lon"), speeds(name, "v_lat", "a_lat")
         motions[name] = Motion(
             vehicles[name].length,
             vehicles[name].width,

@@ -1,11 +1,12 @@
 """The loop: solve, shape, round, replay, judge; on a no look closer, or say that we do not know."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import combinations, product
+from itertools import combinations, product, zip_longest
 
+from roadproof.effort import Effort
 from roadproof.encode.build import Assumptions, Margin, encode_formula, frame
 from roadproof.encode.circuit import Circuit
 from roadproof.encode.motion import Layout
@@ -20,6 +21,8 @@ from roadproof.searching.limits import Limits
 from roadproof.searching.question import FoundDrive, Posed, SearchOptions
 from roadproof.searching.rounding import round_drive
 from roadproof.searching.shape import reshape, violation_depths
+from roadproof.searching.start import encode_start
+from roadproof.searching.starts import starts, unread
 from roadproof.searching.variety import differ
 from roadproof.solve.bounds import TooNonlinearError
 from roadproof.solve.exact import solve_exactly
@@ -31,6 +34,7 @@ from roadproof.world.drive import Drive
 # Units of work: the least for one exact search, and the most for one way to show that there is no drive.
 LEAST_EXACT = 2.0
 REFUTING = 20.0
+STARTS = 12  # for each assignment of lanes
 
 
 @dataclass(frozen=True)
@@ -55,9 +59,49 @@ def find_witness(question: Posed, search_options: SearchOptions, unlike: tuple[D
     the problem on the grid has no solution for any assignment of lanes. Raises ``UsageError`` for
     interval bounds off the grid, ``MissingSolverError``, and ``Late`` where the clock cuts it off.
     """
+    if question.start is None and search_options.engine == "milp":
+        parts = [unread(question, lanes) for lanes in question.lanes]
+        if any(parts):
+            return _from_starts(question, parts, search_options, unlike)
     if search_options.objective == "short":
         return _shortest(question, search_options, unlike)
     return _Search(question, search_options, unlike).run()
+
+
+def _from_starts(
+    question: Posed,
+    parts: Sequence[tuple[Formula, ...]],
+    search_options: SearchOptions,
+    unlike: tuple[Drive, ...],
+) -> Attempt:
+    """A search from one sampled start after the other; UNKNOWN where none of them gives a drive.
+
+    The starts of all assignments of lanes take turns, so that none has to wait for all of another.
+    """
+    meter = search_options.effort.meter()
+    begin("encode", "starts in place of conditions that no engine reads")
+    each = meter.limit / (STARTS * len(parts))
+    found = [starts(question, lanes, x, STARTS) for lanes, x in zip(question.lanes, parts, strict=True)]
+    turns = (start for same in zip_longest(*found) for start in same if start is not None)
+    tried = 0
+    for start in turns:
+        tried += 1
+        part = Effort(max(1.0, each), meter.seconds_left())
+        begun = replace(question, lanes=(start.lanes,), start=start)
+        answer = find_witness(begun, replace(search_options, effort=part, explain=False), unlike)
+        if answer.found is not None:
+            return answer
+    return Attempt(Verdict.UNKNOWN, None, _untold(tried))
+
+
+def _untold(tried: int) -> str:
+    """Why there is no answer, after so many starts."""
+    part = "no engine reads a part of the formula about time 0"
+    if not tried:
+        return f"{part}, and no state in which it holds was found among those that were looked at"
+    return (
+        f"{part}: from {tried} sampled states in which it holds no drive was found, and others were not tried"
+    )
 
 
 def show_none(question: Posed, search_options: SearchOptions) -> Attempt:
@@ -66,7 +110,7 @@ def show_none(question: Posed, search_options: SearchOptions) -> Attempt:
     NONE-WITHIN, or WITNESSED where the exact encoding has a solution that is judged a witness after all,
     or UNKNOWN. Raises as ``find_witness``.
     """
-    return _Search(question, search_options, ()).none()
+    return _Search(replace(question, start=None), search_options, ()).none()
 
 
 def _shortest(question: Posed, search_options: SearchOptions, unlike: tuple[Drive, ...]) -> Attempt:
@@ -109,7 +153,7 @@ class _Search:
         if self.meter.is_out():
             return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
         doubt = self.doubts[-1] if self.doubts else ""
-        if not self.search_options.explain:
+        if not self.search_options.explain or self.question.start is not None:
             return self._answer(Verdict.UNKNOWN, None, doubt or "none was found")
         answer = self.none()
         return replace(answer, reason=doubt) if doubt and answer.verdict is Verdict.UNKNOWN else answer
@@ -153,7 +197,7 @@ class _Search:
         told = self._told(lanes, grid, assumptions)
         begin("encode", told)
         formula = self.question.bound(lanes)
-        problem, layout = self._problem(formula, grid, assumptions)
+        problem, layout = self._problem(self.question.asked(lanes), grid, assumptions)
         self.sizes = problem.sizes()
         start = self._spent("encode", start)
         begin("solve", told)
@@ -180,6 +224,8 @@ class _Search:
         if key not in self.encoded:
             self.encoded[key] = encode_formula(formula, vehicles, layout, assumptions)
         problem = frame(self.encoded[key], self.question.road, vehicles, layout, assumptions)
+        if self.question.start is not None:
+            problem = problem.also(encode_start(self.question.start, layout))
         for other in self.unlike:
             problem = problem.also(differ(layout, other))
         return problem, layout
@@ -208,8 +254,8 @@ class _Search:
                 depths = violation_depths(formula, vehicles, layout, floats)
             objective, road = self.search_options.objective, self.question.road
             shaped = reshape(problem, layout, road, vehicles, floats, objective, depths)
-            yield round_drive(layout, vehicles, shaped)
-        yield round_drive(layout, vehicles, floats)
+            yield round_drive(layout, vehicles, shaped, begun=self.question.start)
+        yield round_drive(layout, vehicles, floats, begun=self.question.start)
         if self.search_options.engine == "smt":
             yield round_drive(layout, vehicles, solution.values, None)
 

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Literal
 from roadproof.effort import Effort, Late
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.judged import Judged
+from roadproof.logic.fragment import is_cubic_state
+from roadproof.logic.pins import pins
 from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from roadproof.searching.ask import Search
 
 DRIVE = 5.0  # units of work for a drive that refutes
+BRIEF = 0.25  # units for a proof of a claim about one instant, before sampled states are looked at
 BEFORE = 5.0  # units for a proof from what is known of motion, before a drive is looked for
 
 
@@ -70,7 +73,14 @@ def settle(
     if is_moving(said):
         return _settle_of_motions(specification, query, said, effort, label, scenario, seek_drive)
     try:
-        result = prove(specification, query, effort, label, scenario, Assumed(tuple(said)))
+        asked = label, scenario, Assumed(tuple(said))
+        brief = seek_drive and effort.units > BRIEF and is_cubic_state(query.formula)
+        result = prove(specification, query, effort.of(BRIEF) if brief else effort, *asked)
+        if brief and result.verdict is Verdict.UNKNOWN:
+            drive = _sampled_against(under_limits(specification, query, said), specification)
+            if drive is not None:
+                return Settled(replace(result, reason=""), drive)
+            result = prove(specification, query, effort, *asked)
     except Late as late:
         return in_doubt(str(late), begun)
     if not seek_drive or result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
@@ -122,6 +132,17 @@ def _drive_against(claim: Query, specification: Specification, effort: Effort) -
 
     try:
         return refuting_drive(specification, claim, effort.of(min(DRIVE, effort.units)))
+    except (InputError, UsageError):
+        return None
+
+
+def _sampled_against(claim: Query, specification: Specification) -> Judged | None:
+    """Constant motion on which a claim about one instant is false, from a sampled state; None as above."""
+    from roadproof.searching.instant import sampled_drive
+    from roadproof.searching.question import Setting
+
+    try:
+        return sampled_drive(specification, claim, pins(claim.formula), Setting())
     except (InputError, UsageError):
         return None
 

@@ -46,7 +46,8 @@ class Explorable:
 class PointFinding:
     """The answer at one point. ``query`` is what the drive satisfies, or what has no drive.
 
-    ``number`` tells drives apart; ``certificate`` proves for all values that there is none.
+    ``number`` tells drives apart; ``certificate`` proves that there is none: for all values, or for those
+    that it assumes.
     """
 
     at: Point
@@ -60,6 +61,11 @@ class PointFinding:
     @property
     def found(self) -> bool:
         return self.verdict is Verdict.WITNESSED
+
+    @property
+    def assuming(self) -> tuple[str, ...]:
+        """The values of parameters with which it is proved that there is none; empty where for all."""
+        return () if self.certificate is None else self.certificate.assumed.said
 
 
 @dataclass(frozen=True)

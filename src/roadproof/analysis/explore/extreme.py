@@ -13,6 +13,7 @@ from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, Poi
 from roadproof.analysis.explore.bracket import Bracket
 from roadproof.analysis.explore.knobs import Knob, Point, stated, with_point
 from roadproof.analysis.explore.measure import Measure
+from roadproof.analysis.explore.never import NEVER, never
 from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.explore.range import range_of, starting_ranges
 from roadproof.analysis.explore.search import (
@@ -36,6 +37,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged, judge_file
 from roadproof.judge.signals import Courses, DriveSignals
 from roadproof.logic import formula as f
+from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.terms import Term, number
 from roadproof.searching.ask import Search
 from roadproof.searching.impossible import show_impossible
@@ -122,6 +124,9 @@ class _Seeking:
             bracket.miss(zero)
         while self.searches < MOST_SEARCHES and not bracket.narrow and not self.endless(bracket.best):
             value = bracket.next()
+            if is_cubic_state(self.search.query.formula) and (proved := self.impossible(value)) is not None:
+                bracket.miss(proved)
+                continue
             reply = self.look(value)
             found = self.best_of(reply.drives)
             if found is not None and bracket.reached(found, value):
@@ -186,6 +191,9 @@ class _Seeking:
     def proved(self, at: Point, value: Fraction | None, units: float = PROOF) -> PointFinding | None:
         query, effort = self.sought.query(value), self.search.search_options.effort.of(units)
         try:
+            certificate = never(self.search, query, min(QUICK_PROOF, units))
+            if certificate is not None:
+                return PointFinding(at, Verdict.IMPOSSIBLE, query, NEVER, certificate=certificate)
             shown = show_impossible(self.search.specification, query, effort)
         except Late:
             self.late = True

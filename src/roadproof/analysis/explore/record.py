@@ -77,6 +77,7 @@ class _Writing:
             "number": finding.number,
             "drive": self.shelf.drive(f"{file}.json", finding.drive),
             "certificate": self.certificate(finding.certificate, file),
+            **({"assuming": list(finding.assuming)} if finding.assuming else {}),
         }
 
     def certificate(self, certificate: Certificate | None, file: str) -> object:

@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, PointFinding, say_nothing
 from roadproof.analysis.explore.knobs import Point, between, with_point
+from roadproof.analysis.explore.never import NEVER, never
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
     PLAIN_FIRST,
@@ -155,16 +156,29 @@ class Exploring:
     def settle(
         self, points: Sequence[Point], stages: tuple[Stage, ...] = NATURAL_FIRST
     ) -> list[PointFinding]:
-        """The answers at ``points``, each by a search of its own."""
-        tasks = [SearchTask(self.at(point), stages) for point in points]
+        """The answers at ``points``, each by a proof at its values, else by a search of its own."""
+        found = {point: x for point in points if (x := self._never(point)) is not None}
+        left = [point for point in points if point not in found]
+        tasks = [SearchTask(self.at(point), stages) for point in left]
         self.searches += len(tasks)
         self.searched += points
-        findings: list[PointFinding] = []
-        for point, reply in zip(points, self.look_all(tasks), strict=True):
+        for point, reply in zip(left, self.look_all(tasks), strict=True):
             self.late |= reply.late
             self.stock.add(reply.drives)
-            findings.append(self.known(point) or self._missed(point, reply))
-        return findings
+            found[point] = self.known(point) or self._missed(point, reply)
+        return [found[point] for point in points]
+
+    def _never(self, point: Point) -> PointFinding | None:
+        """A proof that there is no drive at a point, for formulas of which a state says all."""
+        query = self.claim(point).query
+        try:
+            certificate = never(self.at(point), query, QUICK_PROOF)
+        except Late:
+            self.late = True
+            return None
+        if certificate is None:
+            return None
+        return PointFinding(point, Verdict.IMPOSSIBLE, query, NEVER, certificate=certificate)
 
     def _missed(self, point: Point, reply: Reply) -> PointFinding:
         query = self.claim(point).query

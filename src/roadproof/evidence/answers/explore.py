@@ -8,12 +8,14 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields, rational, text
+from roadproof.evidence.strict import Fields, rational, read_assuming, text
+from roadproof.spec.bind import values_with
+from roadproof.spec.motion import values_said
 
 SCHEMA = "roadproof/explore/1"
 _EXPLORED = ("scenario", "set", "formula", "vary", "values", "boundaries", "searches", "drives", "extremes")
 _EXPLORED_MORE = ("seconds", "stem")
-_FINDING = ("at", "verdict", "formula", "reason", "number", "drive", "certificate")
+_FINDING = ("at", "verdict", "formula", "reason", "number", "drive", "certificate", "assuming")
 _BOUNDARY = ("held", "missed", "surely")
 _EXTREME = ("sense", "measure", "when", "unit", "point", "best", "missed", "surely", "endless", "searches")
 
@@ -63,6 +65,9 @@ def _entry(
     verdict, at = line.text("verdict"), line.items("at")
     shows = shows_of(verdict, where, "impossibility", "drive")
     told = ", ".join(f"{name}={text(value, where)}" for name, value in zip(knobs, at, strict=False))
+    values = _values(common, dict(zip(knobs, at, strict=False)), where) if knobs else None
+    assuming = read_assuming(line) if "assuming" in line.content else ()
+    fault = "" if not knobs or len(at) == len(knobs) else f"{where}: {len(at)} values of {len(knobs)}"
     return Entry(
         common,
         where,
@@ -72,10 +77,29 @@ def _entry(
         shows,
         line.text("formula"),
         one_of(line, shows),
-        values=_values(common, dict(zip(knobs, at, strict=False)), where) if knobs else None,
+        values=values,
         unchecked=(*unchecked_of(verdict), *(() if knobs else ("that its formula says the value at=",))),
-        fault="" if not knobs or len(at) == len(knobs) else f"{where}: {len(at)} values of {len(knobs)}",
+        fault=fault or _other(common, verdict, values if knobs else common.values, assuming, where),
+        assuming=assuming,
     )
+
+
+def _other(
+    common: Common, verdict: str, values: Mapping[str, Fraction] | None, assuming: tuple[str, ...], where: str
+) -> str:
+    """What a proof assumes that is no value of a parameter there, or nothing."""
+    if not assuming:
+        return ""
+    if verdict != "IMPOSSIBLE":
+        return f"{where}: {verdict} assumes nothing, but it says {', '.join(assuming)[:120]}"
+    here = values_with(common.library, values or {})
+    said = values_said(common.specification, assuming)
+    if len(said) < len(assuming):
+        return f"{where} assumes more than values of parameters: {', '.join(assuming)[:120]}"
+    wrong = [
+        f"{name}={value}, where it is {here[name]}" for name, value in said.items() if here[name] != value
+    ]
+    return f"{where} assumes {wrong[0]}" if wrong else ""
 
 
 def _values(common: Common, at: Mapping[str, object], where: str) -> dict[str, Fraction] | None:

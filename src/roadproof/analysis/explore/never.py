@@ -1,0 +1,28 @@
+"""Formulas about one instant that no engine reads: a proof that at given values there is no drive."""
+
+from roadproof.analysis.explore.search import values_of
+from roadproof.evidence.certificate import Certificate
+from roadproof.logic.fragment import is_cubic_state
+from roadproof.logic.rewrite import parameters_of
+from roadproof.proving.prover import prove
+from roadproof.searching.ask import Search
+from roadproof.spec.compose import negation
+from roadproof.spec.motion import Assumed, value_texts
+from roadproof.spec.query import Query
+
+NEVER = "proved for all states, with the parameters at their values here"
+
+
+def never(search: Search, query: Query, units: float) -> Certificate | None:
+    """A proof that ``query`` holds in no state with the parameters at the values of ``search``.
+
+    Wherever, however fast and how near vehicles are: it needs no limits. None where none is found with
+    ``units`` of work, and for formulas of other kinds. Raises ``Late``.
+    """
+    if not is_cubic_state(query.formula):
+        return None
+    values = values_of(search)
+    there = {name: values[name] for name in parameters_of(query.formula)}
+    said = value_texts(search.specification, there)
+    effort = search.search_options.effort.of(units)
+    return prove(search.specification, negation(query), effort, assumed=Assumed(said)).certificate

@@ -1,0 +1,58 @@
+"""How a drive begins: conditions at time 0, in place of parts of a formula that they imply."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.encode.circuit import Circuit, Leaf, all_of
+from roadproof.encode.motion import Layout
+from roadproof.encode.polynomial import Inequality, Polynomial, constant
+from roadproof.encode.problem import ColumnInequality
+from roadproof.logic import formula as f
+from roadproof.logic.begin import conjuncts
+from roadproof.logic.formula import Formula
+from roadproof.logic.terms import Signal
+
+
+@dataclass(frozen=True)
+class Condition:
+    """At time 0 a signal of ``vehicle`` is in a range (SI), which is relative to that of ``beside``."""
+
+    signal: Signal
+    beside: Signal | None
+    low: Fraction
+    high: Fraction
+
+
+@dataclass(frozen=True)
+class Start:
+    """``conditions`` that imply ``replaced``, parts of a bound formula, under an assignment of ``lanes``."""
+
+    lanes: Mapping[str, str]
+    conditions: tuple[Condition, ...]
+    replaced: frozenset[Formula]
+
+    @property
+    def exact(self) -> dict[Signal, Condition]:
+        """The conditions that leave one value, by signal."""
+        return {x.signal: x for x in self.conditions if x.low == x.high}
+
+    def without(self, formula: Formula) -> Formula:
+        """The parts of ``formula`` that are left to be asked for."""
+        return f.conjunction(*(part for part in conjuncts(formula) if part not in self.replaced))
+
+
+def encode_start(start: Start, layout: Layout) -> Circuit[ColumnInequality]:
+    """The conditions about the first sample of a grid."""
+
+    def now(signal: Signal) -> Polynomial[int]:
+        return layout.state(signal.vehicle, signal.name, 0)
+
+    found = []
+    for x in start.conditions:
+        value = now(x.signal)
+        if x.beside is not None:
+            value = value + now(x.beside).scaled(Fraction(-1))
+        found.append(Leaf(Inequality(value + constant(-x.low), False)))
+        found.append(Leaf(Inequality(value.scaled(Fraction(-1)) + constant(x.high), False)))
+    return all_of(found)
