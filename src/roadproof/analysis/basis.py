@@ -6,7 +6,8 @@ from fractions import Fraction
 from typing import Any
 
 from roadproof.effort import Effort
-from roadproof.proving.prover import Result, prove
+from roadproof.preventing.proof import prove_of_scenarios
+from roadproof.proving.prover import Result
 from roadproof.searching.ask import Search
 from roadproof.searching.question import Objective, SearchOptions, Setting
 from roadproof.spec.bind import values_with
@@ -75,4 +76,4 @@ class Basis:
     def proof_of(self, query: Query, units: float | None = None, label: str = "") -> Result:
         """The prover's verdict on a claim with so many units of work (``proof``). Raises ``Late``."""
         effort = self.effort.of(self.proof if units is None else units)
-        return prove(self.specification, query, effort, label)
+        return prove_of_scenarios(self.specification, query, effort, label)

@@ -26,6 +26,7 @@ from roadproof.analysis.coverage.claims import Covered
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.completing import Completed, write_completions
 from roadproof.api.definitions import Among, Definitions, load
+from roadproof.api.restricting import restricted
 from roadproof.api.settings import Vehicles, basis_of, one_of
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import RoadproofError, UsageError
@@ -324,6 +325,8 @@ def catalogue(
     lanes: _Look = "fixed",
     start: _Look = "fixed",
     near: float = NEAR,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
     vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
@@ -339,11 +342,12 @@ def catalogue(
     ``gaps``: whether each class of gaps that there is (``coverage``) is to be tested too; ``explore``: also
     how far drives of each class that is tested can go, and which part of that nobody tests. ``roles``,
     ``lanes``, ``start``: whether those are looked at that a test fixes, or "any". ``near``: how far apart
-    tests that say the same may begin, in m and m/s. ``out``: a folder for evidence on abstract tests, gaps
+    tests that say the same may begin, in m and m/s. ``preventable``, ``unpreventable``: as for ``witness``;
+    gaps are then a question for ``coverage``. ``out``: a folder for evidence on abstract tests, gaps
     and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     begun = time.monotonic()
-    wanted = using or load()
+    wanted = restricted(using or load(), preventable, unpreventable, among)
     home = replace(wanted, sets=wanted.sets[:1])
     for name, choice in (("roles", roles), ("lanes", lanes), ("start", start)):
         one_of(name, choice, _Look)

@@ -16,6 +16,7 @@ from roadproof.analysis.classify.study import Classification, Classified, Decisi
 from roadproof.analysis.classify.text import claims_text
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Among, Definitions, load
+from roadproof.api.restricting import restricted
 from roadproof.api.settings import Vehicles, basis_of
 from roadproof.api.studied import Studied, drawn
 from roadproof.evidence.kinds import Evidence
@@ -125,6 +126,8 @@ def classify(
     using: Definitions | None = None,
     on: str | Path | None = None,
     shares: bool = True,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
     vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
@@ -136,11 +139,12 @@ def classify(
     """Divide scenarios into classes that exclude each other, and show a drive for each.
 
     ``among``: whole rows of the table, such as "1-8" (all where None). ``shares``: whether it is counted how
-    often each class occurs, in the recordings of ``on`` or else in simulated traffic. ``out``: a folder in
+    often each class occurs, in the recordings of ``on`` or else in simulated traffic. ``preventable``,
+    ``unpreventable``: as for ``witness``. ``out``: a folder in
     which answers are kept as they come. Raises ``InputError``, ``UsageError``.
     """
     begun = time.monotonic()
-    home = using or load()
+    home = restricted(using or load(), preventable, unpreventable, among)
     basis = basis_of(home, effort, timeout, vehicles)
     plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
     folder = None if out is None else Path(out)

@@ -17,12 +17,14 @@ from roadproof.analysis.coverage.surveyed import Surveyed
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, load
+from roadproof.api.restricting import restricted
 from roadproof.api.settings import RoadLike, Vehicles, as_road, basis_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_if_any
 from roadproof.hands import Jobs, hands_of
+from roadproof.preventing.restriction import check_drives
 from roadproof.report import coverage as report
 from roadproof.spec.words import Called, called
 from roadproof.study import pool
@@ -139,6 +141,8 @@ def coverage(
     roads: Iterable[RoadLike] = ROADS,
     needed: bool = False,
     on: str | Path | None = None,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
     vehicles: Vehicles = None,
     effort: float = 10.0,
     timeout: float | None = None,
@@ -152,11 +156,14 @@ def coverage(
 
     ``wider``: the set that catches all (complete, where it extends the set); ``roads``: where drives are
     looked for; ``needed``: of a set that covers, also a drive for each definition that it needs. ``on``:
-    recordings in which the classes are counted; ``tell`` is told how far that is. ``out``: a folder in which
+    recordings in which the classes are counted; ``tell`` is told how far that is. ``preventable``,
+    ``unpreventable``: the name of a driver model, for drives that begin with a manoeuvre whose collision it
+    prevents, or cannot prevent. ``out``: a folder in which
     answers are kept as they come. Raises ``InputError``, ``UsageError``.
     """
     begun = time.monotonic()
-    home = using or load()
+    home = restricted(using or load(), preventable, unpreventable, about="drives")
+    check_drives(home.specification.options)
     basis = basis_of(home, effort, timeout, vehicles)
     name = home.alone.set_name
     if wider is not None:

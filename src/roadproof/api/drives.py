@@ -11,11 +11,10 @@ from typing import Any, ClassVar
 from roadproof.analysis.witnesses import Witnessing, evidence_files, stems
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
+from roadproof.api.restricting import restricted
 from roadproof.api.settings import RoadLike, Vehicles, one_of, searches_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
-from roadproof.evidence.answers.drives import SCHEMA
-from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import make_folder, write_whole
@@ -107,7 +106,7 @@ class Witnesses(Studied[Witnessing, Outcome]):
         ]
 
     def as_data(self) -> dict[str, Any]:
-        return {**heading(SCHEMA, self.library), "verdicts": [x.as_data() for x in self.outcomes]}
+        return {**self.study.question.beginning, "verdicts": [x.as_data() for x in self.outcomes]}
 
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
         return self.as_data()
@@ -159,6 +158,8 @@ def witness(
     engine: Engine = "milp",
     solver: str = "highs",
     count: int = 1,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
     effort: float = 60.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -171,7 +172,9 @@ def witness(
     """Find a drive for each of some scenarios or formulas, in each spec set; without any, for all scenarios.
 
     Where, with whom and for how long: see ``setting``. ``count`` clearly different drives are looked for.
-    ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``effort``: units
+    ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``preventable``,
+    ``unpreventable``: the name of a driver model, for scenarios that begin with a manoeuvre whose collision
+    it prevents, or cannot prevent (``preventing.restriction``). ``effort``: units
     of work for a search, each about a second of a solver; ``timeout``: seconds after which the clock ends it.
     ``out``: a folder in which drives are kept as they come, with samples and ``pictures``. ``stage`` is told
     of each stage that begins (``stages.Stage``), and ends all by raising.
@@ -184,7 +187,7 @@ def witness(
     one_of("objective", objective, Objective)
     if count < 1:
         raise UsageError(f"count={count}: write a whole number greater than 0")
-    home = using or load()
+    home = restricted(using or load(), preventable, unpreventable, what=what)
     place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
     search_options = SearchOptions(objective, engine, solver, work_of(effort, timeout))
     searches = list(searches_of(home, what, place, search_options, count))

@@ -12,6 +12,7 @@ from roadproof.analysis.explore.study import Exploration
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Definitions, What, load
 from roadproof.api.phrases import Term
+from roadproof.api.restricting import restricted
 from roadproof.api.settings import RoadLike, Vehicles, searches_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
@@ -115,6 +116,8 @@ def explore(
     dt: Number | None = None,
     reach: Number = 80,
     collisions: bool = False,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
     effort: float = 6.0,
     timeout: float | None = None,
     out: str | Path | None = None,
@@ -128,7 +131,7 @@ def explore(
     one or two. ``least``, ``greatest``: a term, at time 0 or ``when`` a formula holds. ``steps``: values of
     each; ``precision``: width of a bracket, SI units. The rest as for ``witness``. Raises as that does.
     """
-    home = using or load()
+    home = restricted(using or load(), preventable, unpreventable, what=what)
     for name in {*(vary or {})} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")
     place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)

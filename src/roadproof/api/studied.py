@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 from roadproof.api.answer import Answer, Picture
 from roadproof.files import write_whole
 from roadproof.hands import Jobs
+from roadproof.preventing.restriction import restriction_of
 from roadproof.study.frame import Conducted, Study, conduct, put_away
 from roadproof.study.pool import Progress, Say
 from roadproof.study.shelf import write_index
@@ -65,6 +66,12 @@ class Studied(Answer, Generic[S, A]):
     def files(self, pictures: bool) -> dict[str, bytes]:
         """What is written beside the evidence to be looked at, by name."""
         return {}
+
+    @property
+    def supposed(self) -> tuple[str, ...]:
+        """In words, what begins so that is asked about, where a driver model says it."""
+        options = self.study.question.said.get("options", {})
+        return tuple(str(x) for x in [restriction_of(options)] if x is not None)
 
     @property
     def exit_code(self) -> ExitCode:

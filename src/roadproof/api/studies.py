@@ -13,6 +13,7 @@ from roadproof.analysis.overlap import Overlap, PairVerdict, pairs_of
 from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.definitions import Among, Definitions, load
+from roadproof.api.restricting import restricted
 from roadproof.api.settings import Vehicles, basis_of, one_of, positive
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError
@@ -102,6 +103,8 @@ def overlap(
     roles: _Same = "same",
     start: _Same = "same",
     horizon: Number | None = None,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
     vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
@@ -113,13 +116,14 @@ def overlap(
     """Which scenarios of one spec set can hold together, or those of one set with those of another.
 
     ``among``: scenarios such as "1,3-8" (all where None); ``lanes``, ``roles``, ``start``: the same for
-    both, or any; ``horizon``: seconds of driving searched (6; 9 where ``start`` is any). ``out``: a folder in
+    both, or any; ``horizon``: seconds of driving searched (6; 9 where ``start`` is any). ``preventable``,
+    ``unpreventable``: as for ``witness``. ``out``: a folder in
     which answers are kept as they come; ``say`` is told of kept ones that do not count. Raises
     ``InputError``, ``UsageError``.
     """
     for word, value in (("lanes", lanes), ("roles", roles), ("start", start)):
         one_of(word, value, _Same)
-    home = using or load()
+    home = restricted(using or load(), preventable, unpreventable, among)
     if len(home.sets) > 2:
         raise UsageError(f"{', '.join(home.sets)}: name one spec set, or two different ones")
     # What happens one after the other takes longer than what happens at once.
@@ -186,6 +190,8 @@ class Orders(Studied[Ordering, Any]):
 def order(
     among: Among = None,
     using: Definitions | None = None,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
     vehicles: Vehicles = None,
     effort: float = 120.0,
     timeout: float | None = None,
@@ -195,7 +201,7 @@ def order(
     say: Say | None = None,
 ) -> Orders:
     """Which scenarios imply which, in the sets of ``using`` (base, extA and ext). Raises as ``overlap``."""
-    home = using or load("base", "extA", "ext")
+    home = restricted(using or load("base", "extA", "ext"), preventable, unpreventable, among)
     basis = basis_of(home, effort, timeout, vehicles)
     kinds = kinds_of(basis.specification, basis.set_names, home.among(among))
     return Orders.asked(Ordering(basis, kinds), out, jobs, progress, say)

@@ -37,6 +37,10 @@ def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definiti
     """The definitions of ``sets``, readings and values. Raises ``InputError``, ``UsageError``."""
     from roadproof.api.definitions import Definitions
 
+    if any(restricting(args).values()):
+        from roadproof.preventing.restriction import names_for
+
+        args.specs = names_for(args.specs)
     library, options = load_library_of(args), chosen_options(args)
     if len({*sets}) < len(sets):
         raise UsageError(f"--set {','.join(sets)}: one is named twice; name one spec set, or different ones")
@@ -44,6 +48,21 @@ def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definiti
         library.select(name, options)
     values = given_values(args, library) if "params" in args else {}
     return Definitions(library.select(sets[0], options), tuple(sets), values)
+
+
+class Restricting(TypedDict):
+    """The driver models of --preventable and --unpreventable."""
+
+    preventable: str | None
+    unpreventable: str | None
+
+
+def restricting(args: argparse.Namespace) -> Restricting:
+    """What is asked of driver models; nothing where a command does not ask."""
+    return {
+        "preventable": getattr(args, "preventable", None),
+        "unpreventable": getattr(args, "unpreventable", None),
+    }
 
 
 def asking(args: argparse.Namespace, folder: Path | None) -> Asking:
@@ -80,6 +99,8 @@ def hand_over(args: argparse.Namespace, found: "Studied[Any, Any]") -> int:
         found.add_files(not getattr(args, "no_pictures", False))
     if args.json != "-":
         print(found)
+        for line in found.supposed:
+            print(line)
         for name, said in found.study.question.library.freedom.items():
             print(f"{name} is {said}")
     return found.exit_code

@@ -3,11 +3,12 @@
 import argparse
 from pathlib import Path
 
-from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
+from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions, restricting
 from roadproof.cli.numbers import add_effort_options, add_working_options, whole
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
+    add_prevention_options,
     add_specification_options,
     chosen_sets,
 )
@@ -95,6 +96,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         help="with --complete: write the drives as openscenario, commonroad, highd, csv or opendrive too",
     )
+    add_prevention_options(parser)
     add_models_option(parser)
     add_effort_options(parser, 60.0, "a drive")
     add_working_options(parser)
@@ -123,6 +125,7 @@ def run(args: argparse.Namespace) -> int:
         lanes=args.lanes,
         start=args.start,
         near=args.near,
+        **restricting(args),
         **asking(args, evidence_folder(args.out, args.json)),
     )
     code = hand_over(args, found)

@@ -3,9 +3,14 @@
 import argparse
 from pathlib import Path
 
-from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
+from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions, restricting
 from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
-from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.cli.options import (
+    add_json_option,
+    add_parameter_option,
+    add_prevention_options,
+    add_specification_options,
+)
 from roadproof.cli.search_options import add_models_option
 from roadproof.errors import UsageError
 
@@ -34,6 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1-8")
     parser.add_argument("--on", type=Path, metavar="DIR", help="recordings (default: simulated for this)")
     parser.add_argument("--no-shares", action="store_true", help="no recordings, so no shares")
+    add_prevention_options(parser)
     add_models_option(parser)
     add_effort_options(parser, 60.0, "a drive or a proof")
     add_working_options(parser)
@@ -52,4 +58,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("--on and --no-shares: shares are counted on recordings; leave out one of the two")
     folder = evidence_folder(args.out, args.json)
     home = read_definitions(args, [args.set_name])
-    return hand_over(args, classify(args.among, home, args.on, not args.no_shares, **asking(args, folder)))
+    return hand_over(
+        args,
+        classify(args.among, home, args.on, not args.no_shares, **restricting(args), **asking(args, folder)),
+    )

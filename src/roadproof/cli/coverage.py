@@ -3,9 +3,14 @@
 import argparse
 from pathlib import Path
 
-from roadproof.cli.basis import asking, hand_over, read_definitions
+from roadproof.cli.basis import asking, hand_over, read_definitions, restricting
 from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
-from roadproof.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.cli.options import (
+    add_json_option,
+    add_parameter_option,
+    add_prevention_options,
+    add_specification_options,
+)
 from roadproof.cli.progress import Counter, tell
 from roadproof.cli.search_options import add_models_option
 
@@ -43,6 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         help="where to look for drives; may be repeated (default: main-2, then main-3)",
     )
+    add_prevention_options(parser, "drives")
     add_models_option(parser)
     add_effort_options(parser, 10.0, "a search, half of it for one more that another set catches")
     parser.add_argument(
@@ -63,7 +69,9 @@ def run(args: argparse.Namespace) -> int:
 
     home = read_definitions(args, [args.set_name])
     more = asking(args, args.out)
-    found = coverage(home, args.wider, args.roads or ROADS, args.needed, args.on, **more, tell=tell)
+    found = coverage(
+        home, args.wider, args.roads or ROADS, args.needed, args.on, **restricting(args), **more, tell=tell
+    )
     if args.out is not None and not args.no_pictures:
         found.draw_beside(args.jobs, Counter())
     return hand_over(args, found)

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.cli.basis import evidence_folder, hand_over, read_definitions
+from roadproof.cli.basis import evidence_folder, hand_over, read_definitions, restricting
 from roadproof.cli.numbers import add_sharing_options, add_working_options, read_effort, read_hands, whole
-from roadproof.cli.options import add_json_option, chosen_sets
+from roadproof.cli.options import add_json_option, add_prevention_options, chosen_sets
 from roadproof.cli.progress import Counter, tell, warn
 from roadproof.cli.search_options import add_search_options, where_asked
 from roadproof.cli.what import add_what_arguments, some_or_all
@@ -60,6 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="width of a bracket, in SI units (default: range/60; of a measure 0.1)",
     )
     add_search_options(parser, 6.0)
+    add_prevention_options(parser)
     add_working_options(parser)
     add_sharing_options(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, JSON, pictures")
@@ -69,11 +70,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.api.exploring import explorables, explore_all
+    from roadproof.api.restricting import restricted
     from roadproof.api.settings import setting
     from roadproof.searching.question import SearchOptions
 
     what, ranges = some_or_all(args), [_varied(text) for text in args.vary]
-    home = read_definitions(args, chosen_sets(args))
+    home = restricted(read_definitions(args, chosen_sets(args)), what=what, **restricting(args))
     for name, _, _ in ranges:
         if name in home.values:
             raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")

@@ -71,6 +71,16 @@ def add_parameter_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_prevention_options(parser: argparse.ArgumentParser, what: str = "scenarios") -> None:
+    """``--preventable`` and ``--unpreventable``, which ``cli.basis`` reads; ``what`` is what begins so."""
+    for side, does in (("preventable", "prevents"), ("unpreventable", "cannot prevent")):
+        parser.add_argument(
+            f"--{side}",
+            metavar="MODEL",
+            help=f"only {what} that begin with a manoeuvre whose collision a driver (careful) {does}",
+        )
+
+
 def add_quiet_option(parser: argparse.ArgumentParser) -> None:
     """``--quiet``, which the command line sees to for all sub-commands."""
     parser.add_argument("--quiet", action="store_true", help="no word about how far it is")

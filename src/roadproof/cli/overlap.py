@@ -3,11 +3,12 @@
 import argparse
 from pathlib import Path
 
-from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions
+from roadproof.cli.basis import asking, evidence_folder, hand_over, read_definitions, restricting
 from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
+    add_prevention_options,
     add_specification_options,
     chosen_sets,
     read_seconds,
@@ -41,6 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ):
         parser.add_argument(f"--{name}", choices=("same", "any"), default="same", help=what)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
+    add_prevention_options(parser)
     add_models_option(parser)
     add_effort_options(parser, 60.0, "a drive")
     parser.add_argument(
@@ -60,4 +62,7 @@ def run(args: argparse.Namespace) -> int:
     meeting = {"lanes": args.lanes, "roles": args.roles, "start": args.start}
     horizon = None if args.horizon is None else read_seconds("--horizon", args.horizon)
     home = read_definitions(args, chosen_sets(args))
-    return hand_over(args, overlap(args.among, home, **meeting, horizon=horizon, **asking(args, folder)))
+    return hand_over(
+        args,
+        overlap(args.among, home, **meeting, horizon=horizon, **restricting(args), **asking(args, folder)),
+    )

@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.cli.basis import in_order, read_definitions
+from roadproof.cli.basis import in_order, read_definitions, restricting
 from roadproof.cli.numbers import add_sharing_options, add_working_options, read_effort, read_hands, whole
-from roadproof.cli.options import add_json_option, chosen_sets, write_json
+from roadproof.cli.options import add_json_option, add_prevention_options, chosen_sets, write_json
 from roadproof.cli.progress import Counter, clear, tell_stage, warn
 from roadproof.cli.search_options import add_search_options, where_asked
 from roadproof.cli.streams import print_at_once
@@ -34,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all 24 scenarios, in each --set")
     add_search_options(parser)
+    add_prevention_options(parser)
     parser.add_argument(
         "--objective",
         choices=("any", "smooth", "margin", "mild", "severe", "short"),
@@ -54,11 +55,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.analysis.witnesses import Witnessing
     from roadproof.api.drives import files_written, witness_all
+    from roadproof.api.restricting import restricted
     from roadproof.api.settings import searches_of, setting
     from roadproof.report.witness import as_line
     from roadproof.searching.question import SearchOptions
 
-    what, home = some_or_all(args), read_definitions(args, chosen_sets(args))
+    what = some_or_all(args)
+    home = restricted(read_definitions(args, chosen_sets(args)), what=what, **restricting(args))
     means = SearchOptions(args.objective, args.engine, args.solver, read_effort(args))
     searches = list(searches_of(home, what, setting(home, **where_asked(args)), means, args.count))
     named = Witnessing(tuple(searches)).named
@@ -82,4 +85,6 @@ def run(args: argparse.Namespace) -> int:
         write_json(found.as_data(), args.json)
     if plain and len(found.outcomes) > 1:
         print(found.summary)
+    if plain:
+        print(*found.supposed, sep="\n", end="\n" * bool(found.supposed))
     return found.exit_code

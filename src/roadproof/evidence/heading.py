@@ -7,7 +7,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields
 from roadproof.spec.library import Library
 
-HEADING = ("schema", "roadproof", "library", "signals")
+HEADING = ("schema", "roadproof", "library", "signals", "prevention")
 _FINGERPRINT = re.compile("[0-9a-f]{16}")
 
 

@@ -1,6 +1,6 @@
 """What a formula says of the instant that it begins with."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -26,6 +26,37 @@ def conjuncts(formula: Formula, positive: bool = True) -> Iterator[Formula]:
             yield from conjuncts(body, positive)
         case _:
             yield formula if positive else f.negation(formula)
+
+
+def compared(formula: Formula) -> Iterator[f.Compare]:
+    """The comparisons of a bound formula that are about the instant that it begins with, and no other."""
+    match formula:
+        case f.Compare():
+            yield formula
+        case f.And() | f.Or() | f.Not() | f.Named():
+            for part in f.children(formula):
+                yield from compared(part)
+        case _:
+            return
+
+
+def narrowed(formula: Formula, without: Collection[f.Compare], positive: bool = True) -> Formula:
+    """What implies a bound formula (where it is not ``positive``, what it implies) and has not these
+    comparisons: none of them helps it to be true. Those at other instants stay.
+    """
+    match formula:
+        case f.Compare() if formula in without:
+            return f.FALSE if positive else f.TRUE
+        case f.And(parts):
+            return f.conjunction(*(narrowed(part, without, positive) for part in parts))
+        case f.Or(parts):
+            return f.disjunction(*(narrowed(part, without, positive) for part in parts))
+        case f.Not(body):
+            return f.negation(narrowed(body, without, not positive))
+        case f.Named(_, _, body) if any(x in without for x in compared(body)):
+            return narrowed(body, without, positive)
+        case _:
+            return formula
 
 
 def demands(formula: Formula) -> Formula:

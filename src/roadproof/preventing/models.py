@@ -10,6 +10,10 @@ from roadproof.spec.scenarios import LANE, disturbance_name, name_of, number_in
 
 DRIVERS = "driver"
 """What the file of the definitions is called, among those that are read on request."""
+PREVENTION = "prevention"
+"""What the file is called that asks what a driver prevents, and its option for which side is asked."""
+DRIVEN_BY, BEGINS = "driver", "prevention_of"
+"""Its options for the model of the driver, and for what begins so."""
 # The scenario of the library that each manoeuvre is the course of.
 SCENARIOS: Mapping[str, int] = MappingProxyType({"cut-in": 1, "cut-out": 2, "deceleration": 4})
 _CHANGING: Mapping[str, int] = MappingProxyType({"cut-in": 5, "cut-out": 6, "deceleration": 8})
@@ -85,26 +89,38 @@ def course_in(number: int) -> str | None:
     return next((x for x, first in SCENARIOS.items() if number - first in _SECTORS), None)
 
 
+def courses_of(name: str) -> tuple[int, ...]:
+    """The scenarios that are the course of a manoeuvre of which a model says something, in order."""
+    return tuple(sorted(SCENARIOS[x] + later for x in MODELS[name].manoeuvres for later in _SECTORS))
+
+
 def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
     """Each model is there, once, and speaks of one of the scenarios. Raises ``UsageError``."""
     if len({*names}) < len(names):
         raise UsageError(f"drivers={','.join(names)}: one is named twice; name different models")
     for name in names:
-        if name not in MODELS:
-            raise UsageError(f"drivers={','.join(names)}: {unknown('driver model', name, MODELS)}")
-        if MODELS[name].is_stepped:
-            formulas = ", ".join(x.name for x in MODELS.values() if not x.is_stepped)
-            raise UsageError(
-                f"drivers={','.join(names)}: {name} is a controller and has no formula; "
-                f"these have: {formulas}"
-            )
-        said = [SCENARIOS[x] + later for x in MODELS[name].manoeuvres for later in _SECTORS]
-        if not {*said} & {*numbers}:
-            raise UsageError(
-                f"drivers={','.join(names)}: {name} says nothing of any scenario that is asked for "
-                f"({', '.join(map(str, numbers))}); it speaks of {', '.join(map(str, sorted(said)))}: "
-                "ask for one of these, or leave the model out"
-            )
+        check_driver(name, f"drivers={','.join(names)}")
+        check_courses(name, numbers, f"drivers={','.join(names)}")
+
+
+def check_driver(name: str, said: str) -> None:
+    """The model is there and has formulas; ``said`` is what was asked. Raises ``UsageError``."""
+    if name not in MODELS:
+        raise UsageError(f"{said}: {unknown('driver model', name, MODELS)}")
+    if MODELS[name].is_stepped:
+        formulas = ", ".join(x.name for x in MODELS.values() if not x.is_stepped)
+        raise UsageError(f"{said}: {name} is a controller and has no formula; these have: {formulas}")
+
+
+def check_courses(name: str, numbers: Collection[int], said: str) -> None:
+    """The model speaks of one of the scenarios. Raises ``UsageError``."""
+    known = courses_of(name)
+    if not {*known} & {*numbers}:
+        raise UsageError(
+            f"{said}: {name} says nothing of any scenario that is asked for "
+            f"({', '.join(map(str, numbers)) or 'none'}); it speaks of {', '.join(map(str, known))}: "
+            "ask for one of these, or leave the model out"
+        )
 
 
 def manoeuvre_of(name: str) -> tuple[str, int | None]:

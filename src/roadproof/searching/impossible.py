@@ -10,6 +10,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
+from roadproof.preventing.proof import prove_of_scenarios
 from roadproof.proving.prover import Hunch, Result, prove
 from roadproof.spec.compose import negation, of_parts
 from roadproof.spec.library import Specification
@@ -42,7 +43,7 @@ class Impossibility:
 
 def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
     """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``Late``."""
-    return explain(specification, query, prove(specification, negation(query), effort), effort)
+    return explain(specification, query, prove_of_scenarios(specification, negation(query), effort), effort)
 
 
 def explain(

@@ -22,7 +22,7 @@ from roadproof.searching.question import FoundDrive, Posed, SearchOptions
 from roadproof.searching.rounding import round_drive
 from roadproof.searching.shape import reshape, violation_depths
 from roadproof.searching.start import encode_start
-from roadproof.searching.starts import starts, unread
+from roadproof.searching.starts import closed, starts, unread
 from roadproof.searching.variety import differ
 from roadproof.solve.bounds import TooNonlinearError
 from roadproof.solve.exact import solve_exactly
@@ -61,7 +61,7 @@ def find_witness(question: Posed, search_options: SearchOptions, unlike: tuple[D
     """
     if question.start is None and search_options.engine == "milp":
         parts = [unread(question, lanes) for lanes in question.lanes]
-        if any(parts):
+        if any(parts) or any(closed(question, lanes) for lanes in question.lanes):
             return _from_starts(question, parts, search_options, unlike)
     if search_options.objective == "short":
         return _shortest(question, search_options, unlike)
@@ -80,7 +80,7 @@ def _from_starts(
     """
     meter = search_options.effort.meter()
     begin("encode", "starts in place of conditions that no engine reads")
-    each = meter.limit / (STARTS * len(parts))
+    each = meter.limit / ((STARTS if any(parts) else 1) * len(parts))
     found = [starts(question, lanes, x, STARTS) for lanes, x in zip(question.lanes, parts, strict=True)]
     turns = (start for same in zip_longest(*found) for start in same if start is not None)
     tried = 0
@@ -91,12 +91,16 @@ def _from_starts(
         answer = find_witness(begun, replace(search_options, effort=part, explain=False), unlike)
         if answer.found is not None:
             return answer
-    return Attempt(Verdict.UNKNOWN, None, _untold(tried))
+    return Attempt(Verdict.UNKNOWN, None, _untold(tried if any(parts) else None))
 
 
-def _untold(tried: int) -> str:
-    """Why there is no answer, after so many starts."""
+def _untold(tried: int | None) -> str:
+    """Why there is no answer, after so many starts; None where none is sampled."""
     part = "no engine reads a part of the formula about time 0"
+    if tried is None:
+        return (
+            f"{part}: no drive was found on which it holds whatever that part says, and others were not tried"
+        )
     if not tried:
         return f"{part}, and no state in which it holds was found among those that were looked at"
     return (

@@ -9,7 +9,7 @@ from roadproof.encode.motion import Layout
 from roadproof.encode.polynomial import Inequality, Polynomial, constant
 from roadproof.encode.problem import ColumnInequality
 from roadproof.logic import formula as f
-from roadproof.logic.begin import conjuncts
+from roadproof.logic.begin import conjuncts, narrowed
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Signal
 
@@ -26,11 +26,15 @@ class Condition:
 
 @dataclass(frozen=True)
 class Start:
-    """``conditions`` that imply ``replaced``, parts of a bound formula, under an assignment of ``lanes``."""
+    """``conditions`` that imply ``replaced``, parts of a bound formula, under an assignment of ``lanes``.
+
+    ``closed``: comparisons of other parts that are left to be false, or true under a negation.
+    """
 
     lanes: Mapping[str, str]
     conditions: tuple[Condition, ...]
     replaced: frozenset[Formula]
+    closed: frozenset[f.Compare] = frozenset()
 
     @property
     def exact(self) -> dict[Signal, Condition]:
@@ -38,8 +42,9 @@ class Start:
         return {x.signal: x for x in self.conditions if x.low == x.high}
 
     def without(self, formula: Formula) -> Formula:
-        """The parts of ``formula`` that are left to be asked for."""
-        return f.conjunction(*(part for part in conjuncts(formula) if part not in self.replaced))
+        """The parts of ``formula`` that are left to be asked for; with the conditions they imply it."""
+        left = (part for part in conjuncts(formula) if part not in self.replaced)
+        return f.conjunction(*(narrowed(part, self.closed) if self.closed else part for part in left))
 
 
 def encode_start(start: Start, layout: Layout) -> Circuit[ColumnInequality]:

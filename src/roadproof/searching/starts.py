@@ -5,7 +5,7 @@ values of a state in which it holds, but for one place along the road, which is 
 says that the part holds. So a start implies the parts; what is found from it is judged on all of the formula.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
@@ -24,7 +24,7 @@ from roadproof.judge.polynomial import polynomial
 from roadproof.judge.truth import Span
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.begin import conjuncts, demands
+from roadproof.logic.begin import compared, conjuncts, demands
 from roadproof.logic.boxes import boxes_overlap
 from roadproof.logic.formula import Formula, is_state
 from roadproof.logic.fragment import signal_degree
@@ -43,6 +43,26 @@ GRAIN = Fraction(1, 100)  # m; how finely places are rounded (``rounding``)
 
 def unread(question: Posed, lanes: Mapping[str, str]) -> tuple[Formula, ...]:
     """Parts of the conjunction about time 0 that the engine milp cannot read; without own signals."""
+    reads = _reader(question)
+    found = []
+    for part in conjuncts(question.bound(lanes)):
+        if not is_state(part) or own_of([part]):
+            continue
+        if not all(reads(x) for x in f.subformulas(part) if isinstance(x, f.Compare)):
+            found.append(part)
+    return tuple(dict.fromkeys(found))
+
+
+def closed(question: Posed, lanes: Mapping[str, str]) -> frozenset[f.Compare]:
+    """What it cannot read of time 0 in other parts, which say it beside what they say of later times."""
+    reads = _reader(question)
+    others = (part for part in conjuncts(question.bound(lanes)) if not is_state(part))
+    found = {x for part in others for x in compared(part) if not own_of([x])}
+    return frozenset(x for x in found if not reads(x))
+
+
+def _reader(question: Posed) -> Callable[[f.Compare], bool]:
+    """Whether the engine milp reads a comparison about time 0."""
     layout = Layout(tuple(question.vehicles), question.grid)
     sizes = sizes_of(question.vehicles)
 
@@ -53,29 +73,24 @@ def unread(question: Posed, lanes: Mapping[str, str]) -> tuple[Formula, ...]:
         leaves = (x.content for x in nodes(inequalities_of(part, sizes)) if isinstance(x, Leaf))
         return all(inequality_at(x, layout, 0).polynomial.degree <= READABLE for x in leaves)
 
-    found = []
-    for part in conjuncts(question.bound(lanes)):
-        if not is_state(part) or own_of([part]):
-            continue
-        if not all(reads(x) for x in f.subformulas(part) if isinstance(x, f.Compare)):
-            found.append(part)
-    return tuple(dict.fromkeys(found))
+    return reads
 
 
 def is_read(question: Posed) -> bool:
     """Whether the engine milp can read all that is said of time 0."""
-    return not any(unread(question, lanes) for lanes in question.lanes)
+    return not any(unread(question, lanes) or closed(question, lanes) for lanes in question.lanes)
 
 
 def starts(
     question: Posed, lanes: Mapping[str, str], parts: tuple[Formula, ...], most: int
 ) -> Iterator[Start]:
-    """At most ``most`` starts in place of ``parts`` (``unread``), unlike each other.
+    """At most ``most`` starts in place of ``parts`` (``unread``), unlike each other; ``closed`` is let go.
 
     None where no state is found; where there are no parts, one without conditions.
     """
+    let_go = closed(question, lanes)
     if not parts:
-        yield Start(lanes, (), frozenset())
+        yield Start(lanes, (), frozenset(), let_go)
         return
     together = f.conjunction(*parts)
     formula = f.conjunction(demands(question.bound(lanes)), *_surroundings(question))
@@ -84,7 +99,7 @@ def starts(
     beside = _beside(together, spoken, question)
     for state in states(formula, space, most):
         found = conditions(together, state, spoken, beside, space)
-        yield Start(lanes, found, frozenset(parts))
+        yield Start(lanes, found, frozenset(parts), let_go)
 
 
 def space_of(question: Posed) -> Space:

@@ -179,7 +179,12 @@ def disturbance(specification: Specification, number: int, vehicles: Sequence[st
 
 def initial_condition(specification: Specification, number: int, vehicles: Sequence[str]) -> Query:
     """What a scenario asks of its start beside safety and sector, in the lane L. Raises ``TextError``."""
-    return apply_definition(specification, f"initialCondition_{number}", (*vehicles, LANE))
+    return apply_definition(specification, initial_condition_name(number), (*vehicles, LANE))
+
+
+def initial_condition_name(number: int) -> str:
+    """What the definition is called of what a scenario asks of its start beside safety and sector."""
+    return f"initialCondition_{number}"
 
 
 def components(specification: Specification, number: int, vehicles: Sequence[str]) -> list[Query]:
@@ -261,6 +266,12 @@ def too_near_ahead(specification: Specification, behind: str, ahead: str) -> Que
 def too_near_left(specification: Specification, right: str, left: str) -> Query:
     """One vehicle is left of the other, nearer than the lateral RSS distance (eq. lat_RSS)."""
     return apply_definition(specification, "dangerLeft", (right, left))
+
+
+def asked_between(specification: Specification, a: str, b: str) -> tuple[Query, ...]:
+    """What a drive between two vehicles is to begin with beside safety; nothing in the library itself."""
+    name = "asked_between"
+    return (apply_definition(specification, name, (a, b)),) if name in specification.definitions else ()
 
 
 def in_lane(specification: Specification, vehicle: str, lane: str = LANE) -> Query:

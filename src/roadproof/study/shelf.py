@@ -22,6 +22,7 @@ from roadproof.evidence.judged import Judged
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.files import json_bytes, make_folder, write_json, write_whole
 from roadproof.kernel.accept import find_tableau
+from roadproof.preventing.restriction import told
 from roadproof.spec.library import Library
 
 INDEX = "index.json"
@@ -41,9 +42,14 @@ class Question:
     find_label: FindLabel = without_labels
 
     @property
+    def beginning(self) -> dict[str, Any]:
+        """How every answer begins: its kind, the version, the library, what begins so that is asked about."""
+        return {**heading(self.schema, self.library), **told(self.said.get("options", {}))}
+
+    @property
     def heading(self) -> dict[str, Any]:
-        """How the index begins: its kind, the version, the library, and what is said once."""
-        return {**heading(self.schema, self.library), **self.said}
+        """How the index begins: as ``beginning``, and with what is said once."""
+        return {**self.beginning, **self.said}
 
     @property
     def fingerprint(self) -> str:

@@ -16,6 +16,7 @@ from roadproof.errors import UsageError
 from roadproof.evaluation.one_trace import OneTrace
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.monitoring.compiled import compile
+from roadproof.preventing.restriction import restriction_of
 from roadproof.spec.bind import bind
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import (
@@ -122,6 +123,9 @@ def gap_kinds(basis: Basis, numbers: Sequence[int]) -> GapKinds:
 
 
 def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
+    if restriction_of(home.options) is not None:
+        yield "a driver model says how scenarios begin; coverage asks which drives that begin so are in none"
+        return
     two = [n for n in numbers if len(vehicles_of(home, Scenario(n, home.set_name))) == len(PAIR)]
     if not two:
         yield "none of the scenarios is between two vehicles"

@@ -20,6 +20,7 @@ from roadproof.judge.exact import judge
 from roadproof.judge.truth import START, Cut, TruthSet
 from roadproof.logic import formula as f
 from roadproof.monitoring.compiled import compile
+from roadproof.preventing.restriction import restriction_of
 from roadproof.signals import SignalName
 from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of
 
@@ -104,7 +105,12 @@ def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown
 
 
 def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Shown]:
-    """The danger of a drive, from its start on, where no scenario holds for any lane and in any roles."""
+    """The danger of a drive, from its start on, where no scenario holds for any lane and in any roles.
+
+    Nothing where scenarios begin as a driver model says: a drive that does not is no gap.
+    """
+    if restriction_of(asked.specification.options) is not None:
+        return
     danger = next((x for x in shown if x.what == ENDANGERED and x.at == 0), None)
     if danger is not None and {x.what for x in shown} == {ENDANGERED}:
         wider = {x.what for x in shown_by(file, asked, Freedom(roles=True, lanes=True))}

@@ -22,6 +22,7 @@ from roadproof.spec.scenarios import (
     SUBJECT,
     Scenario,
     applied,
+    asked_between,
     danger,
     in_lane,
     in_some_zone,
@@ -99,9 +100,10 @@ def prove_claim(basis: Basis, claim: Query) -> Covered:
     return Covered(claim, result.verdict, result.certificate, result.reason)
 
 
-def starts(specification: Specification) -> tuple[Query, Query]:
-    """That the two vehicles are safe, and that they are in danger later."""
-    return safe(specification, *PAIR), eventually(danger(specification, *PAIR))
+def starts(specification: Specification) -> tuple[Query, ...]:
+    """That the two vehicles are safe and in danger later, and what else drives are asked to begin with."""
+    later = eventually(danger(specification, *PAIR))
+    return safe(specification, *PAIR), later, *asked_between(specification, *PAIR)
 
 
 def starts_in(specification: Specification, numbers: Sequence[int]) -> Query:

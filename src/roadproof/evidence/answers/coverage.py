@@ -16,6 +16,7 @@ from roadproof.spec.scenarios import (
     SUBJECT,
     Scenario,
     applied,
+    asked_between,
     danger,
     in_lane,
     in_some_zone,
@@ -174,7 +175,8 @@ def _claims(specification: Specification) -> list[Formula]:
             sectors.setdefault(meaning, []).append(number)
     claims: list[Formula] = []
     for numbers in sectors.values():
-        starts = (safe(specification, *PAIR), eventually(danger(specification, *PAIR)))
+        later = eventually(danger(specification, *PAIR))
+        starts = (safe(specification, *PAIR), later, *asked_between(specification, *PAIR))
         premise = both(sector(specification, numbers[0], PAIR), in_lane(specification, SUBJECT), *starts)
         some = [
             applied(specification, Scenario(number, specification.set_name), roles)

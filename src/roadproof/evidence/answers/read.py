@@ -14,6 +14,7 @@ from roadproof.evidence.answers.entry import Entry
 from roadproof.evidence.answers.reader import Background, FindLabel, Reader, without_labels
 from roadproof.evidence.heading import HEADING, library_of
 from roadproof.evidence.strict import Fields
+from roadproof.preventing import restriction
 from roadproof.spec.library import Library
 
 
@@ -50,6 +51,10 @@ def faults_of(data: Fields, library: Library, formulas: Mapping[str, str]) -> It
     told = dict(data.mapping("signals")) if data.has("signals") else {}
     if library_of(data) == library.fingerprint and told != library.freedom:
         yield f"{data.where}: what it says of own signals is not what they are declared"
+    options = data.named_texts("options") if "options" in data.content else {}
+    begins = {"prevention": data.content["prevention"]} if "prevention" in data.content else {}
+    if begins and begins != restriction.told(options):
+        yield f"{data.where}: what it says of a driver that prevents is not what its options say"
     yield from readers()[data.text("schema")].faults(data, background, formulas)
 
 
