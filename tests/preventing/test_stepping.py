@@ -5,7 +5,7 @@ import pytest
 
 from preventing import stepping
 from preventing.labels import labels
-from preventing.read import boundary
+from preventing.read import bound, boundary
 from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION
 
 RATE = 1000
@@ -83,6 +83,28 @@ def check_decelerations(cases: int, seed: int) -> tuple[int, float]:
     count, outside = differing(found, outcome, 2 * (v + stepping.FULL) / RATE)
     assert outside == 0
     return count, float(found.mean())
+
+
+def test_decelerations_with_any_delay():
+    """Also where POV brakes harder than SV can, and where one of them stands within the ramp."""
+    cases = 400
+    for delay, seed in ((0.0, 21), (0.2, 22), (0.6, 23)):
+        rng = np.random.default_rng(seed)
+        v = rng.uniform(0, 12, cases) * rng.choice([1.0, 0.1, 0.0], cases, p=[0.5, 0.3, 0.2])
+        w = rng.uniform(0, 12, cases) * rng.choice([1.0, 0.1], cases)
+        braking = rng.uniform(0.5, 20, cases)
+        gap = rng.uniform(0, 6, cases) * rng.choice([1.0, 0.02], cases)
+        formula = bound(
+            "gainsBraking(v_lon(SV), v_lon(POV), -a_lon(POV), gapTo(SV, POV), "
+            f"{delay} s, cc_ramp, cc_braking)"
+        )
+        x = {"Ve0": v, "dV0": v - w, "Gx": braking, "dx0": gap}
+        found = labels(DECELERATION, {"it": formula}, x)["it"]
+        drive = stepping.careful(np.full(cases, delay))
+        outcome = stepping.step_deceleration(v, w, gap, braking, drive, RATE, 26)
+        _, outside = differing(found, outcome, 2 * (v + stepping.FULL) / RATE)
+        assert outside == 0
+        assert 0.1 < found.mean() < 0.9
 
 
 def test_decelerations():

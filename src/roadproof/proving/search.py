@@ -10,6 +10,7 @@ instances are shrunk to those that are needed.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TypeAlias
 
 from roadproof.effort import Meter
 from roadproof.evidence.atoms import Atoms, free_lanelets, membership
@@ -20,8 +21,9 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import road_names
 from roadproof.proving.grounding import Grounding, Universal
+from roadproof.proving.reason import is_plain, reason
 from roadproof.proving.roster import Roster, open_quantifiers
-from roadproof.proving.states import StateChecker
+from roadproof.proving.states import CASE, StateChecker
 from roadproof.solve.smt import Satisfiability
 
 MOST_ROUNDS = 400
@@ -29,7 +31,10 @@ MOST_ELEMENTS = 24
 # Units of work for a look at one moment of one universal, and for an instance.
 LOOK = 2e-6
 INSTANCE = 2e-4
+BRIEFLY = 1.0  # units of work for a state that says no more than why the claim is false
 WISH = 0.25  # units of work for a check with wishes, or for one of a shorter proof
+
+States: TypeAlias = Mapping[Fraction, Mapping[str, bool]]
 
 
 @dataclass(frozen=True)
@@ -54,7 +59,7 @@ class Model:
     """
 
     values: Mapping[str, Fraction]
-    states: Mapping[Fraction, Mapping[str, bool]]
+    states: States
     signals: Mapping[Fraction, Mapping[str, Fraction | bool]]
     elements: Mapping[str, f.Domain]
     facts: Mapping[tuple[f.Domain, str], bool]
@@ -100,6 +105,7 @@ class InstanceSearch:
             self.grounding.elements |= dict.fromkeys(variables[:1], f.Domain("lanes"))
         self.states = states
         self.sparing = sparing
+        self.claim = claim if is_plain(claim) else None
         self.bound_moments = _bounds_of(claim)
         for bound in self.bound_moments:
             self.grounding.declare_moment(bound)
@@ -127,8 +133,7 @@ class InstanceSearch:
                 if len(self.grounding.elements) > MOST_ELEMENTS:
                     return GaveUp(f"no end after {MOST_ELEMENTS} lanes and lanelets that must exist")
                 continue
-            states = self._states(values)
-            refused = self._lemmas(states, values, meter)
+            states, refused = self._refused(values, meter)
             if isinstance(refused, GaveUp):
                 return refused
             if refused is None and not (self.sparing and self._look_on(values, meter)):
@@ -249,16 +254,27 @@ class InstanceSearch:
         truths = self.grounding.session.values([f"|{membership(*fact)}|" for fact in facts])
         return {fact: bool(true) for fact, true in zip(facts, truths, strict=True)}
 
+    def _refused(self, values: dict[str, Fraction], meter: Meter) -> tuple[States, bool | GaveUp | None]:
+        """The states of the model, and what ``_lemmas`` says of them.
+
+        Of a claim about one instant, what makes it false there is asked about first, and all else only where
+        that has no quick answer: more may help to divide a state into cases.
+        """
+        states = self._states(values)
+        if self.claim is not None:
+            brief = {when: reason(self.claim, False, state) or state for when, state in states.items()}
+            refused = self._lemmas(brief, values, meter, BRIEFLY)
+            if not isinstance(refused, GaveUp):
+                return brief, refused
+        return states, self._lemmas(states, values, meter)
+
     def _lemmas(
-        self,
-        states: Mapping[Fraction, Mapping[str, bool]],
-        values: dict[str, Fraction],
-        meter: Meter,
+        self, states: States, values: dict[str, Fraction], meter: Meter, case: float = CASE
     ) -> bool | GaveUp | None:
         """Turn impossible states into lemmas; None where every state is possible."""
         learnt = False
         for instant, state in states.items():
-            clause = self.states.refute(state, meter)
+            clause = self.states.refute(state, meter, case)
             if isinstance(clause, str):
                 return GaveUp(clause)
             if clause is not None:

@@ -68,8 +68,11 @@ class StateChecker:
     def settled(self) -> set[str]:
         return self.learnt.settled
 
-    def refute(self, wanted: Mapping[str, bool], meter: Meter) -> Clause | str | None:
-        """None where a state with these truth values exists; else a clause against it, or why not known."""
+    def refute(self, wanted: Mapping[str, bool], meter: Meter, case: float = CASE) -> Clause | str | None:
+        """None where a state with these truth values exists; else a clause against it, or why not known.
+
+        ``case``: units of work for each query in general.
+        """
         key = self._key(wanted)
         if key in self.learnt.known:
             return None
@@ -78,22 +81,25 @@ class StateChecker:
             if all((meaning, not positive) in key for meaning, positive in learnt):
                 return tuple((named[meaning], positive) for meaning, positive in learnt)
         literals = list(wanted.items())
+        tried: set[Clause] = set()
         for assumed in ASSUMED:
             question = _Question(self, wanted, assumed)
             answer = question.session.check(list(question.switches), meter.part(QUICK))
             if answer == "sat":
                 self.learnt.known[key] = question.values()
                 return None
-            if answer == "unsat":
-                literals = question.core()
+            literals = question.core() if answer == "unsat" else list(wanted.items())
             clause = tuple((name, not positive) for name, positive in literals)
-            if self._always_holds(clause, meter):
+            if clause in tried:
+                continue
+            tried.add(clause)
+            if self._always_holds(clause, meter, case):
                 clause = self._shrink(clause, meter)
                 self.learnt.clauses.append(tuple((self.atoms.meaning(name), p) for name, p in clause))
                 return clause
         symbols = _Question(self, wanted, "nothing").symbols
         for query in derive_lemma_queries(self.atoms, [(n, not p) for n, p in wanted.items()], self.bounds):
-            found = solve(query, symbols, meter.part(CASE))
+            found = solve(query, symbols, meter.part(case))
             if found is not None:
                 self.learnt.known[key] = found
                 return None
