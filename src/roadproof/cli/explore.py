@@ -25,12 +25,15 @@ examples:
   roadproof explore 1 --least 'v_lon(SV) - v_lon(POV)'       the least value of a measure at the start
   roadproof explore 4 --greatest 's(POV) - s(SV)' --when 'danger(SV,POV)'    at a moment of danger
   roadproof explore --all --vary minDanger=0:30 --out explored
+  roadproof explore --spec driver 'unpreventable_cutIn_careful(SV,POV)' --vary cc_delay=0.3:1.5
 
 Limits are v_lon, v_lat, a_lon and a_lat, each .min and .max. Where durations change, dt is the coarsest step
 that divides them, and --dt its upper bound. A drive that was found is judged at every other value, so
 most values take no search. A value that none is found for costs up to three times the --effort.
 Nothing is claimed of values between those looked at, and no extreme is called the best there is: the
 other side of the bracket is printed with what is known of it.
+
+A formula about one instant that no engine reads (a driver model) is proved impossible at single values.
 
 # drive judged at this value, . proved impossible, - none within the limits printed, ? not decided.
 Exit code 20 where anything is not decided.
