@@ -11,8 +11,10 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.preventing.proof import prove_of_scenarios
+from roadproof.preventing.restriction import left_open
 from roadproof.proving.prover import Hunch, Result, prove
 from roadproof.spec.compose import negation, of_parts
+from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 
@@ -49,10 +51,22 @@ def show_impossible(specification: Specification, query: Query, effort: Effort) 
 def explain(
     specification: Specification, query: Query, proof: Result, effort: Effort
 ) -> Impossibility | None:
-    """As ``show_impossible``, where the ``proof`` that ``query`` never holds is known already."""
+    """As ``show_impossible``, where the ``proof`` that ``query`` never holds is known already.
+
+    Where a driver model says what begins, the core is that of what is left open, and proved to be one.
+    """
     if not proof.holds or proof.certificate is None:
         return None
-    core, minimal = _core(specification, query, effort.of(effort.units - proof.work))
+    left = effort.of(effort.units - proof.work)
+    outline = left_open(specification)
+    if outline is None:
+        core, minimal = _core(specification, query, left)
+        return Impossibility(core, minimal, proof.certificate)
+    shorter, minimal = _core(outline, read_claim(outline, query.text), left)
+    said, whole = {*told_parts(shorter)}, tuple(dict.fromkeys(parts(query.formula)))
+    core = tuple(part for part in whole if {*told_parts((part,))} <= said)
+    if not prove(specification, negation(of_parts(query, core)), effort.of(SHORTER)).holds:
+        core, minimal = whole, False
     return Impossibility(core, minimal, proof.certificate)
 
 
