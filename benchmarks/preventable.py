@@ -27,6 +27,9 @@ READINGS = {
     "perception by overlap": {"cc_perception": "overlap"},
     "TTC below 2 s before perception": {"cc_gate": "before_perception"},
     "TTC below 2 s before the delay": {"cc_gate": "before_delay"},
+    "AEB: replace": {"cc_aeb": "replace"},
+    "AEB: max": {"cc_aeb": "max"},
+    "AEB: add": {"cc_aeb": "add"},
 }
 MODELS = {"r157": "UN R157 5.2.5.2", "eu1426": "EU 2022/1426", "rss": "RSS proper response"}
 

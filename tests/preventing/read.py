@@ -1,5 +1,6 @@
 """Formulas of driver.spec, bound, for tests."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -22,15 +23,17 @@ def specification(**options: str) -> Specification:
     return library().select("base", options)
 
 
-def boundary(manoeuvre: str, model: str, **options: str) -> Formula:
+def boundary(
+    manoeuvre: str, model: str, parameters: Mapping[str, Fraction] | None = None, **options: str
+) -> Formula:
     text = unpreventable(manoeuvre, model, MANOEUVRES[manoeuvre].vehicles)
-    return bound(text, **options)
+    return bound(text, tuple((parameters or {}).items()), **options)
 
 
 @cache
-def bound(text: str, **options: str) -> Formula:
+def bound(text: str, parameters: tuple[tuple[str, Fraction], ...] = (), **options: str) -> Formula:
     query = read_claim(specification(**options), text)
-    return bind(query.formula, Road("none", (), frozenset()), {}, values())
+    return bind(query.formula, Road("none", (), frozenset()), {}, values() | dict(parameters))
 
 
 def values() -> dict[str, Fraction]:

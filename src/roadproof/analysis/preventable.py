@@ -16,12 +16,13 @@ from roadproof.effort import Late
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
-from roadproof.preventing.boundary import Plane, line, plane_of
+from roadproof.preventing import gradual
+from roadproof.preventing.boundary import Plane, plane_of
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.lemmas import Lemma, lemmas_for
-from roadproof.preventing.lines import Line, boundary_formula, end_of, line_data, read_line, told_line
+from roadproof.preventing.lines import Line, end_of, line_data, read_line, told_line, truths
 from roadproof.preventing.manoeuvres import Manoeuvre, Values
-from roadproof.preventing.models import MODELS, Model, boundary_of, parts_of
+from roadproof.preventing.models import MODELS, Model, boundary_of, parts_of, touched
 from roadproof.preventing.sides import SIDES, Side, beside_boundary, far_apart, first_drive
 from roadproof.preventing.stepped import TOLD, beside_change, labels_of, places_of, spans_of
 from roadproof.proving.prover import prove
@@ -63,6 +64,11 @@ class Plate:
     def stepped(self) -> str:
         """What is said of a plate whose lines are no exact boundary; empty where they are one."""
         return TOLD if MODELS[self.model].is_stepped else ""
+
+    @property
+    def motion(self) -> str:
+        """What is said of a plate whose ends are worked out from the motion; empty where a formula says."""
+        return gradual.TOLD if gradual.RATE in self.fixed else ""
 
     @property
     def verdict(self) -> Verdict:
@@ -145,7 +151,9 @@ class Preventable:
     @cached_property
     def lemmas(self) -> dict[str, Lemma]:
         """The lemmas by name."""
-        asked = lemmas_for(self.manoeuvre.name, self.models) if self.with_lemmas else []
+        aeb = self.basis.specification.options["cc_aeb"]
+        is_said = gradual.RATE not in self.fixed and gradual.RATE not in self.sheet
+        asked = lemmas_for(self.manoeuvre.name, self.models, aeb) if self.with_lemmas and is_said else []
         return {f"lemma-{lemma.name}": lemma for lemma in asked}
 
     def pieces(self, known: Mapping[str, Answer]) -> Sequence[Piece]:
@@ -178,8 +186,7 @@ class Preventable:
         plane, model = self.plane(piece.fixed), piece.model.name
         if piece.model.is_stepped:
             return self._stepped(piece, plane)
-        formula = boundary_formula(self.basis.specification, plane, model, self.basis.all_values())
-        true = tuple(line(plane, formula, row) for row in plane.rows)
+        true = tuple(truths(self.basis.specification, plane, model, self.basis.all_values()))
         lines = tuple(map(told_line, plane.rows, true))
         shown = tuple(self._show(plane, model, beside_boundary(plane, true, side), side) for side in SIDES)
         return Plate(piece.name, model, piece.fixed, lines, shown)
@@ -248,8 +255,11 @@ class Preventable:
                 "model": answer.model,
                 "fixed": {key: str(value) for key, value in answer.fixed.items()},
                 "verdict": str(answer.verdict),
-                "formula": boundary_of(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
+                "formula": touched(self.manoeuvre.vehicles)
+                if answer.motion
+                else boundary_of(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
                 "stepped": answer.stepped,
+                "motion": answer.motion,
                 "lines": [line_data(x) for x in answer.lines],
                 "shown": [self._shown_data(answer, x, shelf) for x in answer.shown],
                 "reason": answer.reason,

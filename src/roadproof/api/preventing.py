@@ -15,6 +15,7 @@ from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.hands import Jobs
+from roadproof.preventing.gradual import RATE, check_gradual
 from roadproof.preventing.manoeuvres import MANOEUVRES, Manoeuvre
 from roadproof.preventing.models import DRIVERS, manoeuvre_of, models_for, require
 from roadproof.report import preventable as report
@@ -122,7 +123,8 @@ def preventable(
     ``UsageError``.
     """
     home = using or load(specs=[DRIVERS])
-    require(home.specification)
+    basis = basis_of(home, effort, timeout, None)
+    require(home.specification, basis.all_values())
     name, scenario = manoeuvre_of(str(manoeuvre))
     kind = MANOEUVRES[name]
     if not 2 <= lines <= _MOST_LINES:
@@ -132,7 +134,7 @@ def preventable(
     sheet |= {name: values for name, values in given.items() if len(values) > 1}
     fixed = {name: values[0] for name, values in given.items() if len(values) == 1}
     study = Preventable(
-        basis_of(home, effort, timeout, None),
+        basis,
         kind,
         models_for(kind.name, tuple(models)),
         fixed,
@@ -147,7 +149,9 @@ def preventable(
     if count > _MOST_PLATES:
         raise UsageError(f"{count} plates: ask for {_MOST_PLATES} at most, with fewer values or models")
     for piece in study.plates.values():
-        kind.values(piece.fixed)
+        values = kind.values(piece.fixed)
+        if RATE in values:
+            check_gradual(piece.model.name, values, study.reading)
     return Plates.asked(study, out, jobs, progress, say)
 
 

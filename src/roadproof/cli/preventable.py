@@ -16,8 +16,10 @@ examples:
   roadproof preventable 1 --at dy0=2.2 --at Vy=0.5        drives of the scenario: they begin safe
   roadproof preventable cut-in --model careful,r157 --at 'Ve0=60km/h' --at Vy=1 --out cut-in
   roadproof preventable deceleration --at Ve0=60km/h,130km/h --along dx0=0:120
+  roadproof preventable deceleration --at dGdt=5    POV's braking grows by 5 m/s^3, and is not there at once
   roadproof preventable cut-out --option cc_gate=none --param cc_delay=0.5
   roadproof preventable cut-in --option cc_perception=overlap     another reading of the regulation
+  roadproof preventable cut-in --model careful --option cc_aeb=max    AEB after full wrap
 
 A plate varies two initial values and fixes the others. On each of its lines the ends of what is unpreventable
 are exact; a judged drive on each side follows the model, and touches the other vehicle, or never does. The

@@ -88,7 +88,7 @@ class Settings:
             raise UsageError("evaluate: minDanger must not be negative")
         if self.drivers:
             check_drivers(self.drivers, self.scenarios)
-            require(self.library.select(self.sets[0], self.options))
+            require(self.library.select(self.sets[0], self.options), self.values)
 
 
 def default_settings(library: Library | None = None) -> Settings:

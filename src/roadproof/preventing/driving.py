@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.errors import InputError
+from roadproof.preventing.braking import Aided, Ramp
 from roadproof.preventing.manoeuvres import FIRST, OTHER, SECOND, Manoeuvre, Values, lane_width
 from roadproof.preventing.models import MODELS
 from roadproof.preventing.stepped import course_of
@@ -52,7 +52,7 @@ def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: Reading)
                         (values["dx0"] + apart, middle + lane),
                         (other, -w),
                         (),
-                        _across(lane, -w),
+                        _across(lane, -w, width / 4 if is_aided(model, reading) else _STILL),
                     ),
                 }
             )
@@ -72,12 +72,14 @@ def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: Reading)
                 }
             )
         case _:
-            other, braking = speed - values["dV0"], values["Gx"]
-            pieces: list[Along] = [(other / braking, -braking, _STILL)] if other > 0 else []
+            other = speed - values["dV0"]
+            pieces = _braking(other, values)
             return Drive(
                 {
                     SUBJECT: motion_of(
-                        box, *ego, _deceleration(model, values, reading) if stepped is None else stepped
+                        box,
+                        *ego,
+                        motion_in_deceleration(model, values, reading) if stepped is None else stepped,
                     ),
                     OTHER: motion_of(box, (values["dx0"] + apart, middle), (other, _STILL), pieces),
                 }
@@ -103,10 +105,13 @@ def road_of(values: Values) -> Road:
     return Road("two-lanes", lanelets, pairs([_BOTH_LANES]))
 
 
-def _across(lane: Fraction, w: Fraction) -> list[Across]:
-    """To the middle of the lane beside, at ``w``; the last half second slower and slower."""
-    steering = min(_STEERING, lane / abs(w))
-    steady = lane / abs(w) - steering / 2
+def _across(lane: Fraction, w: Fraction, past: Fraction = _STILL) -> list[Across]:
+    """To the middle of the lane beside, at ``w``; the last half second slower and slower.
+
+    ``past``: it may go so far beyond, and is not slower before the middle, where one box is behind the other.
+    """
+    steering = min(_STEERING, (2 * past or lane) / abs(w))
+    steady = lane / abs(w) - (_STILL if past else steering / 2)
     before: list[Across] = [(steady, _STILL)] if steady > 0 else []
     return [*before, (steering, -w / steering)]
 
@@ -150,16 +155,79 @@ def _careful_onset(values: Values, reading: Reading) -> Fraction | None:
     return max(seen + weighed, opens) + known["cc_delay"]
 
 
+def is_aided(model: str, reading: Reading) -> bool:
+    """Whether there is AEB in a cut-in of the model."""
+    return model == "careful" and reading.options["cc_aeb"] != "none"
+
+
 def _cut_in(model: str, values: Values, reading: Reading) -> list[Along]:
+    if is_aided(model, reading):
+        return _aided(values, reading).pieces(values["Ve0"])
     return _along(model, values["Ve0"], _onset(model, values, reading), reading)
 
 
-def _deceleration(model: str, values: Values, reading: Reading) -> list[Along]:
-    known = reading.values
+def _aided(values: Values, reading: Reading) -> Aided:
+    """The braking of the careful driver, who may never brake, and of AEB from full wrap on."""
+    known, wrap = reading.values, (values["dy0"] + values["width"]) / values["Vy"]
+    onset, ramp = _careful_onset(values, reading), known["cc_ramp"]
+    driver = Ramp(wrap, ramp, _STILL) if onset is None else Ramp(onset, ramp, known["cc_braking"])
+    return Aided(driver, Ramp(wrap, ramp, known["aeb_braking"]), reading.options["cc_aeb"])
+
+
+def speeds_of(values: Values, reading: Reading) -> tuple[Fraction, ...]:
+    """What ``follows_cutIn_careful`` takes of AEB (m/s): the speeds from which the ramps would have begun.
+
+    Where a ramp has no part in the motion it is a speed from which the braking would be full by then.
+    Raises ``InputError`` as ``drive_of``.
+    """
+    aided, speed = _aided(values, reading), values["Ve0"]
+    driver, aeb = aided.driver, aided.aeb
+    assert aeb is not None
+    full = speed + aeb.full * aeb.duration
+
+    def begun(time: Fraction, growing: Fraction) -> Fraction:
+        at, braking = aided.state(speed, time)
+        return at + braking**2 * aeb.duration / (2 * growing)
+
+    match aided.joined:
+        case "replace":
+            return (begun(aeb.onset, aeb.full) if aeb.onset <= driver.end else full,)
+        case "max":
+            moves = aided.state(speed, aeb.onset)[0] > 0
+            return (begun(aeb.end, aeb.full) if moves else full,)
+        case _:
+            both = driver.full + aeb.full
+            first = max(driver.onset, min(aeb.onset, driver.end))
+            second = max(driver.end, aeb.onset)
+            by_then = [
+                begun(time, growing) if aided.at(time) < aeb.full else full
+                for time, growing in ((first, both), (second, aeb.full))
+            ]
+            return tuple(by_then)
+
+
+def motion_in_deceleration(model: str, values: Values, reading: Reading) -> list[Along]:
+    """How SV moves until it stands; nothing where it never brakes. Raises ``InputError`` as ``drive_of``."""
+    hard = reading.values["cc_hard"]
     if model == "rss":
         return _along(model, values["Ve0"], _STILL, reading)
-    hard = reading.options["cc_threshold"] == "hard" and values["Gx"] < known["cc_hard"]
-    return _along(model, values["Ve0"], None if hard else _reaction(reading), reading)
+    seen: Fraction | None = _STILL
+    if reading.options["cc_threshold"] == "hard":
+        rate = values.get("dGdt")
+        seen = None if values["Gx"] < hard else hard / rate if rate else _STILL
+        if seen and rate and values["Ve0"] - values["dV0"] <= rate * seen**2 / 2:
+            seen = None  # POV stands before it brakes so hard
+    return _along(model, values["Ve0"], None if seen is None else seen + _reaction(reading), reading)
+
+
+def _braking(speed: Fraction, values: Values) -> list[Along]:
+    """POV brakes, at once or harder and harder, until it stands."""
+    braking, rate = values["Gx"], values.get("dGdt")
+    return (
+        _brakes(speed, braking)
+        if rate is None
+        else Aided(Ramp(_STILL, braking / rate, braking)).pieces(speed)
+    )
 
 
 def _along(model: str, speed: Fraction, onset: Fraction | None, reading: Reading) -> list[Along]:
@@ -176,13 +244,7 @@ def _along(model: str, speed: Fraction, onset: Fraction | None, reading: Reading
         braking = known["r157_braking"] if model == "r157" else known["eu1426_braking"]
         return [*before, *_brakes(speed, braking)]
     braking, ramp = known["cc_braking"], known["cc_ramp"]
-    full = speed - braking * ramp / 2
-    if full < 0:
-        raise InputError(
-            f"Ve0={speed} m/s: SV stands before it brakes fully, at an instant that is no fraction, so no "
-            f"drive can say it exactly; take a speed of at least {braking * ramp / 2} m/s"
-        )
-    return [*before, (ramp, _STILL, -braking / ramp), *_brakes(full, braking)]
+    return Aided(Ramp(onset, ramp, braking)).pieces(speed)
 
 
 def _brakes(speed: Fraction, braking: Fraction) -> list[Along]:

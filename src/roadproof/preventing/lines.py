@@ -7,8 +7,9 @@ from typing import Any
 
 from roadproof.judge.algebraic import Point, Root, approximate
 from roadproof.judge.truth import TruthSet
-from roadproof.logic.formula import Formula
+from roadproof.preventing import gradual
 from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.driving import Reading
 from roadproof.preventing.models import unpreventable
 from roadproof.spec.bind import bind
 from roadproof.spec.elaborate import read_claim
@@ -38,23 +39,26 @@ class Line:
     spans: tuple[tuple[End, End], ...]
 
 
-def boundary_formula(
+def truths(
     specification: Specification, plane: Plane, model: str, values: Mapping[str, Fraction]
-) -> Formula:
-    """The boundary of a model with a formula, bound to ``values`` of all parameters (SI)."""
+) -> Iterator[TruthSet]:
+    """Where a model that is not stepped cannot prevent a collision on each line of a plane, in order.
+
+    By the formula of its boundary, or from the motion where POV's braking grows at a finite rate; ``values``
+    are those of all parameters (SI).
+    """
+    if gradual.RATE in plane.fixed:
+        reading = Reading(values, specification.options)
+        return (gradual.line(plane, model, reading, row) for row in plane.rows)
     text = unpreventable(plane.manoeuvre.name, model, plane.manoeuvre.vehicles)
-    return bind(read_claim(specification, text).formula, _NO_ROAD, {}, values)
+    formula = bind(read_claim(specification, text).formula, _NO_ROAD, {}, values)
+    return (line(plane, formula, row) for row in plane.rows)
 
 
 def told_line(row: Fraction, true: TruthSet) -> Line:
-    """Where a formula is true on a row's line, told."""
+    """What is true on a row's line, told."""
     spans = tuple((end_of(x.begin.point), end_of(x.end.point)) for x in true.spans() if x.end is not None)
     return Line(row, spans)
-
-
-def lines_of(plane: Plane, formula: Formula) -> Iterator[Line]:
-    """The lines of a plane, in order, where a bound formula is true on them."""
-    return (told_line(row, line(plane, formula, row)) for row in plane.rows)
 
 
 def end_of(point: Point) -> End:

@@ -26,7 +26,10 @@ Values: TypeAlias = Mapping[str, Fraction]
 
 @dataclass(frozen=True)
 class Quantity:
-    """An initial value: its unit, the value where none is given (SI), what it is, and its least value."""
+    """An initial value: its unit, the value where none is given (SI), what it is, and its least value.
+
+    ``is_optional``: where none is given there is none.
+    """
 
     name: str
     unit: str
@@ -34,6 +37,7 @@ class Quantity:
     doc: str
     least: Fraction = Fraction(0)
     is_open: bool = False
+    is_optional: bool = False
 
     def check(self, value: Fraction) -> None:
         """Raises ``UsageError`` for a value that no vehicle has."""
@@ -65,7 +69,11 @@ class Manoeuvre:
                 raise UsageError(
                     f"{name}: {unknown('initial value of a ' + self.name, name, self.quantities)}"
                 )
-        values = {name: given.get(name, x.value) for name, x in self.quantities.items()}
+        values = {
+            name: given.get(name, x.value)
+            for name, x in self.quantities.items()
+            if name in given or not x.is_optional
+        }
         for name, value in values.items():
             self.quantities[name].check(value)
         if "dV0" in given and values["dV0"] > values["Ve0"]:
@@ -128,6 +136,14 @@ DECELERATION = Manoeuvre(
         Quantity("Gx", "m/s^2", Fraction(6), "how hard POV brakes", is_open=True),
         Quantity("dx0", "m", Fraction(20), "the gap along the road"),
         Quantity("dV0", "km/h", Fraction(0), "how much faster SV is than POV"),
+        Quantity(
+            "dGdt",
+            "m/s^3",
+            Fraction(0),
+            "how fast POV's braking grows (left out: it is there at once)",
+            is_open=True,
+            is_optional=True,
+        ),
         _LENGTH,
         _WIDTH,
     ),

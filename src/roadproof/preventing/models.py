@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from types import MappingProxyType
 
 from roadproof.errors import UsageError
@@ -21,7 +22,12 @@ _CHANGING: Mapping[str, int] = MappingProxyType({"cut-in": 5, "cut-out": 6, "dec
 _SECTORS = (0, 8, 16)
 """How much later in the library's list a scenario of the main road stands for each road sector."""
 _FORESEEN: Mapping[str, str] = MappingProxyType(
-    {"cut-in": "cutsIn", "cut-out": "cutsOut", "deceleration": "brakesAhead"}
+    {
+        "cut-in": "cutsIn",
+        "cut-out": "cutsOut",
+        "deceleration": "brakesAhead",
+        "gradual-deceleration": "brakesMoreAhead",
+    }
 )
 
 
@@ -163,6 +169,10 @@ def touched(vehicles: tuple[str, ...]) -> str:
     return f"F touches({vehicles[0]}, {vehicles[-1]})"
 
 
+GRADUAL = "gradual-deceleration"
+"""What a deceleration is called in definitions where the braking of POV grows at a finite rate."""
+
+
 def untouched(vehicles: tuple[str, ...]) -> str:
     """The formula about a drive: SV never does."""
     return f"G not touches({vehicles[0]}, {vehicles[-1]})"
@@ -183,8 +193,22 @@ def follows(manoeuvre: str, model: str, vehicles: tuple[str, ...], numbers: tupl
     return f"follows_{_word(manoeuvre)}_{model}({', '.join((*vehicles, *numbers))})"
 
 
-def require(specification: Specification) -> None:
-    """Raises ``UsageError`` where the definitions of the drivers are not read."""
+def require(specification: Specification, values: Mapping[str, Fraction]) -> None:
+    """Raises ``UsageError`` where definitions of drivers are not read, or do not go with ``values`` (SI)."""
     name = "unpreventable_cutIn_careful"
     if name not in specification.definitions:
         raise UsageError(f"there is no definition '{name}': driver models need the specification 'driver'")
+    options = specification.options
+    if options["cc_aeb"] == "none":
+        return
+    driver, aeb = values["cc_braking"], values["aeb_braking"]
+    if aeb < driver:
+        raise UsageError(
+            f"aeb_braking={float(aeb):g} m/s^2: AEB brakes at least as hard as the driver, by "
+            f"cc_braking={float(driver):g} m/s^2; raise aeb_braking, or choose cc_aeb=none"
+        )
+    if options["cc_aeb"] == "add" and options["cc_gate"] != "none":
+        raise UsageError(
+            f"cc_aeb=add, cc_gate={options['cc_gate']}: when a gate opens while AEB brakes is not worked "
+            "out; choose cc_gate=none, or cc_aeb=replace or max, where the driver does not matter then"
+        )

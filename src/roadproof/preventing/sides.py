@@ -12,9 +12,9 @@ from roadproof.evidence.judged import Judged
 from roadproof.judge.algebraic import Point, bounds
 from roadproof.judge.truth import TruthSet
 from roadproof.preventing.boundary import Plane
-from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, rest_of, road_of
+from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, is_aided, rest_of, road_of, speeds_of
 from roadproof.preventing.manoeuvres import Manoeuvre, Values, lane_width
-from roadproof.preventing.models import MODELS, follows, foreseen, touched, unpreventable, untouched
+from roadproof.preventing.models import GRADUAL, MODELS, follows, foreseen, touched, unpreventable, untouched
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import LANE
 
@@ -25,18 +25,25 @@ _NEAR = Fraction(1, 10)  # m from the boundary
 _PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
 
 
-def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side) -> str:
+def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side, reading: Reading) -> str:
     """What the drive from these values shows: its side, the model followed, and what comes of it.
 
-    Of a controller that is stepped: only how the drive begins, and what comes of it.
+    Of a controller that is stepped: only how the drive begins, and what comes of it. Where POV's braking
+    grows at a finite rate: that SV follows its model, and what comes of it.
     """
     vehicles = manoeuvre.vehicles
-    begins = foreseen(manoeuvre.name, vehicles)
     met = touched(vehicles) if side == "unpreventable" else untouched(vehicles)
+    if "dGdt" in values:
+        driven = follows(GRADUAL, model, vehicles, _numbers(manoeuvre, values))
+        return f"{foreseen(GRADUAL, vehicles)} and {driven} and {met}"
+    begins = foreseen(manoeuvre.name, vehicles)
     if MODELS[model].is_stepped:
         return f"{begins} and {met}"
     boundary = unpreventable(manoeuvre.name, model, vehicles)
-    driven = follows(manoeuvre.name, model, vehicles, _numbers(manoeuvre, values))
+    numbers = _numbers(manoeuvre, values)
+    if manoeuvre.name == "cut-in" and is_aided(model, reading):
+        numbers += tuple(_number(speed, "m/s") for speed in speeds_of(values, reading))
+    driven = follows(manoeuvre.name, model, vehicles, numbers)
     if side == "unpreventable":
         return f"{boundary} and {driven} and {met}"
     return f"{begins} and not {boundary} and {driven} and {met}"
@@ -51,7 +58,11 @@ def _numbers(manoeuvre: Manoeuvre, values: Values) -> tuple[str, ...]:
         case "cut-out":
             return (_number(beside, "m"), speed)
         case _:
-            return (speed, _number(values["Gx"], "m/s^2"))
+            numbers = (speed, _number(values["Gx"], "m/s^2"))
+            if "dGdt" not in values:
+                return numbers
+            other = _number(values["Ve0"] - values["dV0"], "m/s")
+            return (speed, other, numbers[1], _number(values["dGdt"], "m/s^3"))
 
 
 def _number(value: Fraction, unit: str) -> str:
@@ -81,7 +92,7 @@ def judged_drive(
     file = DriveFile(
         None,
         specification.set_name,
-        with_also(claim_of(manoeuvre, model, values, side), also),
+        with_also(claim_of(manoeuvre, model, values, side, reading), also),
         rest_of(drive),
         {LANE: OWN_LANE} if also else {},
         reading.values,

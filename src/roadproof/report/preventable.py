@@ -63,6 +63,8 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved
                 what = "what follows"
                 lines.append(f"  {plate.stepped};")
                 lines.append("  the drives follow the controller, which their formula does not say")
+            if plate.motion:
+                lines.append(f"  {plate.motion};")
             lines.append(f"  unpreventable on {what}; {along.doc} [{along.unit}]:")
         for line in _some(plate.lines):
             shown = " and ".join(f"{a.near:.6g} to {b.near:.6g}" for a, b in line.spans[:_TOLD]) or "nowhere"
@@ -116,7 +118,7 @@ def as_csv(study: Preventable, plates: Sequence[Plate]) -> str:
             begins = [plate.model, *(_si(plate.fixed[name]) for name in fixed), _si(line.at)]
             for a, b in line.spans:
                 exact = ("", "") if plate.stepped else (a.exact, b.exact)
-                writer.writerow([*begins, a.near, b.near, *exact, plate.stepped])
+                writer.writerow([*begins, a.near, b.near, *exact, plate.stepped or plate.motion])
     return out.getvalue()
 
 
@@ -160,7 +162,9 @@ def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
     what = "in what is shaded"
     if all(model.is_stepped for model in study.models):
         what = "at places on lines"
-    title = f"{study.manoeuvre.name}: a collision is unpreventable {what}"
+    known = study.manoeuvre.quantities
+    fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in study.fixed.items())
+    title = f"{study.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
     figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
     if any(model.is_stepped for model in study.models):
         figure.text(0.2 / width, 0.1 / height, _STEPPED, fontsize=5.5, va="center")

@@ -8,13 +8,13 @@ from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, rational, read_assuming
 from roadproof.preventing.boundary import Plane, plane_of
-from roadproof.preventing.lines import boundary_formula, line_data, lines_of
+from roadproof.preventing.lines import line_data, told_line, truths
 from roadproof.preventing.manoeuvres import MANOEUVRES
 from roadproof.preventing.models import manoeuvre_of, parts_of
 
 SCHEMA = "roadproof/preventable/1"
 DRIVERS = "driver.spec"
-_PLATE = ("name", "model", "fixed", "verdict", "formula", "stepped", "lines", "shown", "reason")
+_PLATE = ("name", "model", "fixed", "verdict", "formula", "stepped", "motion", "lines", "shown", "reason")
 _SHOWN = ("side", "at", "verdict", "formula", "scenario", "drive", "reason")
 _LEMMA = ("name", "title", "claim", "assuming", "verdict", "certificate", "reason")
 # What a drive on each side has to say, given the formula of the boundary.
@@ -28,7 +28,9 @@ _STEPPED = {
     "unpreventable": r"\w+\([A-Z0-9, ]+\) and {touched}",
     "preventable": r"\w+\([A-Z0-9, ]+\) and {untouched}",
 }
-_LINES = "that the lines of the plate are where the formula holds"
+# Where POV's braking grows at a finite rate, it says what SV and POV do, and what comes of it.
+_GRADUAL = r"\w+\([A-Z0-9, ]+\) and follows_gradualDeceleration_{model}\([^()]*\) and {met}"
+_LINES = "that the lines of the plate are what its formula or its motion says"
 _PLACES = "that the places of the plate are where it holds of the controller's drives"
 _CONTROLLER = "that the accelerations of SV are what the controller of its model computes"
 
@@ -38,7 +40,7 @@ def _plate(content: object, background: Background, number: int, beyond: tuple[s
     common = background.home
     plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
     name, model, boundary = plate.text("name"), plate.text("model"), plate.text("formula")
-    stepped = plate.text("stepped") != ""
+    stepped, motion = plate.text("stepped") != "", plate.text("motion") != ""
     for x in plate.items("shown"):
         line = Fields(x, f"{plate.where}, drive", _SHOWN)
         side, verdict, claim = line.text("side"), line.text("verdict"), line.text("formula")
@@ -48,7 +50,9 @@ def _plate(content: object, background: Background, number: int, beyond: tuple[s
             fault = f"{line.where} is about a driver of {DRIVERS}, which is not among its specification files"
         elif scenario and scenario not in _scenarios(background.said):
             fault = f"{line.where} is of '{scenario[:40]}', which is not what is asked for"
-        elif shows == "drive" and not _says(_without(claim, scenario), side, boundary, model, stepped):
+        elif shows == "drive" and not _says(
+            _without(claim, scenario), side, boundary, model, stepped, motion
+        ):
             fault = f"{line.where} is about '{side}' of {boundary}, but its formula is not: {claim[:120]}"
         file = evidence_name(line, "drive")
         what = f"{name}, {side}"
@@ -77,8 +81,13 @@ def _without(claim: str, scenario: str) -> str:
     return claim.removesuffix(end) if claim.endswith(end) else ""
 
 
-def _says(claim: str, side: str, boundary: str, model: str, stepped: bool) -> bool:
+def _says(claim: str, side: str, boundary: str, model: str, stepped: bool, motion: bool) -> bool:
     """Whether a drive of ``claim`` shows that side: in words, since only one text is ever written."""
+    if motion:
+        met = boundary if side == "unpreventable" else boundary.replace("F ", "G not ", 1)
+        pattern = _GRADUAL.format(model=re.escape(model), met=re.escape(met))
+        known = side in _CLAIMS and not stepped and re.fullmatch(_TOUCHES, boundary) is not None
+        return known and re.fullmatch(pattern, claim) is not None
     if stepped:
         return (
             side in _STEPPED
@@ -127,7 +136,7 @@ def _record(record: Fields, background: Background) -> Iterator[Entry]:
 
 
 def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
-    """Plates whose lines are not where their formula holds; what a controller does is not looked at."""
+    """Plates whose lines are not what their formula or motion says; a controller's are not looked at."""
     common = background.home
     for number, content in enumerate(data.items("plates"), 1):
         plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
@@ -137,12 +146,12 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
         if len(told) != plane.lines:
             yield f"plate {plate.text('name')} has {len(told)} lines, but {plane.lines} are asked for"
             continue
-        formula = boundary_formula(common.specification, plane, plate.text("model"), common.values or {})
-        true = map(line_data, lines_of(plane, formula))
-        wrong = next((x for said, x in zip(told, true, strict=True) if said != x), None)
+        true = truths(common.specification, plane, plate.text("model"), common.values or {})
+        known = map(line_data, map(told_line, plane.rows, true))
+        wrong = next((x for said, x in zip(told, known, strict=True) if said != x), None)
         if wrong is not None:
             at = f"{plane.manoeuvre.across}={wrong['at']}"
-            yield f"plate {plate.text('name')} says otherwise at {at} than where its formula holds"
+            yield f"plate {plate.text('name')} says otherwise at {at} than its formula or its motion"
 
 
 def _plane(data: Fields, plate: Fields) -> Plane:

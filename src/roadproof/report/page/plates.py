@@ -150,7 +150,7 @@ def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, book: Book) 
     """A plate: its formula, some of what it says in words, a drive on each side."""
     fixed = _told(known, x.get("fixed", {}))
     inside: list[Content] = [tag("p", tag("code", x.get("formula")))]
-    inside += [tag("p", x[key]) for key in ("stepped", "reason") if x.get(key)]
+    inside += [tag("p", x[key]) for key in ("stepped", "motion", "reason") if x.get(key)]
     rows = [
         (at["at"], "; ".join(f"{a['near']:g} to {b['near']:g}" for a, b in at["unpreventable"]) or "nowhere")
         for at in x["lines"]

@@ -1,0 +1,137 @@
+"""How hard a driver brakes as a function of time: ramps, and what AEB makes of them; exactly.
+
+It is worked out from times, apart from the formulas of ``driver.spec``.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import isqrt
+
+from roadproof.errors import InputError
+from roadproof.world.pieces import Along
+
+_NONE = Fraction(0)
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """From ``onset`` (s) on braking grows in ``duration`` (s, > 0) to ``full`` (m/s²), and stays."""
+
+    onset: Fraction
+    duration: Fraction
+    full: Fraction
+
+    @property
+    def end(self) -> Fraction:
+        """When it is full."""
+        return self.onset + self.duration
+
+    def at(self, time: Fraction) -> Fraction:
+        """The braking at a time."""
+        return self.full * max(_NONE, min(Fraction(1), (time - self.onset) / self.duration))
+
+
+@dataclass(frozen=True)
+class Aided:
+    """The braking of a driver, and of AEB from its onset on, joined as the option ``cc_aeb`` says.
+
+    AEB brakes at least as hard as the driver, in a ramp of the same duration; ``aeb`` None is no AEB.
+    """
+
+    driver: Ramp
+    aeb: Ramp | None = None
+    joined: str = "none"
+
+    def at(self, time: Fraction) -> Fraction:
+        """The braking at a time, and from it on."""
+        driver, aeb = self.driver, self.aeb
+        if aeb is None:
+            return driver.at(time)
+        if self.joined == "replace":
+            begun = Ramp(min(driver.onset, aeb.onset), aeb.duration, aeb.full)
+            return begun.at(time) if time >= aeb.onset else driver.at(time)
+        if self.joined == "max":
+            return max(driver.at(time), aeb.at(time))
+        return min(driver.at(time) + aeb.at(time), aeb.full)
+
+    @property
+    def knots(self) -> list[Fraction]:
+        """Between neighbours of these times braking is affine, and after the last it is constant."""
+        driver, aeb = self.driver, self.aeb
+        found = {_NONE, driver.onset, driver.end}
+        if aeb is not None:
+            a, b = driver.full, aeb.full
+            found |= {aeb.onset, aeb.end, aeb.onset + aeb.duration * a / b}  # max, on the driver's plateau
+            found |= {
+                (a * driver.onset + b * aeb.end) / (a + b),
+                aeb.onset + aeb.duration * (b - a) / b,
+            }  # add
+            if b > a:
+                found.add((b * aeb.onset - a * driver.onset) / (b - a))  # max, on both ramps
+        return sorted(x for x in found if x >= 0)
+
+    def pieces(self, speed: Fraction) -> list[Along]:
+        """The motion from ``speed`` (m/s) at time 0 until it stands.
+
+        Raises ``InputError`` where it stands while braking grows, at an irrational instant.
+        """
+        made: list[Along] = []
+        for time, end in pairwise([*self.knots, None]):
+            assert time is not None
+            braking, growth = self.at(time), _NONE
+            if end is not None:
+                middle = (time + end) / 2
+                growth = (self.at(middle) - braking) / (middle - time)
+            stands = _stands(speed, braking, growth, None if end is None else end - time)
+            duration = stands if end is None or stands is not None else end - time
+            assert duration is not None, "the last braking is constant, and more than none"
+            if duration > 0:
+                made.append((duration, -braking, -growth))
+            if stands is not None:
+                break
+            speed -= braking * duration + growth * duration**2 / 2
+        return _joined(made)
+
+    def state(self, speed: Fraction, time: Fraction) -> tuple[Fraction, Fraction]:
+        """Speed and braking at a time; none of either once it stands."""
+        for duration, acceleration, jerk in self.pieces(speed):
+            if time < duration:
+                return speed + acceleration * time + jerk * time**2 / 2, -acceleration - jerk * time
+            speed += acceleration * duration + jerk * duration**2 / 2
+            time -= duration
+        return _NONE, _NONE
+
+
+def _stands(
+    speed: Fraction, braking: Fraction, growth: Fraction, duration: Fraction | None
+) -> Fraction | None:
+    """After what time it stands, within ``duration``. Raises ``InputError``."""
+    if duration is not None and speed > braking * duration + growth * duration**2 / 2:
+        return None
+    if speed == 0:
+        return _NONE
+    if growth == 0:
+        return speed / braking
+    square = braking**2 + 2 * growth * speed
+    root = Fraction(isqrt(square.numerator), isqrt(square.denominator))
+    if root**2 != square:
+        raise InputError(
+            f"speed={float(speed):.6g} m/s: from there SV stands while its braking grows, at an instant that "
+            "is no fraction, so no drive can say it exactly; take a higher speed, or another place"
+        )
+    return (root - braking) / growth
+
+
+def _joined(pieces: Sequence[Along]) -> list[Along]:
+    """Pieces that go on as the one before them are part of it."""
+    made: list[Along] = []
+    for duration, acceleration, jerk in pieces:
+        if made:
+            before, begun, growing = made[-1]
+            if jerk == growing and acceleration == begun + growing * before:
+                made[-1] = (before + duration, begun, jerk)
+                continue
+        made.append((duration, acceleration, jerk))
+    return made
