@@ -1,6 +1,7 @@
 """Judged drives on both sides of a boundary: SV follows its model, and touches POV, or never does."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from fractions import Fraction
 from itertools import islice, pairwise
 from math import ceil
@@ -101,6 +102,8 @@ def judged_drive(
         drive,
         overlaps_allowed=True,
     )
+    if also:  # what is about the scenario alone is quickly seen to be false
+        Judged(replace(file, formula=also), specification.library)
     return Judged(file, specification.library)
 
 
