@@ -110,6 +110,8 @@ LENGTHY = (
     "tests/kernel/test_theories.py::test_theories_compile_without_a_warning_and_are_kept",
     "tests/logic/test_show.py::test_text_of_a_formula_elaborates_to_the_formula",
     "tests/mutants/test_faults.py::test_the_choice_follows_from_the_seed",
+    "tests/preventing/test_aeb.py::test_braking_at_another_instant_is_not_followed[aeb-add",
+    "tests/preventing/test_aeb.py::test_braking_at_another_instant_is_not_followed[driver-add",
     "tests/preventing/test_aeb.py::test_much_aeb_against_a_simulation",
     "tests/preventing/test_gradual.py::test_much_is_gained_against_a_simulation",
     "tests/preventing/test_stepping.py::test_many_cut_ins",

@@ -118,8 +118,8 @@ def _stands(
     root = Fraction(isqrt(square.numerator), isqrt(square.denominator))
     if root**2 != square:
         raise InputError(
-            f"speed={float(speed):.6g} m/s: from there SV stands while its braking grows, at an instant that "
-            "is no fraction, so no drive can say it exactly; take a higher speed, or another place"
+            f"speed={float(speed):.6g} m/s: from there a vehicle stands while its braking grows, at an "
+            "instant that is no fraction, so no drive says it exactly; take a higher speed or another place"
         )
     return (root - braking) / growth
 
