@@ -199,11 +199,17 @@ def folder(tmp_path_factory) -> Path:
     return out
 
 
-def test_check_says_what_it_does_not_check(folder):
-    checked = rp.check(folder)
-    assert checked.exit_code == 0
-    assert "that the ends on the lines are the most that SV gains in the motion" in str(checked)
+def test_check_works_the_ends_out_again(folder, tmp_path):
+    assert rp.check(folder).exit_code == 0
     assert "worked out from the motion" in (folder / "plates.csv").read_text("utf-8")
+    out = tmp_path / "forged"
+    copy(folder, out)
+    index = json.loads((out / "index.json").read_text("utf-8"))
+    index["plates"][0]["lines"][-1]["unpreventable"][0][1]["near"] += 1
+    (out / "index.json").write_text(json.dumps(index), "utf-8")
+    checked = rp.check(out)
+    assert checked.exit_code != 0
+    assert "says otherwise at Gx=981/100" in str(checked)
 
 
 @pytest.mark.parametrize("forged", ["motion", "formula"])
