@@ -13,7 +13,7 @@ from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, Poi
 from roadproof.analysis.explore.bracket import Bracket
 from roadproof.analysis.explore.knobs import Knob, Point, stated, with_point
 from roadproof.analysis.explore.measure import Measure
-from roadproof.analysis.explore.never import NEVER, never
+from roadproof.analysis.explore.never import NEVER, never, stages_for
 from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.explore.range import range_of, starting_ranges
 from roadproof.analysis.explore.search import (
@@ -106,33 +106,38 @@ class _Seeking:
         self.say = say
         self.search = with_point(sought.search, sought.knobs, sought.point)
         self.library = self.search.specification.library
+        self.hard = is_cubic_state(self.search.query.formula)
         self.searches = 0
         self.late = False
 
     def run(self) -> Extreme:
         first = self.best_of(self.sought.seeds)
         if first is None:
-            proved = self.proved((), None, QUICK_PROOF)
+            proved = None if self.hard else self.proved((), None, QUICK_PROOF)
             if proved is not None:
                 return self.extreme(None, proved, proved)
             reply = self.look(None, NATURAL_FIRST)
             first = self.best_of(reply.drives)
+            if first is None and self.hard and (proved := self.proved((), None)) is not None:
+                return self.extreme(None, proved, proved)
             if first is None:
                 return self.extreme(None, self.missed((), None, reply), None)
         bracket = Bracket(self.measure.sign, self.sought.precision, first, self.range_end())
-        if first.at[0] * self.measure.sign > 0 and (zero := self.impossible(Fraction(0))) is not None:
+        if (
+            not self.hard
+            and first.at[0] * self.measure.sign > 0
+            and (zero := self.impossible(Fraction(0))) is not None
+        ):
             bracket.miss(zero)
         while self.searches < MOST_SEARCHES and not bracket.narrow and not self.endless(bracket.best):
             value = bracket.next()
-            if is_cubic_state(self.search.query.formula) and (proved := self.impossible(value)) is not None:
-                bracket.miss(proved)
-                continue
             reply = self.look(value)
             found = self.best_of(reply.drives)
             if found is not None and bracket.reached(found, value):
                 bracket.hold(found)
             else:
-                bracket.miss(self.missed((value,), value, reply))
+                proved = self.impossible(value) if self.hard else None
+                bracket.miss(proved or self.missed((value,), value, reply))
             best = float(bracket.best.at[0])
             self.say(f"{self.measure.sense} so far: {best:g}, {self.searches} searches")
         return self.ended(bracket)
@@ -175,7 +180,9 @@ class _Seeking:
     def look(self, value: Fraction | None, stages: tuple[Stage, ...] = PLAIN_FIRST) -> Reply:
         self.searches += 1
         query = with_parts(self.search.query, self.measure.bound(self.search, value))
-        [reply] = self.look_all([SearchTask(replace(self.search, query=query), stages)])
+        [reply] = self.look_all(
+            [SearchTask(replace(self.search, query=query), stages_for(self.search, stages))]
+        )
         self.late |= reply.late
         return reply
 

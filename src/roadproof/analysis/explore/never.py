@@ -1,6 +1,6 @@
 """Formulas about one instant that no engine reads: a proof that at given values there is no drive."""
 
-from roadproof.analysis.explore.search import values_of
+from roadproof.analysis.explore.search import Stage, values_of
 from roadproof.evidence.certificate import Certificate
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
@@ -11,6 +11,12 @@ from roadproof.spec.motion import Assumed, value_texts
 from roadproof.spec.query import Query
 
 NEVER = "proved for all states, with the parameters at their values here"
+
+
+def stages_for(search: Search, stages: tuple[Stage, ...]) -> tuple[Stage, ...]:
+    """``stages`` without the last word of an engine, for formulas that have a proof in place of it."""
+    hard = is_cubic_state(search.query.formula)
+    return tuple(x for x in stages if x != "none") if hard else stages
 
 
 def never(search: Search, query: Query, units: float) -> Certificate | None:

@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, PointFinding, say_nothing
 from roadproof.analysis.explore.knobs import Point, between, with_point
-from roadproof.analysis.explore.never import NEVER, never
+from roadproof.analysis.explore.never import NEVER, never, stages_for
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
     PLAIN_FIRST,
@@ -27,6 +27,7 @@ from roadproof.analysis.explore.search import (
     look,
 )
 from roadproof.effort import Late
+from roadproof.logic.fragment import is_cubic_state
 from roadproof.searching.ask import Search
 from roadproof.searching.impossible import Impossibility, show_impossible
 from roadproof.study.pool import Say
@@ -120,7 +121,9 @@ class Exploring:
         self.lasting = duration_parameters(self.search.query.formula)
 
     def _impossibility(self) -> Impossibility | None:
-        """A proof that there is no drive, whatever the values are."""
+        """A proof that there is no drive, whatever the values are; of some formulas it is sought at each."""
+        if is_cubic_state(self.search.query.formula):
+            return None
         effort = self.search.search_options.effort.of(QUICK_PROOF)
         try:
             return show_impossible(self.search.specification, self.search.query, effort)
@@ -156,17 +159,16 @@ class Exploring:
     def settle(
         self, points: Sequence[Point], stages: tuple[Stage, ...] = NATURAL_FIRST
     ) -> list[PointFinding]:
-        """The answers at ``points``, each by a proof at its values, else by a search of its own."""
-        found = {point: x for point in points if (x := self._never(point)) is not None}
-        left = [point for point in points if point not in found]
-        tasks = [SearchTask(self.at(point), stages) for point in left]
+        """The answers at ``points``, each by a search; of some formulas by a proof where that fails."""
+        tasks = [SearchTask(self.at(point), stages_for(self.search, stages)) for point in points]
         self.searches += len(tasks)
         self.searched += points
-        for point, reply in zip(left, self.look_all(tasks), strict=True):
+        findings: list[PointFinding] = []
+        for point, reply in zip(points, self.look_all(tasks), strict=True):
             self.late |= reply.late
             self.stock.add(reply.drives)
-            found[point] = self.known(point) or self._missed(point, reply)
-        return [found[point] for point in points]
+            findings.append(self.known(point) or self._never(point) or self._missed(point, reply))
+        return findings
 
     def _never(self, point: Point) -> PointFinding | None:
         """A proof that there is no drive at a point, for formulas of which a state says all."""
