@@ -356,6 +356,7 @@ def catalogue(
     tests = read_catalogue(paths, home.specification)
     numbers = home.among(among) or numbers_of(home.specification)
     basis = basis_of(home, effort, timeout, vehicles)
+    kinds = gap_kinds(basis, numbers) if gaps else None
 
     def ask(set_name: str) -> Asked:
         here = replace(basis, specification=home.specification.in_set(set_name), sets=())
@@ -363,7 +364,6 @@ def catalogue(
         return Asked(here.specification, numbers, made, home.all_values())
 
     asked, *others = (ask(name) for name in wanted.sets)
-    kinds = gap_kinds(basis, numbers) if gaps else None
     abstract = tuple(x for x in tests.entries if isinstance(x, Abstract))
     concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
     freedom = Freedom(roles == "any", lanes == "any", start == "any")

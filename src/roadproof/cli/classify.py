@@ -23,6 +23,7 @@ examples:
   roadproof classify --set ext --on highd/data        shares on recordings of yours
   roadproof prove --spec classes/classes.spec --set classes --claims classes/claims.txt
   roadproof witness 'class_4_8_main(SV,POV,L)' --spec classes/classes.spec --set classes --road main-2
+  roadproof classify --among 1-8 --unpreventable careful
 
 A class is a choice of scenarios that hold together on one trace, for the same vehicles and lane, while the
 others do not. Choices that are proved impossible are left out. Classes of SV and POV and of SV, POV1, POV2

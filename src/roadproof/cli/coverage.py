@@ -23,6 +23,7 @@ examples:
   roadproof coverage --set ext --out gaps             the classes of gaps, each with a drive or a proof
   roadproof coverage --set base --jobs 2              what base misses, and which wider set catches it
   roadproof coverage --set ext --on recordings        and how often each class occurs in traffic
+  roadproof coverage --set ext --unpreventable careful   drives no careful driver survives, in no scenario
 
 A gap: initSafe at the start, danger later, and no two-vehicle scenario for any lane and either role. Its
 classes say why: scenario 4, deceleration ahead, would hold but for its component

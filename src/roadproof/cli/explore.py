@@ -25,6 +25,7 @@ examples:
   roadproof explore 1 --least 'v_lon(SV) - v_lon(POV)'       the least value of a measure at the start
   roadproof explore 4 --greatest 's(POV) - s(SV)' --when 'danger(SV,POV)'    at a moment of danger
   roadproof explore --all --vary minDanger=0:30 --out explored
+  roadproof explore 1 --unpreventable careful --vary cc_delay=0.3:1.5    a value of the driver model
   roadproof explore --spec driver 'unpreventable_cutIn_careful(SV,POV)' --vary cc_delay=0.3:1.5
 
 Limits are v_lon, v_lat, a_lon and a_lat, each .min and .max. Where durations change, dt is the coarsest step

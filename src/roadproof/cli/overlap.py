@@ -24,6 +24,7 @@ examples:
   roadproof overlap --lanes any --roles any           each scenario with a lane and roles of its own
   roadproof overlap --start any --among 1-8           one at 0, the other then or later
   roadproof overlap --set base --set ext --among 1-8  scenarios of one set against those of another
+  roadproof overlap --among 1-8 --preventable careful only scenarios that begin so
 
 # held together on a judged drive, . proved impossible for all time (certificate and core).
 Evidence goes to DIR, or with --json FILE alone to FILE-evidence; `roadproof check DIR` checks it.

@@ -25,6 +25,7 @@ examples:
   roadproof witness --all --set base --set extA --set ext --out drives
   roadproof witness 'scenario_8(SV,POV,L) and not scenario_6(SV,POV,L)' --lane L=main-2 --road main-3
   roadproof witness 1 --objective severe --count 3
+  roadproof witness 1 --unpreventable careful         begins with a cut-in that no careful driver survives
   roadproof witness --spec driver 'scenario_1(SV,POV,L) and unpreventable_cutIn_careful(SV,POV)'
 
 A run with --out that was broken off goes on where it was; what is there for the same search stands.
