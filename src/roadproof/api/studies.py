@@ -190,8 +190,6 @@ class Orders(Studied[Ordering, Any]):
 def order(
     among: Among = None,
     using: Definitions | None = None,
-    preventable: str | None = None,
-    unpreventable: str | None = None,
     vehicles: Vehicles = None,
     effort: float = 120.0,
     timeout: float | None = None,
@@ -201,7 +199,7 @@ def order(
     say: Say | None = None,
 ) -> Orders:
     """Which scenarios imply which, in the sets of ``using`` (base, extA and ext). Raises as ``overlap``."""
-    home = restricted(using or load("base", "extA", "ext"), preventable, unpreventable, among)
+    home = using or load("base", "extA", "ext")
     basis = basis_of(home, effort, timeout, vehicles)
     kinds = kinds_of(basis.specification, basis.set_names, home.among(among))
     return Orders.asked(Ordering(basis, kinds), out, jobs, progress, say)

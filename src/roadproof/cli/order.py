@@ -3,12 +3,11 @@
 import argparse
 from pathlib import Path
 
-from roadproof.cli.basis import asking, hand_over, read_definitions, restricting
+from roadproof.cli.basis import asking, hand_over, read_definitions
 from roadproof.cli.numbers import add_effort_options, add_sharing_options, add_working_options
 from roadproof.cli.options import (
     add_json_option,
     add_parameter_option,
-    add_prevention_options,
     add_specification_options,
     chosen_sets,
 )
@@ -32,7 +31,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser, "base, extA, ext", several=True)
     add_parameter_option(parser)
     parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
-    add_prevention_options(parser)
     add_models_option(parser)
     add_effort_options(parser, 120.0, "a drive")
     add_working_options(parser)
@@ -46,6 +44,4 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.api.studies import order
 
     sets = list(dict.fromkeys(chosen_sets(args, "base,extA,ext")))
-    return hand_over(
-        args, order(args.among, read_definitions(args, sets), **restricting(args), **asking(args, args.out))
-    )
+    return hand_over(args, order(args.among, read_definitions(args, sets), **asking(args, args.out)))
