@@ -70,13 +70,16 @@ def test_what_the_clock_cuts_off_is_unknown_on_its_road(monkeypatch):
 
 def test_a_core_costs_no_more_than_is_left(monkeypatch):
     asked = []
-    true_prove = impossible.prove
 
-    def prove(specification, claim, effort):
-        asked.append(effort.units)
-        return true_prove(specification, claim, effort)
+    def heard(prove):
+        def asks(specification, claim, effort):
+            asked.append(effort.units)
+            return prove(specification, claim, effort)
 
-    monkeypatch.setattr(impossible, "prove", prove)
+        return asks
+
+    for name in ("prove", "prove_of_scenarios"):
+        monkeypatch.setattr(impossible, name, heard(getattr(impossible, name)))
     clash = "v_lon(SV) > 3 m/s and F v_lon(POV) > 3 m/s and v_lon(SV) < 2 m/s"
     found = impossible.show_impossible(LIBRARY.select(), read_claim(LIBRARY.select(), clash), Effort(5))
     assert found.told == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
