@@ -3,7 +3,7 @@
 import json
 from functools import cache
 from pathlib import Path
-from typing import TypeAlias, get_args
+from typing import Literal, TypeAlias, get_args
 
 import pytest
 
@@ -216,3 +216,15 @@ def test_without_a_driver_nothing_is_said() -> None:
     assert "prevention" not in found.as_data()
     assert found.supposed == ()
     assert "prevention" not in found.as_data()["options"]
+
+
+def test_what_tests_claim_is_of_scenarios_as_they_are() -> None:
+    """At time 0 nobody comes in yet; the moment at which POV does is one of ``start="any"``."""
+    drive = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives" / "cut-in.json"
+    looked: dict[Literal["fixed", "any"], tuple[str, ...]] = {"fixed": (), "any": ("cut-in",)}
+    for start, tests in looked.items():
+        found = rp.catalogue(drive, among="1", classes=False, start=start, preventable="careful", jobs=1)
+        assert [x.tested for x in found.tested.targets] == [tests]
+        assert not found.tested.faults
+    plain = rp.catalogue(drive, among="1", classes=False, jobs=1)
+    assert [x.tested for x in plain.tested.targets] == [("cut-in",)]

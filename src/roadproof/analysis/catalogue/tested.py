@@ -10,6 +10,7 @@ from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.meaning import Kept, facts_in
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
 from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.preventing.restriction import restriction_of
 from roadproof.spec.scenarios import name_of
 from roadproof.spec.words import called
 from roadproof.verdict import Verdict
@@ -95,15 +96,20 @@ def tested(
 ) -> Tested:
     """All of it. ``words``: each target by name, in words, in order; ``near``: how far tests that say the
     same may begin apart, in m and m/s; ``surveyed``: what is known of each class of gaps by name, None of
-    those that tests show, where gaps are to be tested too.
+    those that tests show, where gaps are to be tested too. What tests claim is of scenarios as they are: it
+    is not looked at where a driver model says how they begin.
     """
     sectors = sectors_of(asked)
     gaps = _gaps(asked, concrete, facts, surveyed)
     known = {*words, *(x.name for x in (*gaps.targets, *gaps.empty))}
+    restricted = restriction_of(asked.specification.options) is not None
+    claimed = (
+        () if restricted else (*_of_concrete(concrete, known, gaps.asked), *_of_abstract(abstract, facts))
+    )
     return Tested(
         tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
         gaps,
-        (*_unreadable(concrete), *_of_concrete(concrete, known, gaps.asked), *_of_abstract(abstract, facts)),
+        (*_unreadable(concrete), *claimed),
         (*_doubts(abstract, facts), *_open_gaps(gaps)),
         (*_same(concrete, near), *_implied(abstract, facts)),
         (*_contradictions(concrete, facts), *_shown_though_empty(gaps)),
