@@ -30,6 +30,16 @@ def at_once(onset: Floats, full: float):
     return lambda time: np.where(time >= onset, full, 0.0)
 
 
+def gated_onset(x, gate: str) -> Floats:
+    """When braking begins behind a gate of a time to collision of 2 s; infinite where it never opens."""
+    with np.errstate(divide="ignore"):
+        opens = np.where(x["dV0"] > 0, x["dx0"] / x["dV0"] - 2, np.inf)
+    seen = WANDER / x["Vy"]
+    if gate == "before_perception":
+        return np.maximum(seen, opens) + EVALUATION + DELAY
+    return np.maximum(seen + EVALUATION, opens) + DELAY
+
+
 def step_cut_in(v, w, gap, lengths, beside, lateral, braking, rate, seconds) -> Outcome:
     """POV at constant speed w comes in at ``lateral``; a collision while the boxes overlap across."""
     arrives = beside / lateral

@@ -121,13 +121,7 @@ def test_another_reading_shows(joined, other):
 def test_aeb_behind_a_gate(joined, gate):
     x, *_ = near_the_boundary(joined, 1_000, 24, {})
     found = labels(CUT_IN, {"it": boundary("cut-in", "careful", cc_aeb=joined, cc_gate=gate)}, x)["it"]
-    with np.errstate(divide="ignore"):
-        opens = np.where(x["dV0"] > 0, x["dx0"] / x["dV0"] - 2, np.inf)
-    seen = stepping.WANDER / x["Vy"]
-    if gate == "before_perception":
-        onset = np.maximum(seen, opens) + stepping.EVALUATION + stepping.DELAY
-    else:
-        onset = np.maximum(seen + stepping.EVALUATION, opens) + stepping.DELAY
+    onset = stepping.gated_onset(x, gate)
     drive = aided(joined, onset, (x["dy0"] + x["width"]) / x["Vy"])
     w, lengths = x["Ve0"] - x["dV0"], np.full(1_000, 8.6)
     outcome = stepping.step_cut_in(x["Ve0"], w, x["dx0"], lengths, x["dy0"], x["Vy"], drive, RATE, 35)

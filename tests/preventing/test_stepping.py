@@ -167,13 +167,7 @@ def test_regulations(model, full):
 def test_gates(gate):
     x = random_cut_ins(3_000, 12)
     found = labels(CUT_IN, {"it": boundary("cut-in", "careful", cc_gate=gate)}, x)["it"]
-    with np.errstate(divide="ignore"):
-        opens = np.where(x["dV0"] > 0, x["dx0"] / x["dV0"] - 2, np.inf)
-    seen = stepping.WANDER / x["Vy"]
-    if gate == "before_perception":
-        onset = np.maximum(seen, opens) + stepping.EVALUATION + stepping.DELAY
-    else:
-        onset = np.maximum(seen + stepping.EVALUATION, opens) + stepping.DELAY
+    onset = stepping.gated_onset(x, gate)
     onset = np.where(np.isfinite(onset), onset, 1e9)
     outcome = stepping.step_cut_in(
         x["Ve0"],

@@ -14,7 +14,7 @@ _OPPOSITE: Mapping[f.Comparison, f.Comparison] = {"<": ">=", "<=": ">", ">": "<=
 def conjuncts(formula: Formula, positive: bool = True) -> Iterator[Formula]:
     """What ``formula`` (else its negation) joins by ``and``, through the names of definitions.
 
-    ``formula`` has no quantifiers: it is bound to a road.
+    What a quantifier or time stands before is one part.
     """
     match formula:
         case f.And(parts) | f.Or(parts) if isinstance(formula, f.And) == positive:

@@ -1,6 +1,5 @@
 """Which model drives where nothing is said: a car, or the first kind that a formula leaves open."""
 
-from collections.abc import Iterator
 from fractions import Fraction
 
 from roadproof.errors import UsageError
@@ -8,6 +7,7 @@ from roadproof.judge.exact import judge
 from roadproof.judge.signals import AbstractSignals
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.logic.begin import conjuncts
 from roadproof.logic.formula import Formula
 from roadproof.logic.own import code_of, vehicles_with_kind
 from roadproof.logic.rewrite import terms_of
@@ -18,7 +18,7 @@ from roadproof.world.vehicle import Vehicle
 
 def usual_model(formula: Formula, vehicle: str) -> Vehicle:
     """The shipped model of the first kind that is not excluded by a part of the conjunction ``formula``."""
-    asked = [part for part in _parts(formula) if _is_about_kind(part, vehicle)]
+    asked = [part for part in conjuncts(formula) if _is_about_kind(part, vehicle)]
     kinds = (kind for kind in KINDS if kind in names_of("vehicles"))
     return load_vehicle(next((k for k in kinds if all(_holds(x, vehicle, k) for x in asked)), KINDS[0]))
 
@@ -30,20 +30,6 @@ def refuse_unknown(formula: Formula, vehicle: str, model: Vehicle) -> None:
             f"vehicle {vehicle}={model.name}: the formula speaks of its kind, and the model does not say it: "
             f'write kind = "{KINDS[1]}" in its file (or {", ".join(x for x in KINDS if x != KINDS[1])})'
         )
-
-
-def _parts(formula: Formula, positive: bool = True) -> Iterator[Formula]:
-    """What ``formula`` (else its negation) joins by and, through the names of definitions."""
-    match formula:
-        case f.And(parts) | f.Or(parts) if isinstance(formula, f.And) == positive:
-            for part in parts:
-                yield from _parts(part, positive)
-        case f.Not(body):
-            yield from _parts(body, not positive)
-        case f.Named(_, _, body):
-            yield from _parts(body, positive)
-        case _:
-            yield formula if positive else f.negation(formula)
 
 
 def _is_about_kind(part: Formula, vehicle: str) -> bool:
