@@ -61,7 +61,7 @@ class Answered:
             "verdict": str(settled.verdict),
             "refuted_by": settled.refuted_by,
             "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
-            "seconds": round(result.seconds, 4),
+            "seconds": result.seconds,
             "reason": result.reason,
             **({"limits": settled.limits.as_json()} if settled.limits is not None else {}),
             "assumptions": list(result.certificate.assumptions) if result.certificate else [],
@@ -166,8 +166,7 @@ class Claims:
             entry["evidence"] = shelf.drive(f"{task.name}-drive.json", settled.drive)
         if entry["evidence"] is None:
             entry["counterexample"] = _counterexample(settled)
-        seconds = round(result.seconds, 4)
-        return {"claim": entry, "reason": result.reason, "seconds": seconds, "asked": self._asked}
+        return {"claim": entry, "reason": result.reason, "seconds": result.seconds, "asked": self._asked}
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answered]:
         said = record["claim"]

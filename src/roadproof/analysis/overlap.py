@@ -5,7 +5,6 @@ group. One pair is solved for each group; its drive is put on roads of the other
 there, and its core is looked up in the others, each of which gets a certificate of its own.
 """
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -16,6 +15,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.placing import placed
 from roadproof.effort import Late
+from roadproof.elapsed import now, since
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.logic.formula import Formula
@@ -123,14 +123,14 @@ class Overlap:
     def settle(self, piece: Group) -> dict[str, PairVerdict]:
         """The seed is solved, and the others are answered with its help."""
         deciding = _Deciding(self.basis, self.meeting)
-        begun = time.monotonic()
+        begun = now()
         first = deciding.answer(piece.seed)
         found: dict[str, PairVerdict] = {}
         for pair in piece.pairs:
             verdict = first if pair == piece.seed else deciding.answer(pair, piece.seed, first)
             a, b = self._ordered(pair)
-            found[name_of(a, b)] = replace(verdict, a=a, b=b, seconds=time.monotonic() - begun)
-            begun = time.monotonic()
+            found[name_of(a, b)] = replace(verdict, a=a, b=b, seconds=since(begun))
+            begun = now()
         return found
 
     def doubt(self, piece: Group, reason: str) -> dict[str, PairVerdict]:
@@ -157,7 +157,7 @@ class Overlap:
             "certificate": shelf.certificate(f"impossible-{name}.json", answer.certificate),
             "drive": shelf.drive(f"drive-{name}.json", answer.drive),
             "reason": answer.reason,
-            "seconds": round(answer.seconds, 3),
+            "seconds": answer.seconds,
         }
         return {"verdict": verdict}
 

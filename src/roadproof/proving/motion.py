@@ -5,13 +5,13 @@ prover as by whoever checks a certificate.
 """
 
 import math
-import time
 from collections import deque
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.effort import Effort
+from roadproof.elapsed import now, since
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import is_atom, up_to_variables
 from roadproof.logic import formula as f
@@ -48,7 +48,7 @@ def prove_of_motions(
 
     PROVED, VACUOUS or UNKNOWN: what refutes is looked for among drives. Raises ``Late``, ``InputError``.
     """
-    begun, meter = time.monotonic(), effort.meter()
+    begun, meter = now(), effort.meter()
     none, *others = stages(specification, under_limits(specification, query, said))
     result = None
     for axioms, units in dict.fromkeys([(none, QUICK), *((x, y) for y in TURNS for x in others)]):
@@ -58,7 +58,7 @@ def prove_of_motions(
         if result.verdict is not Verdict.UNKNOWN or meter.is_out():
             break
     assert result is not None, "something is always tried"
-    return replace(result, seconds=time.monotonic() - begun, work=meter.spent)
+    return replace(result, seconds=since(begun), work=meter.spent)
 
 
 def stages(specification: Specification, query: Query) -> list[tuple[Axiom, ...]]:

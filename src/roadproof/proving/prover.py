@@ -1,12 +1,12 @@
 """One claim, one verdict: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
 
 import math
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.effort import Effort, Meter
+from roadproof.elapsed import now, since
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, goal_of
@@ -82,7 +82,7 @@ def prove(
     instants need be no motion. Raises ``Late`` where the clock cuts it off, ``InputError`` for what nobody
     may assume.
     """
-    begun = time.monotonic()
+    begun = now()
     meter = (effort or Effort()).meter()
     here = values_said(specification, assumed.said)
     demanded = _demanded(specification, query, here)
@@ -99,8 +99,7 @@ def prove(
         certificate: Certificate | None = None,
         countermodel: Countermodel | None = None,
     ) -> Result:
-        seconds = time.monotonic() - begun
-        return Result(verdict, reason, seconds, meter.spent, certificate, countermodel)
+        return Result(verdict, reason, since(begun), meter.spent, certificate, countermodel)
 
     names: dict[Site, str] = {}
     proofs: list[Proof] = []
@@ -116,7 +115,7 @@ def prove(
         fewer = Assumed(assumed.said, needed)
         again = prove(specification, query, meter.effort(), label, scenario, fewer)
         if again.holds:
-            return replace(again, seconds=time.monotonic() - begun, work=meter.spent + again.work)
+            return replace(again, seconds=since(begun), work=meter.spent + again.work)
     try:
         certificate = _certificate(specification, query, assumed, pinned, proofs, names, label, scenario)
     except InputError as error:

@@ -1,12 +1,12 @@
 """A search for drives of values, and its typed outcome."""
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
 from roadproof.effort import Late
+from roadproof.elapsed import now, since
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
 from roadproof.logic.formula import Formula
@@ -79,11 +79,11 @@ class Outcome:
 
 def answer(search: Search) -> Outcome:
     """As ``ask``, but UNKNOWN with that reason where the clock cuts it off."""
-    begun = time.perf_counter()
+    begun = now()
     try:
         return ask(search)
     except Late as late:
-        return undecided(search, str(late), time.perf_counter() - begun)
+        return undecided(search, str(late), since(begun))
 
 
 def undecided(search: Search, reason: str, seconds: float = 0.0) -> Outcome:
@@ -112,7 +112,7 @@ def _called(search: Search) -> str:
 
 
 def _ask(search: Search) -> Outcome:
-    begun = time.perf_counter()
+    begun = now()
     library = search.specification.library
     question = pose(library, search.query, search.setting)
     answers = list(_clearly_different(question, search))
@@ -133,7 +133,7 @@ def _ask(search: Search) -> Outcome:
         "" if impossibility else _reason(answers, search.count),
         judged,
         first.found is not None and first.found.assumptions.natural,
-        {**first.seconds, "all": time.perf_counter() - begun},
+        {**first.seconds, "all": since(begun)},
         first.sizes,
         impossibility,
         None if impossibility else first.limits,

@@ -3,12 +3,12 @@
 What searches for drives is imported when one is looked for: most claims are proved without.
 """
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from roadproof.effort import Effort, Late
+from roadproof.elapsed import now, since
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.judged import Judged
 from roadproof.logic.fragment import is_cubic_state
@@ -69,7 +69,7 @@ def settle(
     ``said``: what is assumed, in words; of motions only a drive refutes. UNKNOWN where the clock cuts the
     search off.
     """
-    begun = time.monotonic()
+    begun = now()
     if is_moving(said):
         return _settle_of_motions(specification, query, said, effort, label, scenario, seek_drive)
     try:
@@ -107,7 +107,7 @@ def _settle_of_motions(
     seek_drive: bool,
 ) -> Settled:
     """A quick proof, else a drive on which the claim is false within the limits said, else a long proof."""
-    begun = time.monotonic()
+    begun = now()
     asked = specification, query, said
     try:
         result = prove_of_motions(*asked, effort.of(min(BEFORE, effort.units)), label, scenario)
@@ -121,9 +121,8 @@ def _settle_of_motions(
     except Late as late:
         return in_doubt(str(late), begun)
     sought = "no drive was found that refutes it" if seek_drive else "no drive that refutes it was looked for"
-    seconds = time.monotonic() - begun
     reason = result.reason if result.holds else f"{result.reason}; {sought}"
-    return Settled(replace(result, reason=reason, seconds=seconds))
+    return Settled(replace(result, reason=reason, seconds=since(begun)))
 
 
 def _drive_against(claim: Query, specification: Specification, effort: Effort) -> Judged | None:
@@ -151,18 +150,18 @@ def settle_bounded(search: "Search") -> Settled:
     """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
     from roadproof.searching.bounded import check_bounded
 
-    begun = time.monotonic()
+    begun = now()
     try:
         found = check_bounded(search)
     except Late as late:
         return replace(in_doubt(str(late), begun), bounded=True)
     if found.verdict is Verdict.PROVED:
         return settle(search.specification, search.query, search.search_options.effort)
-    result = Result(found.verdict, found.reason, time.monotonic() - begun)
+    result = Result(found.verdict, found.reason, since(begun))
     return Settled(result, found.drive, found.limits, bounded=True)
 
 
 def in_doubt(reason: str, begun: float | None = None) -> Settled:
     """What is said of a claim that nothing is known of; ``begun``: since when it was asked."""
-    seconds = 0.0 if begun is None else time.monotonic() - begun
+    seconds = 0.0 if begun is None else since(begun)
     return Settled(Result(Verdict.UNKNOWN, reason, seconds))

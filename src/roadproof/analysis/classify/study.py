@@ -153,7 +153,7 @@ class Classification:
                     "verdict": str(verdict),
                     "reason": reason,
                     "certificate": shelf.certificate(f"proofs/{name}.json", certificate),
-                    "seconds": round(seconds, 3),
+                    "seconds": seconds,
                 }
                 return {"classes": [], "claims": [entry]}
 

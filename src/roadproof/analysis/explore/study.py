@@ -1,7 +1,6 @@
 """Explorations of several formulas: each is a piece with an answer of its own, kept and taken up again."""
 
 import json
-import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -12,6 +11,7 @@ from roadproof.analysis.explore.extreme import Sought, find_extreme, find_extrem
 from roadproof.analysis.explore.record import as_data, read_data
 from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided, values_of
 from roadproof.analysis.explore.values import explore
+from roadproof.elapsed import now, since
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import road_data
 from roadproof.hands import Jobs
@@ -54,7 +54,7 @@ class Exploration:
         return [name for name in self.named if name not in known]
 
     def settle(self, piece: str) -> dict[str, Explored]:
-        begun, asked = time.monotonic(), self.named[piece]
+        begun, asked = now(), self.named[piece]
         explored = explore(asked, self._look_all, self.say) if asked.knobs else Explored()
         extremes: list[Extreme] = []
         for measure in asked.measures:
@@ -63,7 +63,7 @@ class Exploration:
             explored,
             extremes=tuple(extremes),
             searches=explored.searches + sum(x.searches for x in extremes),
-            seconds=time.monotonic() - begun,
+            seconds=since(begun),
             late=explored.late or any(x.late for x in extremes),
         )
         return {piece: explored}
