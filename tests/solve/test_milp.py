@@ -1,7 +1,11 @@
 """Mixed-integer answers against z3's on the same problems, both ways."""
 
+import os
 import random
+import subprocess
+import sys
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
@@ -90,6 +94,22 @@ def test_a_cost_is_made_small():
 def test_another_solver_gives_the_same_answers():
     for problem in small.problems(5, seed=3):
         assert solve_mixed(problem, box_of(problem), solver="scipy").status == small.exactly(problem)
+
+
+def test_solvers_are_silent():
+    """Standard output is the command's: HiGHS 1.16.0 writes its version there, so it is left out.
+
+    In a process of its own, since what C writes is seen when it ends.
+    """
+    code = (
+        "from solve import small; from roadproof.solve.milp import box_of, solve_mixed; "
+        "[solve_mixed(p, box_of(p)) for p in small.problems(3, seed=4)]"
+    )
+    path = os.pathsep.join([str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    run = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True
+    )
+    assert (run.returncode, run.stdout, run.stderr) == (0, "", "")
 
 
 def test_degree_three_is_refused():
