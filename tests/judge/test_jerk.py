@@ -104,13 +104,16 @@ def test_a_square_of_a_cubic_is_a_sextic():
             "Root(polynomial, *ends), multiplicity",
             "Root(polynomial, *ends), 2",
         ),
+        (piecewise, "_steady_sign", "if is_rootless(numerators, low, high) else 0", ""),
+        (piecewise, "_steady_sign", "sign_at(numerators, low)", "-1"),
     ],
 )
 def test_planted_faults_are_noticed(monkeypatch, owner, name, right, wrong):
     later = Drive({"A": motion(-6, 2, 2, pieces=[(1, 1, 0, -2), (2, -1, 0, 4)]), "B": motion(3, 2, 1)})
     cubic = f.Compare(t.Signal("s", "A"), ">=", t.number(-1))
     factors = f.Compare(t.Product((t.Signal("v_lon", "A"), t.Signal("s", "A"))), ">", t.number(0))
-    cases = [(SIX, SMOOTH), (cubic, later), (factors, later), (cubic, SMOOTH)]
+    turning = Drive({"A": motion(1, 0, -1, pieces=[(3, 0, 0, 1)]), "B": motion(3, 2, 1)})
+    cases = [(SIX, SMOOTH), (cubic, later), (factors, later), (cubic, SMOOTH), (factors, turning)]
 
     def noticed():
         forget()

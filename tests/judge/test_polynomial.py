@@ -1,16 +1,21 @@
 """Polynomials of integers over one denominator: values, signs and shifted roots, against plain fractions."""
 
+import random
 from fractions import Fraction
 
 import pytest
+import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from planting import plant
+from roadproof.judge import polynomial as module
 from roadproof.judge.polynomial import (
     ONE,
     ZERO,
     Polynomial,
     add,
+    is_rootless,
     multiply,
     negate,
     polynomial,
@@ -73,3 +78,77 @@ def test_shifted_roots(found: tuple[int, ...], by: Fraction, x: Fraction) -> Non
 )
 def test_primitive(found: tuple[int, ...], plain: tuple[int, ...]) -> None:
     assert primitive(found) == plain
+
+
+ends = st.tuples(fractions, st.one_of(st.none(), st.integers(1, 12).map(lambda n: Fraction(n, 4)))).map(
+    lambda pair: (pair[0], None if pair[1] is None else pair[0] + pair[1])
+)
+longer = st.lists(st.integers(-9, 9), min_size=2, max_size=8).filter(lambda x: x[-1] != 0).map(tuple)
+
+
+def roots_within(found: tuple[int, ...], low: Fraction, high: Fraction | None) -> int:
+    p = sympy.Poly(list(reversed(found)), sympy.Symbol("t"))
+    return int(p.count_roots(sympy.Rational(low), None if high is None else sympy.Rational(high)))
+
+
+@settings(max_examples=600, deadline=None, derandomize=True)
+@given(longer, ends)
+def test_what_is_called_rootless_has_no_root(found: tuple[int, ...], pair: tuple[Fraction, None]) -> None:
+    assert not (is_rootless(found, *pair) and roots_within(found, *pair))
+
+
+def test_most_of_what_has_no_root_is_seen() -> None:
+    dice = random.Random(5)
+    rootless = seen = 0
+    for _ in range(400):
+        found = (*(dice.randint(-9, 9) for _ in range(6)), 1)
+        low = Fraction(dice.randint(-8, 8), 4)
+        high = low + Fraction(1, 2)
+        rootless += not roots_within(found, low, high)
+        seen += is_rootless(found, low, high)
+    assert 0.9 * rootless < seen <= rootless < 400
+
+
+@pytest.mark.parametrize(
+    ("found", "low", "high"),
+    [
+        ((0, 1), 0, 1),
+        ((-1, 1), 0, 1),
+        ((-2, 0, 1), 1, 2),
+        ((0, 0, 1), 0, None),
+        ((1, -1), 0, None),
+        ((), 0, 1),
+    ],
+)
+def test_a_root_at_an_end_or_within_is_not_overlooked(found, low, high) -> None:
+    assert not is_rootless(found, Fraction(low), None if high is None else Fraction(high))
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("(at_low, scale), (scale,)", "(at_low, scale), (1,)"),
+        ("(scale, scale)", "(scale,)"),
+        ("or not found[0] or not found[-1]", "or not found[0]"),
+        ("or not found[0] or not found[-1]", "or not found[-1]"),
+        ("all(x >= 0 for x in found)", "found[-1] > 0"),
+        ("all(x <= 0 for x in found)", "found[-1] < 0"),
+        ("power = _times(power, bottom)", "pass"),
+    ],
+)
+def test_faults_in_the_rule_are_noticed(monkeypatch, right: str, wrong: str) -> None:
+    dice = random.Random(6)
+    cases = []
+    for _ in range(400):
+        found = (*(dice.randint(-3, 3) for _ in range(4)), dice.choice((-1, 1)))
+        low = Fraction(dice.randint(-4, 4), dice.choice((1, 2, 3)))
+        high = None if dice.random() < 0.4 else low + Fraction(dice.randint(1, 4), dice.choice((1, 2, 3)))
+        cases.append((found, low, high))
+    has_root = [roots_within(*case) > 0 for case in cases]
+
+    def noticed() -> bool:
+        return any(module.is_rootless(*case) and there for case, there in zip(cases, has_root, strict=True))
+
+    assert not noticed()
+    plant(monkeypatch, module, "is_rootless", right, wrong)
+    assert noticed()

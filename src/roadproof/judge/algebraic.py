@@ -46,6 +46,7 @@ class Root:
 
 
 Point: TypeAlias = Fraction | Root
+CLOSED_FORM = 2  # the roots of polynomials up to this degree are written down, those of others are isolated
 
 
 def compare(left: Point, right: Point) -> int:

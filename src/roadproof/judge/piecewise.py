@@ -10,8 +10,8 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import TypeAlias
 
-from roadproof.judge.algebraic import Point, real_roots
-from roadproof.judge.polynomial import Polynomial, add, negate
+from roadproof.judge.algebraic import CLOSED_FORM, Point, Root, real_roots
+from roadproof.judge.polynomial import Polynomial, add, is_rootless, negate, sign_at
 from roadproof.judge.truth import START, Cut, TruthSet, from_values
 
 # Ascending (start, polynomial); the first start is 0.
@@ -71,6 +71,9 @@ def _chosen(left: Pieces, right: Pieces, sign: int) -> Pieces:
 
 def _signs(p: Polynomial, start: Point, end: Point | None) -> list[tuple[Point, int, int]]:
     """(point, sign at it, sign after it) at ``start`` and at every root in (start, end)."""
+    steady = _steady_sign(p.numerators, start, end)
+    if steady:
+        return [(start, steady, steady)]
     before, changes = _sign_changes(p.numerators)
     at = after = before
     found: list[tuple[Point, int, int]] = []
@@ -82,6 +85,18 @@ def _signs(p: Polynomial, start: Point, end: Point | None) -> list[tuple[Point, 
         else:
             at, after = (0 if root == start else following), following
     return [(start, at, after), *found]
+
+
+def _steady_sign(numerators: tuple[int, ...], start: Point, end: Point | None) -> int:
+    """The sign on all of [start, end] where it is quickly seen that there is one, else 0.
+
+    Most pieces have no root; to factor their polynomials would cost a hundred times as much.
+    """
+    if len(numerators) - 1 <= CLOSED_FORM:
+        return 0
+    low = start.low if isinstance(start, Root) else start
+    high = end.high if isinstance(end, Root) else end
+    return sign_at(numerators, low) if is_rootless(numerators, low, high) else 0
 
 
 @lru_cache(maxsize=8192)

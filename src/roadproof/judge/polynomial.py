@@ -3,6 +3,7 @@
 One denominator keeps numbers small and arithmetic quick: each operation reduces once.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb, gcd, lcm
@@ -47,11 +48,7 @@ def multiply(left: Polynomial, right: Polynomial) -> Polynomial:
     """``left * right``."""
     if not left.numerators or not right.numerators:
         return ZERO
-    product = [0] * (len(left.numerators) + len(right.numerators) - 1)
-    for i, x in enumerate(left.numerators):
-        for j, y in enumerate(right.numerators):
-            product[i + j] += x * y
-    return _reduced(product, left.denominator * right.denominator)
+    return _reduced(_times(left.numerators, right.numerators), left.denominator * right.denominator)
 
 
 def negate(p: Polynomial) -> Polynomial:
@@ -91,6 +88,48 @@ def sign_at(numerators: tuple[int, ...], x: Fraction) -> int:
         value = value * top + n * scale
         scale *= bottom
     return (value > 0) - (value < 0)
+
+
+def is_rootless(numerators: tuple[int, ...], low: Fraction, high: Fraction | None) -> bool:
+    """Whether Descartes' rule of signs shows that there is no root in [low, high], low < high.
+
+    ``high`` None: in [low, ∞). True is a proof; False only says that the rule does not tell. With
+    t = (low + high·x)/(1 + x), x >= 0 is the interval, and a polynomial in x whose coefficients have
+    one sign, the first and the last not 0, has no root there (Collins and Akritas, SYMSAC 1976).
+
+    >>> is_rootless((-2, 0, 1), Fraction(0), Fraction(1)), is_rootless((-2, 0, 1), Fraction(1), Fraction(2))
+    (True, False)
+    """
+    scale = lcm(low.denominator, high.denominator if high is not None else 1)
+    at_low = low.numerator * (scale // low.denominator)
+    top: tuple[int, ...]
+    bottom: tuple[int, ...]
+    if high is None:
+        top, bottom = (at_low, scale), (scale,)
+    else:
+        top, bottom = (at_low, high.numerator * (scale // high.denominator)), (scale, scale)
+    # Σ n·topⁱ·bottom^(degree - i), by Horner's rule
+    found: list[int] = []
+    power: list[int] = [1]
+    for n in reversed(numerators):
+        found = _times(found, top)
+        found += [0] * (len(power) - len(found))
+        for i, x in enumerate(power):
+            found[i] += n * x
+        power = _times(power, bottom)
+    if not found or not found[0] or not found[-1]:
+        return False
+    return all(x >= 0 for x in found) if found[0] > 0 else all(x <= 0 for x in found)
+
+
+def _times(left: Sequence[int], right: Sequence[int]) -> list[int]:
+    if not left:
+        return []
+    product = [0] * (len(left) + len(right) - 1)
+    for i, x in enumerate(left):
+        for j, y in enumerate(right):
+            product[i + j] += x * y
+    return product
 
 
 def _reduced(numerators: list[int], denominator: int) -> Polynomial:

@@ -76,12 +76,14 @@ def _from_starts(
 ) -> Attempt:
     """A search from one sampled start after the other; UNKNOWN where none of them gives a drive.
 
-    The starts of all assignments of lanes take turns, so that none has to wait for all of another.
+    The starts of all assignments of lanes take turns, so that none has to wait for all of another. There
+    are no more of them than units of work, but one for each assignment.
     """
     meter = search_options.effort.meter()
     begin("encode", "starts in place of conditions that no engine reads")
-    each = meter.limit / ((STARTS if any(parts) else 1) * len(parts))
-    found = [starts(question, lanes, x, STARTS) for lanes, x in zip(question.lanes, parts, strict=True)]
+    most = max(1, min(STARTS, int(min(meter.limit, 1e6) / len(parts))))
+    each = meter.limit / ((most if any(parts) else 1) * len(parts))
+    found = [starts(question, lanes, x, most) for lanes, x in zip(question.lanes, parts, strict=True)]
     turns = (start for same in zip_longest(*found) for start in same if start is not None)
     tried = 0
     for start in turns:

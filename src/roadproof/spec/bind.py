@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -41,8 +42,16 @@ def bind(formula: Formula, road: Road, lanes: Mapping[str, str], values: Mapping
     result has no ``Some``, ``Every``, ``Occupies`` or ``Parameter``. Raises ``InputError`` for a
     lane that the road does not have or that ``lanes`` does not name, and for a number without value.
     """
+    return _bound(formula, road, tuple(sorted(lanes.items())), tuple(sorted(values.items())))
+
+
+# A search asks for the same formula again and again: for its start, its engines and the judge.
+@lru_cache(maxsize=32)
+def _bound(
+    formula: Formula, road: Road, lanes: tuple[tuple[str, str], ...], values: tuple[tuple[str, Fraction], ...]
+) -> Formula:
     refuse_variables(formula)
-    return with_values(_Grounding(road, lanes).visit(formula, {}), values)
+    return with_values(_Grounding(road, dict(lanes)).visit(formula, {}), dict(values))
 
 
 def refuse_variables(formula: Formula) -> None:
