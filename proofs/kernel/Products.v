@@ -11,8 +11,20 @@ From Roadproof Require Import Meaning Tableau.
 Import ListNotations.
 Open Scope R_scope.
 
+(* Numbers are reduced at each step: denominators of sums would else grow with each summand. *)
+Definition plus_q (x y : Q) : Q := Qred (x + y).
+Definition minus_q (x y : Q) : Q := Qred (x - y).
+Definition times_q (x y : Q) : Q := Qred (x * y).
+Lemma Q2R_red x : Q2R (Qred x) = Q2R x. Proof. apply Qeq_eqR, Qred_correct. Qed.
+Lemma reduced_q :
+  SORaddon 0 1 Rplus Rmult Rminus Ropp (@eq R) Rle 0%Q 1%Q plus_q times_q minus_q Qopp Qeq_bool Qle_bool Q2R N.to_nat pow.
+Proof.
+  pose proof QSORaddon as [[Z O P S M N E] power unequal below]. constructor; try assumption.
+  constructor; try assumption; intros; unfold plus_q, minus_q, times_q; rewrite Q2R_red; auto.
+Qed.
+
 Definition poly := PExpr Q.
-Definition normal : poly -> Pol Q := norm 0%Q 1%Q Qplus Qmult Qminus Qopp Qeq_bool.
+Definition normal : poly -> Pol Q := norm 0%Q 1%Q plus_q times_q minus_q Qopp Qeq_bool.
 Definition constraint := NFormula Q.
 Definition above (p : poly) : constraint := (normal p, Strict).
 Definition at_least (p : poly) : constraint := (normal p, NonStrict).
@@ -102,10 +114,12 @@ Definition plain (f : formula) : formula :=
   end.
 
 Definition fact := (bool * formula)%type.
-Definition refutes (C : list constraint) (c : constraint) (w : Psatz Q) : bool := RWeakChecker (c :: C) w.
+Definition contradicts : list constraint -> Psatz Q -> bool :=
+  check_normalised_formulas 0%Q 1%Q plus_q times_q Qeq_bool Qle_bool.
+Definition refutes (C : list constraint) (c : constraint) (w : Psatz Q) : bool := contradicts (c :: C) w.
 Fixpoint check (T : table) (G : list fact) (C : list constraint) (tr : reason) : bool :=
   match tr with
-  | Absurd w => RWeakChecker C w
+  | Absurd w => contradicts C w
   | Untrue i => match nth_error G i with Some (b, Truth b') => xorb b b' | _ => false end
   | Opposed i j =>
       match nth_error G i, nth_error G j with Some (true, f), Some (false, g) => same f g | _, _ => false end
@@ -169,16 +183,16 @@ Section Sound.
   Definition keeps (C : list constraint) : Prop := forall c, In c C -> Qeval_nformula env c.
 
   Lemma of_normal p : of p = eval_pol Rplus Rmult Q2R env (normal p).
-  Proof. exact (eval_pol_norm Rsor QSORaddon env p). Qed.
+  Proof. exact (eval_pol_norm Rsor reduced_q env p). Qed.
   Lemma above_means p : Qeval_nformula env (above p) <-> 0 < of p.
   Proof. rewrite of_normal. reflexivity. Qed.
   Lemma at_least_means p : Qeval_nformula env (at_least p) <-> 0 <= of p.
   Proof. rewrite of_normal. reflexivity. Qed.
   Lemma zero_means p : Qeval_nformula env (zero p) <-> of p = 0.
   Proof. rewrite of_normal. reflexivity. Qed.
-  Lemma absurd C w : keeps C -> RWeakChecker C w = true -> False.
+  Lemma absurd C w : keeps C -> contradicts C w = true -> False.
   Proof.
-    intros H K. pose proof (RWeakChecker_sound C w K env) as S. apply make_conj_impl in S; [exact S|].
+    intros H K. pose proof (checker_nf_sound Rsor reduced_q C w K env) as S. apply make_conj_impl in S; [exact S|].
     clear K S. induction C as [|c C IH]; [exact I|]. apply make_conj_cons. split.
     - apply H. left. reflexivity.
     - apply IH. intros d D. apply H. right. exact D.

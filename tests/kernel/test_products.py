@@ -7,7 +7,9 @@ import pytest
 
 import roadproof as rp
 from kernel.needs import needs_coq
+from planting import plant
 from roadproof.evidence.certificate import read_certificate
+from roadproof.kernel import cone, source
 from roadproof.kernel.accept import prepare
 from roadproof.kernel.coq import ready
 from roadproof.kernel.instant import reason
@@ -20,6 +22,7 @@ from roadproof.spec.library import bundled_library
 
 CLAIMS = """
 given x, y: m: 2*x*y <= x^2 + y^2
+given x, y: unitless: x >= 0.3*y + 0.7 and y >= x/7 - 0.1 and x >= 0 -> (x - 0.3*y)*(7.1*y - x + 0.71) >= 0
 given x, y, z: m: x*y + y*z + z*x <= x^2 + y^2 + z^2
 given u, v: m/s: 0 m/s <= u and u <= v and b_min <= b_max -> u^2/(2*b_max) <= v^2/(2*b_min)
 given v: m/s; t: s: 0 s <= t and 0 m/s <= v -> v*t - b_max*t^2/2 <= v^2/(2*b_max)
@@ -43,6 +46,45 @@ def test_nonlinear_claims_of_users_are_accepted_by_products_alone_and_who_is_not
         text = prepare("one", answer.settled.result.certificate, found.study.library).module.text
         assert text.count("some_instant") == tactics
         assert text.count("Products.settled") >= 1 - tactics
+
+
+FRACTIONS = CLAIMS[1]
+
+
+def test_multipliers_are_whole_numbers():
+    """Coq multiplies fractions much more slowly; only what makes a given constraint whole may be one."""
+    texts = [prepare("one", _proved(claim), bundled_library()).module.text for claim in CLAIMS[:4]]
+    text = " ".join(" ".join(texts).split())
+    assert set(re.findall(r"\(number_ \d+ (\d+)\)(?! \(given_)", text)) == {"1"}
+    assert len(set(re.findall(r"\(number_ \d+ \d+\) \(given_", text))) > 3
+
+
+@needs_coq
+@pytest.mark.parametrize(
+    ("right", "wrong"), [("q / prod(", "q * prod("), ("len(self.scales) - 1 - place", "place")]
+)
+def test_sums_that_are_written_wrongly_are_not_accepted(monkeypatch, right, wrong):
+    name = "written" if "prod" in right else "_given"
+    plant(monkeypatch, cone.Sum, name, right, wrong)
+    found = rp.prove(FRACTIONS, kernel="coq", drive=False, jobs=1)
+    (entry,) = found.as_data()["verdicts"]
+    assert entry["kernel"]["says"] in ("refused", "unknown (lemma 1)")
+
+
+def test_of_a_large_fact_without_a_reason_the_tactics_are_not_asked(monkeypatch):
+    found = rp.prove(NOT_FOUND, drive=False, jobs=1)
+    certificate = found.answers[0].settled.result.certificate
+    assert "some_instant" in prepare("one", certificate, found.study.library).module.text
+    monkeypatch.setattr(source, "MOST_COMPARISONS", 1)
+    prepared = prepare("one", certificate, found.study.library)
+    assert prepared.module is None
+    assert str(prepared.refusal) == "unknown (lemma 1)"
+    assert "more than 1 comparisons: Coq's own tactics are not asked" in prepared.refusal.reason
+    assert prepare("one", _proved(CLAIMS[0]), found.study.library).module is not None
+
+
+def _proved(claim):
+    return rp.prove(claim, drive=False, jobs=1).answers[0].settled.result.certificate
 
 
 def module_of(name):

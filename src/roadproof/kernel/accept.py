@@ -15,7 +15,7 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.kernel.branch import NotFoundError
 from roadproof.kernel.coq import Coq, Ran
 from roadproof.kernel.search import find
-from roadproof.kernel.source import Module, file, module
+from roadproof.kernel.source import Module, UnreasonedError, file, module
 from roadproof.kernel.statement import Statement, state
 from roadproof.kernel.tableau import Tableau, lines, read_lines
 from roadproof.spec.library import Library
@@ -104,6 +104,8 @@ def prepare(name: str, certificate: Certificate, library: Library) -> Prepared:
         return Prepared(None, 0, Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
     try:
         return Prepared(module(name, statement, tableau), statement.assumed)
+    except UnreasonedError as error:
+        return Prepared(None, 0, Ruling(Word.UNKNOWN, str(error), error.number))
     except RoadproofError as error:
         return Prepared(None, 0, Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
 

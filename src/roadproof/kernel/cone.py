@@ -5,10 +5,11 @@ Products of a few constraints, squares, and equations times monomials are the co
 there, and their multipliers are computed exactly. Not trusted: Coq adds the products up again.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations, combinations_with_replacement, islice
+from math import gcd, lcm, prod
 from typing import Literal, TypeAlias
 
 from roadproof.kernel.polynomials import Monomial, Polynomial, constant, coq, times
@@ -31,32 +32,54 @@ class Constraint:
 class _Column:
     """A product, ``strict`` where it is above 0, ``free`` where it is 0 and may be subtracted.
 
-    ``written``: the product with a multiplier, for Coq; given constraints by their places.
+    ``places``: of which constraints. ``written``: with a multiplier, for Coq; constraints as they are told.
     """
 
     polynomial: Polynomial
     strict: bool
     free: bool
+    places: tuple[int, ...]
     written: Callable[[Fraction, Callable[[int], str]], str]
 
 
 # Constraints by their places, their product, and whether it is above 0.
 _Product: TypeAlias = tuple[tuple[int, ...], Polynomial, bool]
+_Parts: TypeAlias = tuple[tuple[_Column, Fraction], ...]
 
 
 @dataclass(frozen=True)
 class Sum:
-    """A sum of products that is absurd."""
+    """A sum of products that is absurd; ``scales`` make the coefficients of each constraint whole."""
 
-    parts: tuple[tuple[_Column, Fraction], ...]
+    parts: _Parts
+    scales: tuple[Fraction, ...]
 
-    def written(self, count: int) -> str:
-        """For Coq, where the last of ``count`` constraints comes first."""
-        shown = [x.written(q, lambda place: f"(given_ {count - 1 - place})") for x, q in self.parts]
+    def written(self) -> str:
+        """For Coq, in whole numbers, which it adds and multiplies much faster than others.
+
+        The last constraint is number 0 there.
+        """
+        multipliers = [q / prod(self.scales[place] for place in x.places) for x, q in self.parts]
+        whole = _whole(multipliers)
+        shown = [x.written(q * whole, self._given) for (x, _), q in zip(self.parts, multipliers, strict=True)]
         found = shown[-1]
         for part in reversed(shown[:-1]):
             found = f"(sum_ {part} {found})"
         return found
+
+    def _given(self, place: int) -> str:
+        told = f"(given_ {len(self.scales) - 1 - place})"
+        return told if self.scales[place] == 1 else f"(product_ {_number(self.scales[place])} {told})"
+
+
+def _whole(numbers: Iterable[Fraction]) -> Fraction:
+    """What makes them whole numbers without a common factor; 1 where there are none but 0."""
+    found = [q for q in numbers if q]
+    return Fraction(lcm(*(q.denominator for q in found)), gcd(*(q.numerator for q in found)) or 1)
+
+
+def _number(value: Fraction) -> str:
+    return f"(number_ {value.numerator} {value.denominator})"
 
 
 def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | None, int]:
@@ -67,13 +90,15 @@ def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | 
     if len(columns) > MOST_COLUMNS:
         return None, len(columns)
     try:
-        return _solved(columns), len(columns)
+        parts = _solved(columns)
     except OverflowError:  # a number that no float has
         return None, len(columns)
+    scales = tuple(_whole(x.polynomial.parts.values()) for x in constraints)
+    return Sum(parts, scales) if parts is not None else None, len(columns)
 
 
 def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[_Column]:
-    yield _Column(constant(Fraction(1)), True, False, lambda q, _: f"(number_ {q.numerator} {q.denominator})")
+    yield _Column(constant(Fraction(1)), True, False, (), lambda q, _: _number(q))
     signed = [(place, x) for place, x in enumerate(constraints) if x.kind != "zero"]
     made: list[_Product] = [((), constant(Fraction(1)), True)]
     for _ in range(level):
@@ -106,26 +131,26 @@ def _product(made: _Product) -> _Column:
     places, polynomial, strict = made
 
     def written(q: Fraction, given: Callable[[int], str]) -> str:
-        found = f"(number_ {q.numerator} {q.denominator})"
-        for place in places:
+        found = given(places[0])
+        for place in places[1:]:
             found = f"(product_ {found} {given(place)})"
-        return found
+        return f"(product_ {_number(q)} {found})"
 
-    return _Column(polynomial, strict, False, written)
+    return _Column(polynomial, strict, False, places, written)
 
 
 def _equation(place: int, product: Polynomial, factor: Monomial) -> _Column:
     def written(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(times_ {coq(Polynomial({factor: q}))} {given(place)})"
 
-    return _Column(product, False, True, written)
+    return _Column(product, False, True, (place,), written)
 
 
 def _square(root: Polynomial) -> _Column:
     def written(q: Fraction, given: Callable[[int], str]) -> str:
-        return f"(product_ (number_ {q.numerator} {q.denominator}) (square_ {coq(root)}))"
+        return f"(product_ {_number(q)} (square_ {coq(root)}))"
 
-    return _Column(root * root, False, False, written)
+    return _Column(root * root, False, False, (), written)
 
 
 def _monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
@@ -138,7 +163,7 @@ def _monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
 # --- multipliers ---------------------------------------------------------------------------------
 
 
-def _solved(columns: Sequence[_Column]) -> Sum | None:
+def _solved(columns: Sequence[_Column]) -> _Parts | None:
     """Multipliers whose sum is 0, those of what is above 0 adding up to 1."""
     from scipy.optimize import linprog
     from scipy.sparse import csr_array
@@ -165,7 +190,7 @@ def _solved(columns: Sequence[_Column]) -> Sum | None:
     return _exactly(used)
 
 
-def _exactly(used: Sequence[_Column]) -> Sum | None:
+def _exactly(used: Sequence[_Column]) -> _Parts | None:
     """The multipliers of these columns in rationals; None where they are not what floats said."""
     rows: dict[Monomial | None, dict[int, Fraction]] = {None: {}}
     for place, x in enumerate(used):
@@ -180,7 +205,7 @@ def _exactly(used: Sequence[_Column]) -> Sum | None:
     parts = [(x, solved.get(place, Fraction(0))) for place, x in enumerate(used)]
     if any(q < 0 and not x.free for x, q in parts):
         return None
-    return Sum(tuple((x, q) for x, q in parts if q))
+    return tuple((x, q) for x, q in parts if q)
 
 
 def _eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Fraction] | None:

@@ -121,7 +121,7 @@ class _Search:
         for level in levels:
             found = self._contradiction(state.constraints, level)
             if found is not None:
-                return f"(Absurd {found.written(len(state.constraints))})"
+                return f"(Absurd {found.written()})"
         return None
 
     def _contradiction(self, constraints: Sequence[Constraint], level: int) -> Sum | None:
@@ -225,7 +225,7 @@ class _Search:
                     new = Constraint("zero", state.table[x] * below - above)
                     inside = self._prove(replace(state, divided=state.divided | {x}).constrained(new))
                     words = f"{self._term(x.numerator)} {self._term(x.denominator)} {str(up).lower()}"
-                    return f"(Over {words} {shown.written(len(asked))} {inside})"
+                    return f"(Over {words} {shown.written()} {inside})"
         return None
 
     def _extremum(self, state: _State) -> str | None:

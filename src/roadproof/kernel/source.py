@@ -4,15 +4,17 @@ import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from roadproof.kernel.instant import reason
+from roadproof.errors import RoadproofError
+from roadproof.kernel.instant import Reason, reason
 from roadproof.kernel.names import comment, literal
+from roadproof.kernel.plain import comparisons
 from roadproof.kernel.printer import CLOSE, Printer
 from roadproof.kernel.statement import Statement
 from roadproof.kernel.tableau import Tableau, coq_tree
-from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 
 WIDTH = 110
+MOST_COMPARISONS = 8  # of a fact that Coq's own tactics are asked about; with more they do not end
 HEAD = """\
 From Coq Require Import QArith String List.
 From Roadproof Require Import Meaning Text Linear Tableau Products Named.
@@ -23,6 +25,17 @@ Open Scope nat_scope.
 Open Scope term_scope.
 Open Scope formula_scope.
 """
+
+
+class UnreasonedError(RoadproofError):
+    """A fact about one instant has no reason, and is too large for Coq's own tactics; ``number`` from 1."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(
+            f"lemma {number}, a fact about one instant, has no reason that was found, and more than "
+            f"{MOST_COMPARISONS} comparisons: Coq's own tactics are not asked"
+        )
+        self.number = number
 
 
 @dataclass(frozen=True)
@@ -40,7 +53,10 @@ class Module:
 
 
 def module(name: str, statement: Statement, tableau: Tableau) -> Module:
-    """The module that proves a statement. Raises ``InputError`` for what is not printed."""
+    """The module that proves a statement.
+
+    Raises ``InputError`` for what is not printed, and ``UnreasonedError``.
+    """
     out: list[str] = []
     printer = Printer(statement.formals)
     claim = printer.formula(statement.formula)
@@ -62,7 +78,10 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     for (lemma, _), word, proof, fact in zip(statement.lemmas, words, proofs, facts, strict=True):
         lemmas.append(len(out) + 1)
         out += wrapped(f"Definition {word} : formula := {fact}.")
-        out += _proved(printer, statement, lemma, word, proof)
+        found = reason(lemma, statement.bounds, printer.term)
+        if found is None and len(set(comparisons(lemma))) > MOST_COMPARISONS:
+            raise UnreasonedError(len(lemmas))
+        out += _proved(printer, found, word, proof)
     held = "Forall_nil _"
     for proof in reversed(proofs):
         held = f"Forall_cons _ {proof} ({held})"
@@ -82,10 +101,9 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     return Module(name, "\n".join(out) + "\n", tuple(lemmas), theorem)
 
 
-def _proved(printer: Printer, statement: Statement, fact: Formula, word: str, proof: str) -> Iterator[str]:
-    """A fact about one instant with its proof: by a reason that is found, else by what Coq's tactics find."""
+def _proved(printer: Printer, found: Reason | None, word: str, proof: str) -> Iterator[str]:
+    """A fact about one instant with its proof: by its reason, else by what Coq's tactics find."""
     yield f"Lemma {proof} : Roadproof.Meaning.valid_always bounds {word}."
-    found = reason(fact, statement.bounds, printer.term)
     if found is None:
         yield "Proof. some_instant. Qed."
         return
