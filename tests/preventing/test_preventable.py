@@ -202,6 +202,20 @@ def test_another_driver_spec_beside_it_is_told(folder, tmp_path):
     assert "is not the file of that name that comes with roadproof" in str(checked)
 
 
+def test_what_is_said_to_have_no_say_is_checked(folder, tmp_path):
+    index = json.loads((folder / "index.json").read_text("utf-8"))
+    assert index["idle"] == []
+    copy(folder, tmp_path / "forged")
+    (tmp_path / "forged" / "index.json").write_text(json.dumps(index | {"idle": ["cc_delay=1"]}), "utf-8")
+    checked = rp.check(tmp_path / "forged")
+    assert checked.exit_code != 0
+    assert "what no boundary depends on is nothing that was chosen" in str(checked)
+    copy(folder, tmp_path / "before")
+    del index["idle"]
+    (tmp_path / "before" / "index.json").write_text(json.dumps(index), "utf-8")
+    assert rp.check(tmp_path / "before").exit_code == 0
+
+
 def test_a_line_that_is_not_where_the_formula_holds_is_told(folder, tmp_path):
     index = json.loads((folder / "index.json").read_text("utf-8"))
     for number, change in enumerate((_moved, _without_a_line, _other_row)):
@@ -304,3 +318,51 @@ def test_no_two_plates_of_a_model_are_drawn_over_each_other(monkeypatch):
     report.draw_sheet(found.study, found.plates)
     assert sorted(name for names in drawn for name in names) == sorted(found.study.plates)
     assert [len(names) for names in drawn] == [2] * 8
+
+
+@pytest.mark.parametrize(
+    ("manoeuvre", "models", "options", "parameters", "told"),
+    [
+        ("deceleration", "careful", {"cc_aeb": "max"}, {}, ["cc_aeb=max"]),
+        ("deceleration", "careful", {"cc_threshold": "hard"}, {"cc_delay": 1}, []),
+        ("cut-in", "careful", {"cc_aeb": "max"}, {"aeb_braking": 9}, []),
+        (
+            "cut-in",
+            "careful",
+            {"cc_threshold": "hard"},
+            {"aeb_braking": 9},
+            ["cc_threshold=hard", "aeb_braking=9"],
+        ),
+        ("cut-in", "r157", {}, {"cc_delay": 1}, ["cc_delay=1"]),
+        ("cut-in", "r157,careful", {}, {"cc_delay": 1}, []),
+        (
+            "cut-in",
+            "fsm",
+            {"cc_perception": "overlap"},
+            {"cc_delay": 1},
+            ["cc_perception=overlap", "cc_delay=1"],
+        ),
+        ("cut-in", "careful", {"lateral_sign": "literal"}, {"minSafe": "0.6 s"}, ["lateral_sign=literal"]),
+    ],
+)
+def test_what_is_chosen_and_has_no_say_is_told(manoeuvre, models, options, parameters, told, capsys):
+    words = [
+        "preventable",
+        manoeuvre,
+        "--model",
+        models,
+        "--lines",
+        "2",
+        "--no-lemmas",
+        "--jobs",
+        "1",
+        "--quiet",
+    ]
+    words += ["--at", "Ve0=60 km/h", *(["--at", "Vy=1"] if manoeuvre == "cut-in" else [])]
+    words += [x for name, value in options.items() for x in ("--option", f"{name}={value}")]
+    words += [x for name, value in parameters.items() for x in ("--param", f"{name}={value}")]
+    main([*words, "--json", "-"])
+    assert json.loads(capsys.readouterr().out)["idle"] == told
+    main(words)
+    said = capsys.readouterr().out
+    assert [x.split(":")[0] for x in said.splitlines() if "no boundary that is asked for" in x] == told

@@ -19,6 +19,7 @@ from roadproof.evidence.judged import Judged
 from roadproof.preventing import gradual
 from roadproof.preventing.boundary import Plane, plane_of
 from roadproof.preventing.driving import Reading
+from roadproof.preventing.idle import idle
 from roadproof.preventing.lemmas import Lemma, lemmas_for
 from roadproof.preventing.lines import Line, end_of, line_data, read_line, told_line, truths
 from roadproof.preventing.manoeuvres import Manoeuvre, Values
@@ -182,6 +183,11 @@ class Preventable:
         """The plane of a plate."""
         return plane_of(self.manoeuvre, fixed, self.along, self.across, self.rows)
 
+    @cached_property
+    def idle(self) -> tuple[str, ...]:
+        """Options and parameters that were chosen, and on which nothing here depends."""
+        return idle(self.basis.specification, self.basis.values, self.manoeuvre, self.models)
+
     def _plate(self, piece: PlatePiece) -> Plate:
         plane, model = self.plane(piece.fixed), piece.model.name
         if piece.model.is_stepped:
@@ -309,6 +315,7 @@ class Preventable:
             **self.question.heading,
             "view": "dense",
             "seconds": round(seconds, 1),
+            "idle": list(self.idle),
             "plates": [records[name]["plate"] for name in self.plates],
             "lemmas": [records[name]["lemma"] for name in self.lemmas],
         }

@@ -83,6 +83,7 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved
         lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
         if proved.reason:
             lines.append(f"  {proved.reason}")
+    lines += [f"{said}: no boundary that is asked for depends on it" for said in study.idle]
     return "\n".join(lines)
 
 

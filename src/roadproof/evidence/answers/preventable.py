@@ -1,16 +1,17 @@
 """The index and the kept answers of ``roadproof preventable``: drives on both sides, and lemmas."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, rational, read_assuming
 from roadproof.preventing.boundary import Plane, plane_of
+from roadproof.preventing.idle import idle
 from roadproof.preventing.lines import line_data, told_line, truths
 from roadproof.preventing.manoeuvres import MANOEUVRES
-from roadproof.preventing.models import manoeuvre_of, parts_of
+from roadproof.preventing.models import manoeuvre_of, models_for, parts_of
 
 SCHEMA = "roadproof/preventable/1"
 DRIVERS = "driver.spec"
@@ -136,8 +137,16 @@ def _record(record: Fields, background: Background) -> Iterator[Entry]:
 
 
 def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
-    """Plates whose lines are not what their formula or motion says; a controller's are not looked at."""
+    """Plates whose lines are not what their formula or motion says; a controller's are not looked at.
+
+    And where what is said to have no say is not what has none.
+    """
     common = background.home
+    if data.has("idle"):
+        models = {Fields(x, common.where, _PLATE).text("model") for x in data.items("plates")}
+        found = _idle(data, background, models)
+        if tuple(data.texts("idle")) != found:
+            yield f"what no boundary depends on is {', '.join(found) or 'nothing that was chosen'}"
     for number, content in enumerate(data.items("plates"), 1):
         plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
         if plate.text("stepped") or not plate.items("lines"):
@@ -152,6 +161,15 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
         if wrong is not None:
             at = f"{plane.manoeuvre.across}={wrong['at']}"
             yield f"plate {plate.text('name')} says otherwise at {at} than its formula or its motion"
+
+
+def _idle(data: Fields, background: Background, models: Set[str]) -> tuple[str, ...]:
+    """What was chosen and has no say in the plates. Raises ``InputError``, ``UsageError``."""
+    common, manoeuvre = background.home, data.text("manoeuvre")
+    if manoeuvre not in MANOEUVRES or not models:
+        raise InputError(f"{data.where}: there is no manoeuvre '{manoeuvre[:20]}', or no plate of it")
+    asked = models_for(manoeuvre, tuple(sorted(models)))
+    return idle(common.specification, common.values or {}, MANOEUVRES[manoeuvre], asked)
 
 
 def _plane(data: Fields, plate: Fields) -> Plane:
@@ -171,7 +189,7 @@ def _plane(data: Fields, plate: Fields) -> Plane:
 READER = Reader(
     SCHEMA,
     ("set", "manoeuvre", "scenario", "along", "across", "options", "parameters", "specs"),
-    ("view", "seconds", "plates", "lemmas"),
+    ("view", "seconds", "idle", "plates", "lemmas"),
     _index,
     ("plate", "lemma"),
     _record,
