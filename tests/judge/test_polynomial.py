@@ -125,18 +125,19 @@ def test_a_root_at_an_end_or_within_is_not_overlooked(found, low, high) -> None:
 
 
 @pytest.mark.parametrize(
-    ("right", "wrong"),
+    ("name", "right", "wrong"),
     [
-        ("(at_low, scale), (scale,)", "(at_low, scale), (1,)"),
-        ("(scale, scale)", "(scale,)"),
-        ("or not found[0] or not found[-1]", "or not found[0]"),
-        ("or not found[0] or not found[-1]", "or not found[-1]"),
-        ("all(x >= 0 for x in found)", "found[-1] > 0"),
-        ("all(x <= 0 for x in found)", "found[-1] < 0"),
-        ("power = _times(power, bottom)", "pass"),
+        ("_on_positive", "(at_low, scale), (scale,)", "(at_low, scale), (1,)"),
+        ("_on_positive", "(scale, scale)", "(scale,)"),
+        ("_on_positive", "power = _times(power, bottom)", "pass"),
+        ("is_rootless", "or not found[0] or not found[-1]", "or not found[0]"),
+        ("is_rootless", "or not found[0] or not found[-1]", "or not found[-1]"),
+        ("is_rootless", "all(x * sign >= 0 for x in found)", "found[-1] * sign > 0"),
+        ("is_rootless", "is_rootless(numerators, low, middle, halvings - 1) and", ""),
+        ("is_rootless", "numerators, middle, high, halvings - 1", "numerators, middle, middle, halvings - 1"),
     ],
 )
-def test_faults_in_the_rule_are_noticed(monkeypatch, right: str, wrong: str) -> None:
+def test_faults_in_the_rule_are_noticed(monkeypatch, name: str, right: str, wrong: str) -> None:
     dice = random.Random(6)
     cases = []
     for _ in range(400):
@@ -144,11 +145,16 @@ def test_faults_in_the_rule_are_noticed(monkeypatch, right: str, wrong: str) -> 
         low = Fraction(dice.randint(-4, 4), dice.choice((1, 2, 3)))
         high = None if dice.random() < 0.4 else low + Fraction(dice.randint(1, 4), dice.choice((1, 2, 3)))
         cases.append((found, low, high))
+    for eighths in range(1, 16):  # two roots that are near, anywhere
+        near = multiply(
+            polynomial(Fraction(-eighths, 16), 1), polynomial(Fraction(-eighths, 16) - Fraction(1, 40), 1)
+        )
+        cases.append((multiply(near, polynomial(1, 0, 1)).numerators, Fraction(0), Fraction(1)))
     has_root = [roots_within(*case) > 0 for case in cases]
 
     def noticed() -> bool:
         return any(module.is_rootless(*case) and there for case, there in zip(cases, has_root, strict=True))
 
     assert not noticed()
-    plant(monkeypatch, module, "is_rootless", right, wrong)
+    plant(monkeypatch, module, name, right, wrong)
     assert noticed()

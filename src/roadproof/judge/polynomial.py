@@ -90,16 +90,38 @@ def sign_at(numerators: tuple[int, ...], x: Fraction) -> int:
     return (value > 0) - (value < 0)
 
 
-def is_rootless(numerators: tuple[int, ...], low: Fraction, high: Fraction | None) -> bool:
+HALVINGS = 3
+
+
+def is_rootless(
+    numerators: tuple[int, ...], low: Fraction, high: Fraction | None, halvings: int = HALVINGS
+) -> bool:
     """Whether Descartes' rule of signs shows that there is no root in [low, high], low < high.
 
-    ``high`` None: in [low, ∞). True is a proof; False only says that the rule does not tell. With
-    t = (low + high·x)/(1 + x), x >= 0 is the interval, and a polynomial in x whose coefficients have
-    one sign, the first and the last not 0, has no root there (Collins and Akritas, SYMSAC 1976).
+    ``high`` None: in [low, ∞). True is a proof; False only says that the rule does not tell, nor of halves,
+    quarters and eighths. With t = (low + high·x)/(1 + x), x >= 0 is the interval, and a polynomial in x whose
+    coefficients have one sign, the first and the last not 0, has no root there (Collins and Akritas, SYMSAC
+    1976).
 
     >>> is_rootless((-2, 0, 1), Fraction(0), Fraction(1)), is_rootless((-2, 0, 1), Fraction(1), Fraction(2))
     (True, False)
     """
+    found = _on_positive(numerators, low, high)
+    if not found or not found[0] or not found[-1]:
+        return False
+    sign = 1 if found[0] > 0 else -1
+    if all(x * sign >= 0 for x in found):
+        return True
+    if high is None or not halvings or found[-1] * sign < 0:
+        return False
+    middle = (low + high) / 2
+    return is_rootless(numerators, low, middle, halvings - 1) and is_rootless(
+        numerators, middle, high, halvings - 1
+    )
+
+
+def _on_positive(numerators: tuple[int, ...], low: Fraction, high: Fraction | None) -> list[int]:
+    """Coefficients of a polynomial in x >= 0 that has the signs of ``numerators`` from low to high."""
     scale = lcm(low.denominator, high.denominator if high is not None else 1)
     at_low = low.numerator * (scale // low.denominator)
     top: tuple[int, ...]
@@ -117,9 +139,7 @@ def is_rootless(numerators: tuple[int, ...], low: Fraction, high: Fraction | Non
         for i, x in enumerate(power):
             found[i] += n * x
         power = _times(power, bottom)
-    if not found or not found[0] or not found[-1]:
-        return False
-    return all(x >= 0 for x in found) if found[0] > 0 else all(x <= 0 for x in found)
+    return found
 
 
 def _times(left: Sequence[int], right: Sequence[int]) -> list[int]:

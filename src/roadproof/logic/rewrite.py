@@ -33,6 +33,8 @@ from roadproof.logic.terms import (
     leaves,
     replace_leaves,
 )
+from roadproof.logic.terms import children as terms_in
+from roadproof.logic.terms import with_children as with_terms
 from roadproof.signals import SIGNALS, SignalName
 
 
@@ -54,22 +56,29 @@ def _changing_terms(change: Callable[[Term], Term]) -> Callable[[Formula], Formu
 
 
 def with_values(formula: Formula, values: Mapping[str, Fraction]) -> Formula:
-    """``formula`` with the named parameters replaced by numbers; others stay symbolic."""
-    return map_terms(formula, _giving(values)) if values else formula
+    """``formula`` with the named parameters replaced by numbers; others stay symbolic.
+
+    One object stands for all sub-formulas that are equal, and for all such terms.
+    """
+    return all_with_values([formula], values)[0] if values else formula
 
 
 def all_with_values(formulas: Iterable[Formula], values: Mapping[str, Fraction]) -> list[Formula]:
-    """As ``with_values`` of each, with one object for all sub-formulas that are equal."""
+    """As ``with_values`` of each, with one object for what is equal in several, too."""
     return share(formulas, _changing_terms(_giving(values)))
 
 
 def _giving(values: Mapping[str, Fraction]) -> Callable[[Term], Term]:
-    def leaf(old: Leaf) -> Term:
-        if isinstance(old, Parameter) and old.name in values:
-            return Number(values[old.name], old.dimension)
-        return old
+    pool: dict[Term, Term] = {}
 
-    return lambda term: replace_leaves(term, leaf)
+    def give(term: Term) -> Term:
+        if isinstance(term, Parameter) and term.name in values:
+            made: Term = Number(values[term.name], term.dimension)
+        else:
+            made = with_terms(term, tuple(map(give, terms_in(term))))
+        return pool.setdefault(made, made)
+
+    return give
 
 
 def without_names(formula: Formula) -> Formula:

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.judge.exact import judge
-from roadproof.judge.truth import NEVER, TruthSet, intersection, interval
+from roadproof.judge.truth import NEVER, TruthSet
+from roadproof.judge.within import truth_within
 from roadproof.logic.formula import Formula
 from roadproof.preventing.manoeuvres import Manoeuvre, Values, along_line, is_possible, spread
 
@@ -58,4 +58,4 @@ def line(plane: Plane, formula: Formula, row: Fraction) -> TruthSet:
     if not is_possible(plane.manoeuvre, values):
         return NEVER
     signals = along_line(plane.manoeuvre, values)
-    return intersection([judge(formula, signals).truth(formula), interval(*plane.along)])
+    return truth_within(formula, signals, *plane.along)
