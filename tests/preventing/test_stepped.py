@@ -8,13 +8,15 @@ from fractions import Fraction as F
 import pytest
 
 import roadproof as rp
+from planting import plant
 from preventing.fuzzy_again import first_difference, motion
 from preventing.read import specification, values
 from roadproof.cli.main import main
 from roadproof.evidence.judged import judge_file
+from roadproof.preventing import stepped
 from roadproof.preventing.boundary import Plane
 from roadproof.preventing.driving import Reading, drive_of
-from roadproof.preventing.fuzzy import Scale, scale_of
+from roadproof.preventing.fuzzy import Controller, Scale, scale_of
 from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
 from roadproof.preventing.models import models_for
 from roadproof.preventing.sides import SIDES, judged_drive
@@ -89,6 +91,56 @@ def test_labels_are_what_the_judge_says_of_the_drive(manoeuvre):
         assert judge_file(judged.file, home.library).accepted
         with pytest.raises(rp.InputError, match="does not hold on the drive"):
             judged_drive(kind, "fsm", given, other, home, reading())
+
+
+def near_values(manoeuvre: str, count: int, seed: int) -> list[dict[str, F]]:
+    """Close behind a vehicle that is a little slower, or brakes a little, and stands in many cases."""
+    rng = random.Random(seed)
+    made = []
+    for _ in range(count):
+        gap, faster = F(rng.randint(1, 500), 100), F(rng.randint(0, 500), 100)
+        speed = faster + rng.choice([F(0), F(0), F(rng.randint(1, 1000), 100)])
+        given = {"Ve0": speed, "dV0": faster, "dx0": gap}
+        if manoeuvre == "cut-in":
+            given |= {"dy0": F(0), "Vy": F(1)}
+        else:
+            given["Gx"] = F(rng.randint(1, 80), 10)
+        made.append(MANOEUVRES[manoeuvre].values(given))
+    return made
+
+
+def differences(manoeuvre: str, cases: list[dict[str, F]]) -> tuple[int, int]:
+    """Labels that are otherwise where a drive is not stepped to its end; and how many touch."""
+    kind = MANOEUVRES[manoeuvre]
+    whole = [course_of(kind, x).touches for x in cases]
+    short = [course_of(kind, x, to_the_end=False).touches for x in cases]
+    return sum(a != b for a, b in zip(whole, short, strict=True)), sum(whole)
+
+
+@pytest.mark.parametrize("manoeuvre", list(MANOEUVRES))
+def test_labels_need_no_drive_to_its_end(manoeuvre):
+    cases = some_values(manoeuvre, 300, 5)
+    if manoeuvre != "cut-out":
+        cases += near_values(manoeuvre, 1_200, 6)
+    wrong, touching = differences(manoeuvre, cases)
+    assert wrong == 0
+    assert len(cases) // 20 < touching < len(cases) - len(cases) // 20
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "right", "wrong"),
+    [
+        (stepped, "_stays_clear", "min(now.gap, controller.margin)", "3 * controller.margin"),
+        (stepped, "_stays_clear", "(other.braking and now.its_speed)", "False"),
+        (Controller, "needs", "TICKS * looks * faster", "0"),
+        (Controller, "needs", "- self.waited", "- _WAITS"),
+        (Controller, "needs", "(-faster * faster // (2 * self.comfort))", "0"),
+    ],
+)
+def test_a_drive_that_is_left_too_early_shows(monkeypatch, owner, name, right, wrong):
+    plant(monkeypatch, owner, name, right, wrong)
+    found = [differences(x, near_values(x, 1_200, 6))[0] for x in ("cut-in", "deceleration")]
+    assert sum(found)
 
 
 def test_a_leader_far_away_is_reached_without_looking_at_each_tenth():

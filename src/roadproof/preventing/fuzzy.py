@@ -108,6 +108,17 @@ class Controller:
         closing = _REACTION * faster + faster * faster // (2 * self.comfort) + 1
         return max(near // product + 1, closing)
 
+    def needs(self, faster: int) -> int:
+        """In how much of a gap SV loses that speed with comfortable braking, rounded up.
+
+        It may have to go on to the next look, to wait, to raise its braking from none look by look, and to
+        brake by less in the look in which it comes to a stand.
+        """
+        if faster <= 0:
+            return 0
+        looks = 1 + _WAITS - self.waited - (-self.comfort // self.step)
+        return TICKS * looks * faster - (-faster * faster // (2 * self.comfort))
+
     def _proactive(self, gap: int, speed: int, other: int) -> int | None:
         """The braking for PFS > 0."""
         near, whole = self._room(gap, speed, other)

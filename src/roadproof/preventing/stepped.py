@@ -123,6 +123,8 @@ def course_of(manoeuvre: Manoeuvre, values: Values, to_the_end: bool = True) -> 
             touches = touches or _touches_later(other, state)
             return Course(tuple(_held(other.scale, brakings)) if to_the_end else (), touches)
         touches = touches or _touches(other, state, braking)
+        if not (to_the_end or touches) and _stays_clear(other, state, controller):
+            return Course((), False)
         count = 1 if acts else _looks_without(other, state, controller)
         brakings.append((count, braking))
         time += count * TICKS
@@ -151,6 +153,17 @@ def _is_over(other: _Other, now: _State, acts: bool) -> bool:
     if 2 * now.gap + other.lengths < 0:
         return now.speed >= now.its_speed
     return other.braking == 0 and now.speed <= now.its_speed and now.gap > 0
+
+
+def _stays_clear(other: _Other, now: _State, controller: Controller) -> bool:
+    """Whether SV surely brakes in time, should it ever come within the margin of a vehicle that is no slower.
+
+    The other goes on as it does, and SV is never faster than now. Within the margin SV, where it is faster,
+    is nearer than what is unsafe, and brakes comfortably at least, as soon as it may.
+    """
+    if now.time < other.begins or (other.braking and now.its_speed):
+        return False
+    return controller.needs(now.speed - now.its_speed) < min(now.gap, controller.margin)
 
 
 def _looks_without(other: _Other, now: _State, controller: Controller) -> int:
