@@ -225,3 +225,18 @@ def test_a_plate_that_says_it_has_a_formula_is_told(folder, tmp_path, forged):
     )
     (out / "index.json").write_text(json.dumps(index), "utf-8")
     assert rp.check(out).exit_code != 0
+
+
+def test_rows_without_an_exact_drive_are_passed_over():
+    """At 60 km/h POV stands in its ramp at most rows, at irrational instants; from 5 m/s^2 on it is seen."""
+    found = rp.preventable(
+        "deceleration",
+        ["careful"],
+        at={"dGdt": 1, "Ve0": "60 km/h"},
+        using=rp.load(specs=["driver"], options={"cc_threshold": "hard"}),
+        lemmas=False,
+        jobs=1,
+    )
+    (plate,) = found.plates
+    assert str(plate.verdict) == "WITNESSED"
+    assert {x.side for x in plate.shown if x.drive is not None} == {*SIDES}

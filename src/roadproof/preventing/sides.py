@@ -22,6 +22,7 @@ from roadproof.spec.scenarios import LANE
 Side: TypeAlias = Literal["unpreventable", "preventable"]
 SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
 _FINE = 10**9  # of a line, for spans that have no place with few digits
+_LOOKED_AT = 400  # candidates for a drive
 _NEAR = Fraction(1, 10)  # m from the boundary
 _PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
 
@@ -151,14 +152,19 @@ def first_drive(
 ) -> tuple[dict[str, Fraction], Judged] | str:
     """A judged drive from one of the candidates, initial values of that side; or why there is none.
 
-    ``also`` as for ``judged_drive``; ``most`` candidates are tried.
+    ``also`` as for ``judged_drive``; ``most`` candidates are tried, besides those that have no exact drive.
     """
     reason = f"no place of the plane is {side}"
-    for values in islice(candidates, most):
+    tried = 0
+    for values in islice(candidates, _LOOKED_AT):
         try:
+            drive_of(plane.manoeuvre, model, values, reading)
+            tried += 1
             return values, judged_drive(plane.manoeuvre, model, values, side, specification, reading, also)
         except InputError as error:
             reason = str(error)
+        if tried == most:
+            break
     return reason
 
 
