@@ -21,8 +21,7 @@ def idle(
 ) -> tuple[str, ...]:
     """Those that are not as declared, as ``cc_aeb=max``, though with the declared value nothing is different.
 
-    ``values``: of parameters (SI). A controller that is stepped
-    depends on none of them.
+    ``values``: of parameters (SI). A controller that is stepped depends on none of them.
     """
     library = specification.library
     names = [x.name for x in models if not x.is_stepped]
