@@ -41,10 +41,13 @@ def gated_onset(x, gate: str) -> Floats:
 
 
 def step_cut_in(v, w, gap, lengths, beside, lateral, braking, rate, seconds) -> Outcome:
-    """POV at constant speed w comes in at ``lateral``; a collision while the boxes overlap across."""
+    """POV at constant speed w comes in at ``lateral``; a collision while the boxes overlap across.
+
+    It is otherwise where SV comes as far as POV's rear, or not, once POV is in; or has passed it before.
+    """
     arrives = beside / lateral
     speed, gained = v.astype(float).copy(), np.zeros_like(v)
-    collided, nearest = np.zeros(len(v), bool), np.full(len(v), np.inf)
+    farthest, to_pass = np.full(len(v), -np.inf), np.full(len(v), np.inf)
     passed = np.zeros(len(v), bool)
     begun = np.zeros(len(v), bool)
     for step in range(int(seconds * rate)):
@@ -52,16 +55,15 @@ def step_cut_in(v, w, gap, lengths, beside, lateral, braking, rate, seconds) -> 
         across = time >= arrives
         # Having passed it before it came in is no collision with it.
         first = across & ~begun
+        to_pass = np.where(first, np.abs(gained - gap - lengths), to_pass)
         passed |= first & (gained >= gap + lengths)
-        nearest = np.where(first, np.minimum(nearest, np.abs(gained - gap - lengths)), nearest)
         begun |= across
         inside = across & ~passed
-        collided |= inside & (gained > gap)
-        nearest = np.where(inside, np.minimum(nearest, np.abs(gap - gained)), nearest)
+        farthest = np.where(inside, np.maximum(farthest, gained - gap), farthest)
         faster = np.maximum(speed - braking(time + 0.5 / rate) / rate, 0)
         gained += (speed + faster) / 2 / rate - w / rate
         speed = faster
-    return Outcome(collided, nearest)
+    return Outcome(farthest > 0, np.minimum(np.abs(farthest), to_pass))
 
 
 def step_deceleration(v, w, gap, other_braking, braking, rate, seconds) -> Outcome:

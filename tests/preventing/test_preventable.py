@@ -9,7 +9,8 @@ import pytest
 import roadproof as rp
 from preventing.read import boundary, specification, values
 from roadproof.cli.main import main
-from roadproof.judge.truth import TruthSet
+from roadproof.judge.algebraic import moved
+from roadproof.judge.truth import Cut, TruthSet, union
 from roadproof.preventing.boundary import Plane, line
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.lemmas import lemmas_for
@@ -128,6 +129,36 @@ def test_a_false_lemma_is_refuted():
     assert false != claim.claim
     answer = rp.prove(false, using=rp.load(specs=["driver"]), declared=True, jobs=1)
     assert str(answer.verdict) == "REFUTED"
+
+
+def test_the_response_of_rss_is_at_its_own_speed_until_it_begins():
+    """With the speed after the response taken for the time before it, too, as once was said, it is false."""
+    lemma = next(x for x in lemmas_for("cut-in", models_for("cut-in", ("rss",))) if x.name == "rss-response")
+    right = "rss_gains(v, w, g, q*W, W)"
+    wrong = "gains(v + a_max*rho, w, g + a_max*rho^2/2, q + rho, 1, 0 s, b_min)"
+    assert right in lemma.claim
+    home = rp.load(specs=["driver"])
+    verdicts = [
+        str(rp.prove(claim, using=home, declared=True, jobs=1).verdict)
+        for claim in (lemma.claim, lemma.claim.replace(right, wrong))
+    ]
+    assert verdicts == ["PROVED", "REFUTED"]
+
+
+def test_a_boundary_that_a_drive_contradicts_is_told():
+    """Not passed over for another place: the formula, or the motion, is wrong."""
+    where = plane("cut-in")
+    true = lines_of("cut-in", "careful", {}, where)
+    farther = tuple(union([x, moved_by(x, 2)]) for x in true)
+    home = specification()
+    places = beside_boundary(where, farther, "unpreventable")
+    found = first_drive(where, "careful", places, "unpreventable", home, Reading(values(), home.options))
+    assert isinstance(found, str)
+    assert "is not unpreventable, as the boundary says it is: " in found
+
+
+def moved_by(true: TruthSet, metres: int) -> TruthSet:
+    return TruthSet(tuple(Cut(moved(cut.point, Fraction(metres)), cut.after) for cut in true.cuts))
 
 
 def test_manoeuvres_by_name_and_by_scenario():

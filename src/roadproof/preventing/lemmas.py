@@ -21,6 +21,7 @@ _RAMPS: Mapping[str, tuple[str, str]] = {
     "both": ("(cc_ramp*aeb_braking/(cc_braking + aeb_braking))", "aeb_braking"),
 }
 _PARAMETERS = ("aeb_braking", "cc_braking", "cc_ramp")
+_RESPONSE = ("a_max", "b_min", "rho")
 _EVER = ("greatest", "reached")
 """What of a ramp that begins at another speed is true of any."""
 
@@ -52,6 +53,11 @@ def lemmas_for(manoeuvre: str, models: Sequence[Model], aeb: str = "none") -> li
             if manoeuvre in entry["manoeuvres"] and (gradual or not entry.get("ramp")):
                 claim = _filled(entry["claim"], ramp, full)
                 found.append(Lemma(f"{model.name}-{entry['id']}", entry["title"], claim, parameters))
+    if manoeuvre == "cut-in" and any(x.name == "rss" for x in models):
+        found += [
+            Lemma(f"rss-{x['id']}", x["title"], x["claim"], _spoken(x["claim"], _RESPONSE))
+            for x in tomllib.loads(content)["rss"]
+        ]
     return found
 
 
@@ -64,9 +70,11 @@ def _with_aeb(content: Mapping[str, Any], aeb: str) -> list[Lemma]:
             for x in content["lemma"]
             if x["id"] in _EVER
         ]
-    return [
-        Lemma(name, title, claim, tuple(x for x in _PARAMETERS if x in claim)) for name, title, claim in said
-    ]
+    return [Lemma(name, title, claim, _spoken(claim, _PARAMETERS)) for name, title, claim in said]
+
+
+def _spoken(claim: str, parameters: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(x for x in parameters if x in claim)
 
 
 def _filled(claim: str, ramp: str, full: str) -> str:

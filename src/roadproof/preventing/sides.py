@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import Judged, RejectedError
 from roadproof.judge.algebraic import Point, bounds
 from roadproof.judge.truth import TruthSet
 from roadproof.preventing.boundary import Plane
@@ -153,6 +153,7 @@ def first_drive(
     """A judged drive from one of the candidates, initial values of that side; or why there is none.
 
     ``also`` as for ``judged_drive``; ``most`` candidates are tried, besides those that have no exact drive.
+    A drive that is rejected, though nothing else is asked of it, contradicts the boundary: no other is tried.
     """
     reason = f"no place of the plane is {side}"
     tried = 0
@@ -161,6 +162,11 @@ def first_drive(
             drive_of(plane.manoeuvre, model, values, reading)
             tried += 1
             return values, judged_drive(plane.manoeuvre, model, values, side, specification, reading, also)
+        except RejectedError as error:
+            reason = str(error)
+            if not also:
+                told = ", ".join(f"{name}={value}" for name, value in values.items())
+                return f"the drive from {told} (SI) is not {side}, as the boundary says it is: {reason}"
         except InputError as error:
             reason = str(error)
         if tried == most:

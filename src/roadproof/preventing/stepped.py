@@ -158,8 +158,8 @@ def _is_over(other: _Other, now: _State, acts: bool) -> bool:
 def _stays_clear(other: _Other, now: _State, controller: Controller) -> bool:
     """Whether SV surely brakes in time, should it ever come within the margin of the other.
 
-    The other keeps its speed, and SV is never faster than now. Where SV is faster and within the margin, it is
-    nearer than what is unsafe, and brakes comfortably at least, as soon as it may.
+    The other keeps its speed, and SV is never faster than now. Where SV is faster and within the margin, it
+    is nearer than what is unsafe, and brakes comfortably at least, as soon as it may.
     """
     if now.time < other.begins or (other.braking and now.its_speed):
         return False
