@@ -397,3 +397,6 @@ def test_what_is_chosen_and_has_no_say_is_told(manoeuvre, models, options, param
     main(words)
     said = capsys.readouterr().out
     assert [x.split(":")[0] for x in said.splitlines() if "no boundary that is asked for" in x] == told
+    others = [x for x in (*options, *parameters) if all(not y.startswith(f"{x}=") for y in told)]
+    shown = [x.partition("=")[0] for x in said.partition("\nwith ")[2].partition("\n")[0].split(", ") if x]
+    assert shown == [x for x in others if x != "minSafe"]  # 0.6 s is its declared value

@@ -19,7 +19,7 @@ from roadproof.evidence.judged import Judged
 from roadproof.preventing import gradual
 from roadproof.preventing.boundary import Plane, plane_of
 from roadproof.preventing.driving import Reading
-from roadproof.preventing.idle import idle
+from roadproof.preventing.idle import chosen, idle
 from roadproof.preventing.lemmas import Lemma, lemmas_for
 from roadproof.preventing.lines import Line, end_of, line_data, read_line, told_line, truths
 from roadproof.preventing.manoeuvres import Manoeuvre, Values
@@ -141,8 +141,8 @@ class Preventable:
     def plates(self) -> dict[str, PlatePiece]:
         """The plates by name: for each choice of the sheet's values, each model."""
         found: dict[str, PlatePiece] = {}
-        for chosen in product(*self.sheet.values()):
-            fixed = {**self.fixed, **dict(zip(self.sheet, chosen, strict=True))}
+        for values in product(*self.sheet.values()):
+            fixed = {**self.fixed, **dict(zip(self.sheet, values, strict=True))}
             told = "-".join(f"{name}-{value}".replace("/", "_") for name, value in fixed.items())
             for model in self.models:
                 name = f"{model.name}-{told}" if told else model.name
@@ -182,6 +182,12 @@ class Preventable:
     def plane(self, fixed: Values) -> Plane:
         """The plane of a plate."""
         return plane_of(self.manoeuvre, fixed, self.along, self.across, self.rows)
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Options and parameters that were chosen, and on which boundaries here depend."""
+        made = chosen(self.basis.specification, self.basis.values)
+        return tuple(x for x in (f"{name}={value}" for name, value in made.items()) if x not in self.idle)
 
     @cached_property
     def idle(self) -> tuple[str, ...]:

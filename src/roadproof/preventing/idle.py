@@ -1,4 +1,4 @@
-"""What was chosen and has no say: options and parameters on which no boundary of a manoeuvre depends."""
+"""What was chosen, and what of that has no say: no boundary of a manoeuvre depends on it."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -13,31 +13,39 @@ from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Specification
 
 
+def chosen(specification: Specification, values: Mapping[str, Fraction]) -> dict[str, str]:
+    """Options, and then parameters, that are not as declared, with their values; ``values`` in SI units."""
+    library = specification.library
+    declared, known = library.options, default_values(library)
+    options = {x: said for x, said in specification.options.items() if said != declared[x].values[0]}
+    return options | {x: str(values[x]) for x in sorted(values) if values[x] != known[x]}
+
+
 def idle(
     specification: Specification,
     values: Mapping[str, Fraction],
     manoeuvre: Manoeuvre,
     models: Sequence[Model],
 ) -> tuple[str, ...]:
-    """Those that are not as declared, as ``cc_aeb=max``, though with the declared value nothing is different.
+    """Those of ``chosen`` with which nothing is different, as ``cc_aeb=max``.
 
-    ``values``: of parameters (SI). A controller that is stepped depends on none of them.
+    A controller that is stepped depends on none of them.
     """
-    library = specification.library
     names = [x.name for x in models if not x.is_stepped]
     claims = [unpreventable(manoeuvre.name, name, manoeuvre.vehicles) for name in names]
     said = [read_claim(specification, claim).formula for claim in claims]
-    found: list[str] = []
-    for option, chosen in specification.options.items():
-        declared = library.options[option].values[0]
-        if chosen != declared:
-            other = library.select(specification.set_name, {**specification.options, option: declared})
-            if [read_claim(other, claim).formula for claim in claims] == said:
-                found.append(f"{option}={chosen}")
     spoken = set(_parameters(said))
-    known = default_values(library)
-    others = (name for name in sorted(values) if values[name] != known[name] and name not in spoken)
-    return (*found, *(f"{name}={values[name]}" for name in others))
+
+    def has_a_say(name: str) -> bool:
+        if name not in specification.options:
+            return name in spoken
+        declared = specification.library.options[name].values[0]
+        options = {**specification.options, name: declared}
+        other = specification.library.select(specification.set_name, options)
+        return [read_claim(other, claim).formula for claim in claims] != said
+
+    made = chosen(specification, values)
+    return tuple(f"{name}={value}" for name, value in made.items() if not has_a_say(name))
 
 
 def _parameters(formulas: Iterable[Formula]) -> Iterator[str]:

@@ -83,6 +83,8 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved
         lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
         if proved.reason:
             lines.append(f"  {proved.reason}")
+    if study.readings:
+        lines.append(f"with {', '.join(study.readings)}")
     lines += [f"{said}: no boundary that is asked for depends on it" for said in study.idle]
     return "\n".join(lines)
 
@@ -167,8 +169,11 @@ def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
     fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in study.fixed.items())
     title = f"{study.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
     figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
+    below = [f"With {', '.join(study.readings)}"] if study.readings else []
     if any(model.is_stepped for model in study.models):
-        figure.text(0.2 / width, 0.1 / height, _STEPPED, fontsize=5.5, va="center")
+        below.insert(0, _STEPPED)
+    for k, said in enumerate(below):
+        figure.text(0.2 / width, (0.1 + 0.12 * k) / height, said, fontsize=5.5, va="center")
     for k, model in enumerate(study.models):
         row, column = divmod(k, _models_a_row(width))
         x, y = (0.2 + _LEGEND[0] * column) / width, 1 - (0.45 + _LEGEND[1] * row) / height
