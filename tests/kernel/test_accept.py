@@ -104,7 +104,7 @@ def test_a_program_that_says_yes_to_all_is_not_enough(monkeypatch, tmp_path):
     fake = tmp_path / "coqc"
     fake.write_text(
         '#!/bin/sh\ncase "$1" in --print-version) echo 8.16.1 4.13;; esac\n'
-        'for f; do :; done\n: > "${f%.v}.vo"\n'
+        'for f; do :; done\ncase "$f" in *.v) : > "${f%.v}.vo";; esac\n'
     )
     fake.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
