@@ -1,11 +1,9 @@
 """What was chosen, and what of that has no say: no boundary of a manoeuvre depends on it."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from roadproof.logic import terms as t
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of
+from roadproof.logic.rewrite import parameters_of
 from roadproof.preventing.manoeuvres import Manoeuvre
 from roadproof.preventing.models import Model, unpreventable
 from roadproof.spec.bind import default_values
@@ -34,7 +32,7 @@ def idle(
     names = [x.name for x in models if not x.is_stepped]
     claims = [unpreventable(manoeuvre.name, name, manoeuvre.vehicles) for name in names]
     said = [read_claim(specification, claim).formula for claim in claims]
-    spoken = set(_parameters(said))
+    spoken = {name for formula in said for name in parameters_of(formula)}
 
     def has_a_say(name: str) -> bool:
         if name not in specification.options:
@@ -46,9 +44,3 @@ def idle(
 
     made = chosen(specification, values)
     return tuple(f"{name}={value}" for name, value in made.items() if not has_a_say(name))
-
-
-def _parameters(formulas: Iterable[Formula]) -> Iterator[str]:
-    for formula in formulas:
-        for term in terms_of(formula):
-            yield from (x.name for x in t.leaves(term) if isinstance(x, t.Parameter))

@@ -18,6 +18,7 @@ from roadproof.preventing.manoeuvres import Manoeuvre, Values, lane_width
 from roadproof.preventing.models import GRADUAL, MODELS, follows, foreseen, touched, unpreventable, untouched
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import LANE
+from roadproof.world.drive import Drive
 
 Side: TypeAlias = Literal["unpreventable", "preventable"]
 SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
@@ -91,6 +92,19 @@ def judged_drive(
     Raises ``RejectedError``, and ``InputError`` as ``drive_of``.
     """
     drive = drive_of(manoeuvre, model, values, reading)
+    return _judged(drive, manoeuvre, model, values, side, specification, reading, also)
+
+
+def _judged(
+    drive: Drive,
+    manoeuvre: Manoeuvre,
+    model: str,
+    values: Values,
+    side: Side,
+    specification: Specification,
+    reading: Reading,
+    also: str,
+) -> Judged:
     file = DriveFile(
         None,
         specification.set_name,
@@ -159,9 +173,10 @@ def first_drive(
     tried = 0
     for values in islice(candidates, _LOOKED_AT):
         try:
-            drive_of(plane.manoeuvre, model, values, reading)
+            drive = drive_of(plane.manoeuvre, model, values, reading)
             tried += 1
-            return values, judged_drive(plane.manoeuvre, model, values, side, specification, reading, also)
+            judged = _judged(drive, plane.manoeuvre, model, values, side, specification, reading, also)
+            return values, judged
         except RejectedError as error:
             reason = str(error)
             if not also:

@@ -7,7 +7,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.claims import missed, numbers_on, replaced_in, sectors_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.judge.exact import judge
-from roadproof.logic.formula import Formula, transform
+from roadproof.logic.formula import Formula
 from roadproof.spec.bind import bind
 from roadproof.spec.library import Specification
 from roadproof.world.road import Road
@@ -54,5 +54,5 @@ class Trials:
         if key not in self.bound:
             tried = self.specification.in_set(wide) if names is None else self.trial(wide, names)
             gap = missed(tried, numbers_on(file.road, self.specification, self.sectors))
-            self.bound[key] = transform(bind(gap.formula, file.road, {}, self.values), lambda part: part)
+            self.bound[key] = bind(gap.formula, file.road, {}, self.values)
         return judge(self.bound[key], file.drive).holds
