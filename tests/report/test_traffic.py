@@ -35,11 +35,15 @@ def the_table(totals: Totals, *failed: dict[str, str]) -> Table:
 def totals() -> Totals:
     made = begin_totals(settings())
     made.recordings, made.vehicles, made.samples, made.violating = 2, 300, 9000, 80
+    made.traces = Counter({0: 60, 1: 50})
     made.asked, made.undecided, made.differing = 600, 12, 3
     for k, row in enumerate(made.rows):
         row.traces, row.matching, row.matching_with_three, row.several = 40, 10 + k, 12 + k, 4
         row.scenarios = Counter({1: 5 + k, 3: 6, 4: 6, 2: 2})
         row.together = Counter({(3, 4): 6, (1, 3): 1})
+        danger = made.settings.min_danger.index(row.min_danger)
+        made.matching[danger, row.set_name] = 20 + k
+        made.matching_violating[danger, row.set_name] = 8 + k
     made.detected = Counter({"cutIn_ttc": 11, "cutIn_thw": 22, "cutIn_free": 33, "decel_thw": 44})
     return made
 
@@ -90,11 +94,14 @@ def test_left_out_recordings_are_a_warning(totals: Totals) -> None:
 
 def test_answers_come_from_the_numbers(totals: Totals) -> None:
     text = answer_questions(totals)
-    assert "ext 30.0% [96.1%] (12 of 40)" in text
-    assert "28 traces match no scenario of ext" in text
-    assert "4 of 14 matching traces match several scenarios; 3-4 6, 1-3 1." in text
-    assert "minDanger 0, base: 12.5% [24.1%; around 25%] of 80 violating pairs." in text
-    assert "base: 0: 25.0%, 0.6: 32.5%; 7.5 points between them." in text
+    assert "ext 30.0% [96.1%] (12 of 40 traces on the main road)" in text
+    assert "28 of 40 traces on the main road match no scenario of ext with two vehicles." in text
+    assert "4 of 14 traces that match a scenario of the main road match several; 3-4 6, 1-3 1." in text
+    assert (
+        "minDanger 0, base: 10.0% [24.1%; around 25%] (8 of 80 violating pairs in all road sectors) " in text
+    )
+    shares = ("0: 25.0% (10 of 40 traces on the main road)", "0.6: 32.5% (13 of 40 traces on the main road)")
+    assert f"base: {', '.join(shares)}; 7.5 points between them." in text
     assert (
         "cut-in: TTC 11 [144], THW 22 [7219], none 33 [1017]; scenario 1 of ext (cut-in, lane keep) 7" in text
     )

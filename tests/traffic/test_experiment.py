@@ -194,7 +194,9 @@ def match(sv: int, pov: int, set_name: str, scenario: int) -> Match:
 def test_facts_are_checked(matches: list[Match], lanes: tuple[str, str], broken: str | None) -> None:
     traces = (Trace(1, 2, 0, 1, 50, *lanes, ("main road",)),)
     totals = begin_totals(default_settings())
-    add_findings(totals, Findings("01", 9, 99, 1, 0, 1, 0, 0, traces, tuple(matches), (), (), ("main road",)))
+    add_findings(
+        totals, Findings("01", 9, 99, ((1, 2),), 0, 1, 0, 0, traces, tuple(matches), (), (), ("main road",))
+    )
     told = as_json(totals, {})["checks"]
     assert (broken is None and told["broken"] == []) or any(str(broken) in x for x in told["broken"])
     three_and_four = {m.scenario for m in matches} & {3, 4}

@@ -50,7 +50,9 @@ def without_repeats(findings: Findings, counted: Counted) -> Findings:
         return counted.is_new(findings.recording, (pair.first, pair.second), what, k, keys)
 
     seen = {(x.first, x.second): x for x in findings.seen}
-    violating = sum(not is_new(x, "violation", None, x.keys) for x in findings.seen if x.violating)
+    shown = {
+        (x.first, x.second) for x in findings.seen if x.violating and not is_new(x, "violation", None, x.keys)
+    }
     kept = []
     for trace in findings.traces:
         pair = seen[trace.first, trace.second]
@@ -62,7 +64,7 @@ def without_repeats(findings: Findings, counted: Counted) -> Findings:
     new = {(name, pair) for name, pair in detected if is_new(seen[pair], name, None, seen[pair].keys)}
     return replace(
         findings,
-        violating=findings.violating - violating,
+        violating=tuple(pair for pair in findings.violating if pair not in shown),
         traces=tuple(kept),
         matches=tuple(x for x in findings.matches if (*x.pair, x.min_danger) in traces),
         detections=tuple(x for x in findings.detections if (x.detector, x.pair) in new),

@@ -47,7 +47,8 @@ class Trace:
 
 @dataclass(frozen=True)
 class Findings:
-    """What was found in one recording. ``violating``: pairs with an rssViolation in some frame.
+    """What was found in one recording. ``violating``: the pairs (ids, ascending) with an rssViolation in some
+    frame.
 
     ``undecided`` counts questions whose answer depends on what comes after the trace, ``differing``
     those that the other convention for the end of a trace answers otherwise. ``sectors``: the road sectors
@@ -58,7 +59,7 @@ class Findings:
     recording: str
     vehicles: int
     samples: int
-    violating: int
+    violating: tuple[tuple[int, int], ...]
     triples: int
     asked: int
     undecided: int
@@ -95,7 +96,7 @@ def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Finding
         recording=name,
         vehicles=sum(part.vehicles for part in parts),
         samples=sum(part.samples for part in parts),
-        violating=sum(part.violating for part in parts),
+        violating=tuple(sorted(pair for part in parts for pair in part.violating)),
         triples=sum(part.triples for part in parts),
         asked=sum(part.tally.asked for part in parts),
         undecided=sum(part.tally.undecided for part in parts),
@@ -115,7 +116,7 @@ class _Part:
 
     vehicles: int
     samples: int
-    violating: int
+    violating: tuple[tuple[int, int], ...]
     triples: int
     tally: "_Tally"
     traces: tuple[Trace, ...]
@@ -140,7 +141,7 @@ def _evaluate(window: Window, questions: Questions) -> _Part:
     return _Part(
         vehicles=int(np.count_nonzero(window.new)),
         samples=int(np.diff(recording.start)[window.new].sum()),
-        violating=len(found.pairs),
+        violating=tuple(_ids_of(recording, found.pairs)),
         triples=0 if cut is None else len(cut.triples),
         tally=tally,
         traces=tuple(_traces(recording, questions, found)),
@@ -149,6 +150,13 @@ def _evaluate(window: Window, questions: Questions) -> _Part:
         overlaps=tuple(_overlapping(recording, found)),
         seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),
     )
+
+
+def _ids_of(recording: Recording, pairs: Pairs) -> Iterator[tuple[int, int]]:
+    """The ids of the vehicles of each pair, the smaller first."""
+    ids = recording.vehicle_id
+    for one, other in zip(ids[pairs.first].tolist(), ids[pairs.second].tolist(), strict=True):
+        yield min(one, other), max(one, other)
 
 
 def _overlapping(recording: Recording, found: Disturbances) -> Iterator[Overlap]:

@@ -8,7 +8,7 @@ import csv
 import hashlib
 import json
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -32,13 +32,13 @@ from roadproof.preventing.models import MODELS, course_in
 from roadproof.spec.scenarios import MIN_DANGER
 from roadproof.spec.words import Called, called_in
 
-RECORDING_SCHEMA = "roadproof/recording-findings/3"
+RECORDING_SCHEMA = "roadproof/recording-findings/4"
 RESULTS_SCHEMA = "roadproof/traffic-results/3"
 MATCH_COLUMNS = tuple(
     "recording sv pov pov2 lane start_frame end_frame min_danger set scenario title uncertain".split()  # noqa: SIM905
 )
 PAIR_COLUMNS = tuple(
-    "recording first second min_danger start_frame end_frame first_lane second_lane sectors".split()  # noqa: SIM905
+    "recording first second min_danger start_frame end_frame first_lane second_lane sectors violating".split()  # noqa: SIM905
 )
 
 
@@ -111,6 +111,7 @@ def load_findings(path: Path, mark: str) -> Findings | None:
             return None
         made = {name: tuple(kind(*row) for row in found[name]) for name, kind in _ROWS.items()}
         made["traces"] = tuple(replace(x, sectors=tuple(x.sectors)) for x in made["traces"])
+        made["violating"] = tuple((one, other) for one, other in found["violating"])
         made["matches"] = tuple(replace(x, labels=tuple(x.labels)) for x in made["matches"])
         seen = tuple(Seen(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
         return Findings(**{**found, **made, **_texts(found, "notes", "sectors"), "seen": seen})
@@ -144,6 +145,7 @@ class Row:
     Counts are of unordered pairs whose trace begins in the sector. ``matching`` is by scenarios of two cars,
     as in the paper; ``matching_with_three`` counts those of three cars too, ``several`` those of these that
     match more than one scenario. ``together`` counts how many traces match two scenarios at once.
+    ``matching_violating`` counts the pairs among all violating ones that match a scenario of two cars here.
     """
 
     sector: Sector
@@ -152,6 +154,7 @@ class Row:
     traces: int = 0
     matching: int = 0
     matching_with_three: int = 0
+    matching_violating: int = 0
     scenarios: Counter[int] = field(default_factory=Counter)
     several: int = 0
     together: Counter[tuple[int, int]] = field(default_factory=Counter)
@@ -179,6 +182,10 @@ class Totals:
     ``tables``: the rows of each road sector by its name, the first being the paper's main road unless it is
     not asked for; ``met``: the sectors that a road of the recordings has. ``foretold`` counts the labels that
     driver models give to matches.
+
+    The following count in all road sectors together: ``violating`` the pairs with an rssViolation in some
+    frame; ``traces`` the disturbance traces by minDanger (an index); by minDanger and set, ``matching`` the
+    traces and ``matching_violating`` the violating pairs that match a scenario of two cars.
     """
 
     settings: Settings
@@ -188,6 +195,9 @@ class Totals:
     vehicles: int = 0
     samples: int = 0
     violating: int = 0
+    traces: Counter[int] = field(default_factory=Counter)
+    matching: Counter[tuple[int, str]] = field(default_factory=Counter)
+    matching_violating: Counter[tuple[int, str]] = field(default_factory=Counter)
     asked: int = 0
     undecided: int = 0
     differing: int = 0
@@ -224,8 +234,11 @@ def begin_totals(settings: Settings) -> Totals:
 def add_findings(totals: Totals, findings: Findings) -> None:
     """Count one recording, and check the facts of semantics §6 on it."""
     totals.recordings += 1
-    for name in ("vehicles", "samples", "violating", "asked", "undecided", "differing"):
+    for name in ("vehicles", "samples", "asked", "undecided", "differing"):
         setattr(totals, name, getattr(totals, name) + getattr(findings, name))
+    violating = {*findings.violating}
+    totals.violating += len(violating)
+    totals.traces.update(x.min_danger for x in findings.traces)
     totals.detected.update(name for name, _ in {(x.detector, x.pair) for x in findings.detections})
     totals.met.update(findings.sectors)
     for match in findings.matches:
@@ -239,7 +252,10 @@ def add_findings(totals: Totals, findings: Findings) -> None:
         traces = {(t.first, t.second): t for t in findings.traces if t.min_danger == k}
         matches = [x for x in findings.matches if x.min_danger == k and x.set_name == set_name]
         for rows in totals.tables.values():
-            _count(rows[place], traces.values(), matches)
+            _count(rows[place], traces.values(), matches, violating)
+        of_two = {x.pair for x in matches if x.pov2 is None}
+        totals.matching[k, set_name] += len(of_two & traces.keys())
+        totals.matching_violating[k, set_name] += len(of_two & violating)
         _check(totals, findings, traces, _scenarios_by_pair(matches), k, set_name)
 
 
@@ -251,13 +267,17 @@ def _scenarios_by_pair(matches: Iterable[Match]) -> dict[tuple[int, int], set[in
     return matched
 
 
-def _count(row: Row, traces: Iterable[Trace], matches: Iterable[Match]) -> None:
+def _count(
+    row: Row, traces: Iterable[Trace], matches: Iterable[Match], violating: Set[tuple[int, int]]
+) -> None:
     """Add what was found in the sector of a row."""
     ours = [x for x in matches if x.scenario in row.sector.scenarios]
     matched = _scenarios_by_pair(ours)
     row.traces += sum(row.sector.name in x.sectors for x in traces)
     row.matching_with_three += len(matched)
-    row.matching += len({x.pair for x in ours if x.pov2 is None})
+    of_two = {x.pair for x in ours if x.pov2 is None}
+    row.matching += len(of_two)
+    row.matching_violating += len(of_two & violating)
     for numbers in matched.values():
         row.scenarios.update(numbers)
         row.several += len(numbers) > 1
@@ -307,7 +327,7 @@ def write_results(
     with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
         match_rows.writerow((*MATCH_COLUMNS, *driver_columns(settings)))
-        pair_rows.writerow((*PAIR_COLUMNS, *settings.sets))
+        pair_rows.writerow((*PAIR_COLUMNS, *settings.detectors, *settings.sets))
         for all_found in findings:
             found = without_repeats(all_found, counted)
             add_findings(totals, found)
@@ -336,7 +356,9 @@ def as_json(totals: Totals, failed: Mapping[str, str]) -> dict[str, Any]:
                 "matching": row.matching,
                 "matching_with_three_cars": row.matching_with_three,
                 "recall": row.recall,
-                "recall_without_init_safe": row.matching / totals.violating if totals.violating else None,
+                "recall_without_init_safe": row.matching_violating / totals.violating
+                if totals.violating
+                else None,
                 "scenarios": {str(i): row.scenarios[i] for i in row.sector.scenarios},
                 "matching_several": row.several,
                 "together": {f"{i}-{j}": n for (i, j), n in sorted(row.together.items())},
@@ -420,12 +442,28 @@ def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[
 
 
 def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
+    """A row for each trace, and one without a trace for each other pair that violates or is detected."""
     dangers = [_decimal(x) for x in settings.min_danger]
     matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
+    violating = {*found.violating}
+    detected = {(x.detector, x.pair) for x in found.detections}
+
+    def of_pair(pair: tuple[int, int]) -> list[int]:
+        return [int(pair in violating), *(int((name, pair) in detected) for name in settings.detectors)]
+
+    rows: dict[tuple[int, int], list[list[object]]] = {}
     for t in found.traces:
-        hits = [int(((t.first, t.second), t.min_danger, s) in matched) for s in settings.sets]
+        pair = t.first, t.second
+        hits = [int((pair, t.min_danger, s) in matched) for s in settings.sets]
         frames = (dangers[t.min_danger], t.start_frame, t.end_frame, t.first_lane, t.second_lane)
-        yield [found.recording, t.first, t.second, *frames, "; ".join(t.sectors), *hits]
+        row = [found.recording, *pair, *frames, "; ".join(t.sectors), *of_pair(pair), *hits]
+        rows.setdefault((min(pair), max(pair)), []).append(row)
+    for pair in sorted(violating | {pair for _, pair in detected}):
+        if pair not in rows:
+            none = [""] * len(settings.sets)
+            rows[pair] = [[found.recording, *pair, "", "", "", "", "", "", *of_pair(pair), *none]]
+    for _, each in sorted(rows.items()):
+        yield from each
 
 
 def _decimal(value: Fraction) -> str:

@@ -12,11 +12,13 @@ from roadproof.report.traffic import (
     KINDS,
     METRICS,
     NONE_FAILED,
+    Share,
     decimal,
     missing,
     paper_row,
     percent,
     rss_row,
+    traces_of,
 )
 from roadproof.spec.scenarios import DETECTORS
 
@@ -49,7 +51,14 @@ def _left_out(failed: Mapping[str, str]) -> Iterator[str]:
 def _shown(row: Row) -> str:
     known = paper_row(row)
     theirs = f" [{known.recall}]" if known else ""
-    return f"{row.set_name} {percent(row.matching, row.traces)}{theirs} ({row.matching} of {row.traces})"
+    share = Share(row.matching, row.traces, traces_of(row))
+    return f"{row.set_name} {share.percent}{theirs} ({share.count})"
+
+
+def _missed(row: Row) -> str:
+    """How many traces of a row match no scenario of two vehicles."""
+    share = Share(row.traces - row.matching, row.traces, traces_of(row))
+    return f"{share.count} match no scenario of {row.set_name} with two vehicles."
 
 
 def _of_danger(totals: Totals) -> Iterator[tuple[str, list[Row]]]:
@@ -63,8 +72,7 @@ def _detecting(totals: Totals) -> str:
     lines = []
     for value, rows in _of_danger(totals):
         lines.append(f"minDanger {value}: recall " + ", ".join(map(_shown, rows)) + ".")
-        missed = rows[-1].traces - rows[-1].matching
-        lines.append(f"minDanger {value}: {missed} traces match no scenario of {rows[-1].set_name}.")
+        lines.append(f"minDanger {value}: {_missed(rows[-1])}")
     return _listed(lines)
 
 
@@ -75,7 +83,8 @@ def _classifying(totals: Totals) -> str:
             if not row.matching_with_three:
                 continue
             several = ", ".join(f"{i}-{j} {n}" for (i, j), n in row.together.most_common(5))
-            said = f"{row.several} of {row.matching_with_three} matching traces match several scenarios"
+            matching = f"traces that match a scenario of the {row.sector}"
+            said = f"{Share(row.several, row.matching_with_three, matching).count} match several"
             lines.append(f"minDanger {value}, {row.set_name}: {said}" + (f"; {several}." if several else "."))
     if not lines:
         return "No trace matches, so these recordings cannot tell."
@@ -93,11 +102,14 @@ def _precision(totals: Totals) -> str:
         else f"{outside} matches lie outside the disturbance traces, which must not be."
     ]
     for row in rows:
-        known = paper_row(row)
+        known = paper_row(row) if len(totals.shown) == 1 else None
         theirs = f" [{percent(known.matching, VIOLATING_PAIRS)}; {RECALL_WITHOUT_FILTER}]" if known else ""
+        danger = totals.settings.min_danger.index(row.min_danger)
+        matching = totals.matching_violating[danger, row.set_name]
+        share = Share(matching, totals.violating, "violating pairs in all road sectors")
         lines.append(
             f"Without the filter dangerArises, minDanger {decimal(row.min_danger)}, {row.set_name}: "
-            f"{percent(row.matching, totals.violating)}{theirs} of {totals.violating} violating pairs."
+            f"{share.percent}{theirs} ({share.count}) match a scenario with two vehicles."
         )
     return _listed(lines)
 
@@ -110,7 +122,9 @@ def _min_danger(totals: Totals) -> str:
         rows = [row for row in totals.rows if row.set_name == name and row.traces]
         shares = [100 * row.matching / row.traces for row in rows]
         if len(shares) > 1:
-            values = ", ".join(f"{decimal(r.min_danger)}: {percent(r.matching, r.traces)}" for r in rows)
+            values = ", ".join(
+                f"{decimal(r.min_danger)}: {Share(r.matching, r.traces, traces_of(r))}" for r in rows
+            )
             lines.append(f"{name}: {values}; {max(shares) - min(shares):.1f} points between them.")
     return _listed(lines) or "Too few traces to tell."
 
@@ -119,7 +133,7 @@ def _earlier(totals: Totals) -> str:
     row = rss_row(totals)
     if row is None or not totals.settings.detectors:
         return "The detectors of earlier works or the set ext were not asked for."
-    lines = []
+    lines = [f"Detectors count pairs of whole recordings, scenarios count {traces_of(row)}."]
     for kind, number in KINDS.items():
         found = ", ".join(
             f"{metric} {totals.detected[DETECTORS[kind][metric]]} [{COMPARISON[kind][metric]}]"
@@ -132,17 +146,24 @@ def _earlier(totals: Totals) -> str:
 
 
 def _other_sectors(totals: Totals) -> Iterator[str]:
-    """The questions above are about the first road sector: recall in the others."""
+    """Recall in the other road sectors, and how many traces match nothing in all of them together."""
     first, *others = totals.shown.items()
-    lines = [
-        f"{name}, minDanger {decimal(value)}: recall "
-        + ", ".join(_shown(row) for row in rows if row.min_danger == value)
-        + "."
-        for name, rows in others
-        for value in totals.settings.min_danger
-    ]
-    if lines:
-        yield f"## Other road sectors\n\nWhat stands above is about the {first[0]}.\n\n{_listed(lines)}"
+    if not others:
+        return
+    lines: list[str] = []
+    for k, value in enumerate(totals.settings.min_danger):
+        for name, rows in others:
+            here = [row for row in rows if row.min_danger == value]
+            lines.append(f"{name}, minDanger {decimal(value)}: recall {', '.join(map(_shown, here))}.")
+            lines.append(f"{name}, minDanger {decimal(value)}: {_missed(here[-1])}")
+        last, traces = totals.settings.sets[-1], totals.traces[k]
+        missed = Share(traces - totals.matching[k, last], traces, "traces in all road sectors")
+        lines.append(
+            f"all road sectors, minDanger {decimal(value)}: {missed.count} match no scenario of {last} "
+            "with two vehicles."
+        )
+    about = f"RQ1, RQ2, RQ4 and RQ5 are about the {first[0]}."
+    yield f"## Other road sectors\n\n{about}\n\n{_listed(lines)}"
 
 
 def _notes(totals: Totals) -> Iterator[str]:

@@ -2,11 +2,13 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
 
 from roadproof.evaluation.foretelling import LABELS
 from roadproof.evaluation.results import Row, Totals, foretold_rows, words_in
+from roadproof.evaluation.sectors import ANYWHERE
 from roadproof.preventing.models import MODELS
 from roadproof.report.paper import COMPARISON, MARK, RESULTS, PaperRow
 from roadproof.report.tables import Table
@@ -127,7 +129,8 @@ def _result_rows(rows: Sequence[Row]) -> Iterator[tuple[str, ...]]:
         scenarios = row.sector.scenarios
         head = (decimal(row.min_danger), row.set_name)
         counts = (str(row.scenarios[i]) for i in scenarios)
-        yield (*head, OURS, str(row.traces), str(row.matching), percent(row.matching, row.traces), *counts)
+        recall = Share(row.matching, row.traces, traces_of(row)).percent
+        yield (*head, OURS, str(row.traces), str(row.matching), recall, *counts)
         known = paper_row(row)
         if known is not None:
             theirs = (str(known.scenarios.get(i, "-")) for i in scenarios)
@@ -175,9 +178,9 @@ def _warnings(failed: Mapping[str, str]) -> tuple[str, ...]:
 def _repeats(totals: Totals) -> tuple[str, ...]:
     if not totals.repeated:
         return ()
-    of = totals.repeated + sum(row.traces for row in totals.rows if row.set_name == totals.settings.sets[0])
+    shown = Share(totals.repeated, totals.repeated + totals.traces.total(), "traces in all road sectors")
     return (
-        f"{totals.repeated} of {of} traces are shown by an earlier recording too, so they are left out; "
+        f"{shown.count} are shown by an earlier recording too, so they are left out; "
         "vehicles and samples count as often as they are shown.",
     )
 
@@ -219,6 +222,43 @@ def _convention(totals: Totals) -> str:
     return (
         f"{says}; {totals.undecided} of {totals.asked} answers undecided, {totals.differing} would be "
         "another match under the other convention."
+    )
+
+
+@dataclass(frozen=True)
+class Share:
+    """``part`` of the ``whole`` of a population, which is named.
+
+    >>> str(Share(1, 3, "traces"))
+    '33.3% (1 of 3 traces)'
+    """
+
+    part: int
+    whole: int
+    population: str
+
+    @property
+    def percent(self) -> str:
+        """With one decimal; ``-`` of nothing."""
+        return percent(self.part, self.whole)
+
+    @property
+    def count(self) -> str:
+        """The two numbers and what they count."""
+        return f"{self.part} of {self.whole} {self.population}"
+
+    def __str__(self) -> str:
+        return f"{self.percent} ({self.count})"
+
+
+def traces_of(row: Row) -> str:
+    """The population of a row: traces that begin in its road sector."""
+    return f"traces{_place(row.sector.name)}"
+
+
+def _place(sector: str) -> str:
+    return (
+        "" if sector == ANYWHERE else f" on the {sector}" if sector.endswith("road") else f" in the {sector}"
     )
 
 
