@@ -19,11 +19,12 @@ from roadproof.evidence.judged import judge_file
 from roadproof.judge.exact import judge
 from roadproof.preventing import driving
 from roadproof.preventing.braking import Aided, Ramp
+from roadproof.preventing.claims import Side
 from roadproof.preventing.driving import Reading, drive_of
 from roadproof.preventing.lemmas import lemmas_for
 from roadproof.preventing.manoeuvres import CUT_IN, along_line
 from roadproof.preventing.models import models_for
-from roadproof.preventing.sides import Side, judged_drive
+from roadproof.preventing.sides import judged_drive
 
 RATE = 1000
 FULL = 0.85 * stepping.G

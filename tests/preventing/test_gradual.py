@@ -17,9 +17,10 @@ from roadproof.evidence.judged import judge_file
 from roadproof.judge.algebraic import Root, approximate
 from roadproof.preventing import gradual
 from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.claims import SIDES
 from roadproof.preventing.driving import Reading, drive_of, motion_in_deceleration
 from roadproof.preventing.manoeuvres import DECELERATION, KMH
-from roadproof.preventing.sides import SIDES, beside_boundary, first_drive, judged_drive
+from roadproof.preventing.sides import beside_boundary, first_drive, judged_drive
 
 RATE = 1000
 SOFT = Reading(values(), specification().options)

@@ -12,11 +12,12 @@ from roadproof.cli.main import main
 from roadproof.judge.algebraic import moved
 from roadproof.judge.truth import Cut, TruthSet, union
 from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.claims import SIDES
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.lemmas import lemmas_for
 from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
 from roadproof.preventing.models import MODELS, manoeuvre_of, models_for
-from roadproof.preventing.sides import SIDES, beside_boundary, first_drive, judged_drive
+from roadproof.preventing.sides import beside_boundary, first_drive, judged_drive
 from roadproof.report import preventable as report
 
 OPTIONS = (

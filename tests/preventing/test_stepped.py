@@ -15,11 +15,12 @@ from roadproof.cli.main import main
 from roadproof.evidence.judged import judge_file
 from roadproof.preventing import stepped
 from roadproof.preventing.boundary import Plane
+from roadproof.preventing.claims import SIDES
 from roadproof.preventing.driving import Reading, drive_of
 from roadproof.preventing.fuzzy import Controller, Scale, scale_of
 from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
 from roadproof.preventing.models import models_for
-from roadproof.preventing.sides import SIDES, judged_drive
+from roadproof.preventing.sides import judged_drive
 from roadproof.preventing.stepped import course_of, labels_of, places_of, spans_of
 
 

@@ -28,10 +28,11 @@ from roadproof.formats.recording import Integers, Recording
 from roadproof.formats.write_highd import write_highd
 from roadproof.monitoring.recursive import Reading as Plain
 from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.claims import SIDES, Side
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.manoeuvres import KMH, MANOEUVRES, Manoeuvre
 from roadproof.preventing.models import MODELS, SCENARIOS, course_in, foreseen
-from roadproof.preventing.sides import SIDES, Side, beside_boundary
+from roadproof.preventing.sides import beside_boundary
 from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
 from traffic.make_recording import Track, cruise, make_recording

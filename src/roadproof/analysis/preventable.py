@@ -18,13 +18,14 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.preventing import gradual
 from roadproof.preventing.boundary import Plane, plane_of
+from roadproof.preventing.claims import SIDES, Side
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.idle import chosen, idle
 from roadproof.preventing.lemmas import Lemma, lemmas_for
-from roadproof.preventing.lines import Line, end_of, line_data, read_line, told_line, truths
+from roadproof.preventing.lines import Line, end_of, line_data, read_line, sides_in, told_line, truths
 from roadproof.preventing.manoeuvres import Manoeuvre, Values
 from roadproof.preventing.models import MODELS, Model, boundary_of, parts_of, touched
-from roadproof.preventing.sides import SIDES, Side, beside_boundary, far_apart, first_drive
+from roadproof.preventing.sides import beside_boundary, far_apart, first_drive
 from roadproof.preventing.stepped import TOLD, beside_change, labels_of, places_of, spans_of
 from roadproof.proving.prover import prove
 from roadproof.spec.elaborate import read_claim
@@ -52,11 +53,12 @@ class Shown:
 
 @dataclass(frozen=True)
 class Plate:
-    """One model over one plane."""
+    """One model over the plane whose lines run ``along`` (SI)."""
 
     name: str
     model: str
     fixed: Values
+    along: tuple[Fraction, Fraction]
     lines: tuple[Line, ...] = ()
     shown: tuple[Shown, ...] = ()
     reason: str = ""
@@ -74,12 +76,9 @@ class Plate:
     @property
     def verdict(self) -> Verdict:
         """WITNESSED where each side that the plane has is shown by a drive."""
-        lacking = any(x.drive is None and not _is_absent(x) for x in self.shown)
+        sides = sides_in(self.lines, self.along, MODELS[self.model].is_stepped)
+        lacking = any(x.drive is None and x.side in sides for x in self.shown)
         return Verdict.UNKNOWN if lacking or not self.lines else Verdict.WITNESSED
-
-
-def _is_absent(shown: Shown) -> bool:
-    return shown.reason.startswith("no place")
 
 
 @dataclass(frozen=True)
@@ -169,7 +168,7 @@ class Preventable:
     def doubt(self, piece: Piece, reason: str) -> dict[str, Answer]:
         if isinstance(piece, Lemma):
             return {f"lemma-{piece.name}": Proved(piece, Verdict.UNKNOWN, self._said(piece), reason=reason)}
-        return {piece.name: Plate(piece.name, piece.model.name, piece.fixed, reason=reason)}
+        return {piece.name: Plate(piece.name, piece.model.name, piece.fixed, self.along, reason=reason)}
 
     def is_sure(self, answer: Answer) -> bool:
         return answer.verdict is not Verdict.UNKNOWN
@@ -201,7 +200,7 @@ class Preventable:
         true = tuple(truths(self.basis.specification, plane, model, self.basis.all_values()))
         lines = tuple(map(told_line, plane.rows, true))
         shown = tuple(self._show(plane, model, beside_boundary(plane, true, side), side) for side in SIDES)
-        return Plate(piece.name, model, piece.fixed, lines, shown)
+        return Plate(piece.name, model, piece.fixed, self.along, lines, shown)
 
     def _stepped(self, piece: PlatePiece, plane: Plane) -> Plate:
         """The plate of a controller: what it does from each place that is looked at."""
@@ -214,7 +213,7 @@ class Preventable:
             self._show(plane, model, beside_change(plane, labels, side == "unpreventable"), side)
             for side in SIDES
         )
-        return Plate(piece.name, model, piece.fixed, lines, shown)
+        return Plate(piece.name, model, piece.fixed, self.along, lines, shown)
 
     def _show(self, plane: Plane, model: str, candidates: Iterable[dict[str, Fraction]], side: Side) -> Shown:
         places = list(candidates) if self._parts else candidates
@@ -313,7 +312,8 @@ class Preventable:
             for x in said["shown"]
         )
         lines = tuple(read_line(x) for x in said["lines"])
-        return said["name"], Plate(said["name"], said["model"], fixed, lines, shown, said["reason"])
+        plate = Plate(said["name"], said["model"], fixed, self.along, lines, shown, said["reason"])
+        return said["name"], plate
 
     def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""

@@ -1,6 +1,6 @@
 """The lines of a plate: on each, between which values a collision is unpreventable, with its exact ends."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -9,6 +9,7 @@ from roadproof.judge.algebraic import Point, Root, approximate
 from roadproof.judge.truth import TruthSet
 from roadproof.preventing import gradual
 from roadproof.preventing.boundary import Plane, line
+from roadproof.preventing.claims import Side
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.models import unpreventable
 from roadproof.spec.bind import bind
@@ -59,6 +60,21 @@ def told_line(row: Fraction, true: TruthSet) -> Line:
     """What is true on a row's line, told."""
     spans = tuple((end_of(x.begin.point), end_of(x.end.point)) for x in true.spans() if x.end is not None)
     return Line(row, spans)
+
+
+def sides_in(lines: Sequence[Line], along: tuple[Fraction, Fraction], is_stepped: bool) -> frozenset[Side]:
+    """The sides of the boundary that a plate has more than single places of.
+
+    ``along``: the range of every line. Of a controller that is stepped a single place is a side, too.
+    """
+    whole = tuple(end_of(x) for x in along)
+    found: set[Side] = set()
+    for one in lines:
+        if any(is_stepped or a != b for a, b in one.spans):
+            found.add("unpreventable")
+        if one.spans != (whole,):
+            found.add("preventable")
+    return frozenset(found)
 
 
 def end_of(point: Point) -> End:

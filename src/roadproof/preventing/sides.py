@@ -5,7 +5,6 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import islice, pairwise
 from math import ceil
-from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
@@ -13,69 +12,17 @@ from roadproof.evidence.judged import Judged, RejectedError
 from roadproof.judge.algebraic import Point, bounds
 from roadproof.judge.truth import TruthSet
 from roadproof.preventing.boundary import Plane
-from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, is_aided, rest_of, road_of, speeds_of
-from roadproof.preventing.manoeuvres import Manoeuvre, Values, lane_width
-from roadproof.preventing.models import GRADUAL, MODELS, follows, foreseen, touched, unpreventable, untouched
+from roadproof.preventing.claims import Side, claim_of, with_also
+from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, rest_of, road_of
+from roadproof.preventing.manoeuvres import Manoeuvre, Values
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import LANE
 from roadproof.world.drive import Drive
 
-Side: TypeAlias = Literal["unpreventable", "preventable"]
-SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
 _FINE = 10**9  # of a line, for spans that have no place with few digits
 _LOOKED_AT = 400  # candidates for a drive
 _NEAR = Fraction(1, 10)  # m from the boundary
 _PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
-
-
-def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side, reading: Reading) -> str:
-    """What the drive from these values shows: its side, the model followed, and what comes of it.
-
-    Of a controller that is stepped: only how the drive begins, and what comes of it. Where POV's braking
-    grows at a finite rate: that SV follows its model, and what comes of it.
-    """
-    vehicles = manoeuvre.vehicles
-    met = touched(vehicles) if side == "unpreventable" else untouched(vehicles)
-    if "dGdt" in values:
-        driven = follows(GRADUAL, model, vehicles, _numbers(manoeuvre, values))
-        return f"{foreseen(GRADUAL, vehicles)} and {driven} and {met}"
-    begins = foreseen(manoeuvre.name, vehicles)
-    if MODELS[model].is_stepped:
-        return f"{begins} and {met}"
-    boundary = unpreventable(manoeuvre.name, model, vehicles)
-    numbers = _numbers(manoeuvre, values)
-    if manoeuvre.name == "cut-in" and is_aided(model, reading):
-        numbers += tuple(_number(speed, "m/s") for speed in speeds_of(values, reading))
-    driven = follows(manoeuvre.name, model, vehicles, numbers)
-    if side == "unpreventable":
-        return f"{boundary} and {driven} and {met}"
-    return f"{begins} and not {boundary} and {driven} and {met}"
-
-
-def _numbers(manoeuvre: Manoeuvre, values: Values) -> tuple[str, ...]:
-    lane, speed = lane_width(values), _number(values["Ve0"], "m/s")
-    beside = (lane + values["width"]) / 2
-    match manoeuvre.name:
-        case "cut-in":
-            return (_number(beside + lane, "m"), _number(values["dy0"], "m"), speed)
-        case "cut-out":
-            return (_number(beside, "m"), speed)
-        case _:
-            numbers = (speed, _number(values["Gx"], "m/s^2"))
-            if "dGdt" not in values:
-                return numbers
-            other = _number(values["Ve0"] - values["dV0"], "m/s")
-            return (speed, other, numbers[1], _number(values["dGdt"], "m/s^3"))
-
-
-def _number(value: Fraction, unit: str) -> str:
-    """A value in the language, exactly."""
-    return f"{value} {unit}" if value.denominator == 1 else f"{value}*1 {unit}"
-
-
-def with_also(claim: str, also: str) -> str:
-    """A claim about a drive, and what else is true of it; empty where nothing else is said."""
-    return f"{claim} and {also}" if also else claim
 
 
 def judged_drive(

@@ -56,7 +56,8 @@ class Entry:
     """``key`` is what only one entry of an index may have; ``file`` is a name inside the index's folder.
 
     ``claim`` None: what the file says, where ``fault_of`` finds no fault in it. ``trace`` is a counterexample
-    inside the index. ``assuming``: what the claim is said under.
+    inside the index. ``fault_of_drive``: what else a drive has to be, beside what its formula
+    says, finds its fault or nothing. ``assuming``: what the claim is said under.
     """
 
     common: Common
@@ -72,6 +73,7 @@ class Entry:
     unchecked: tuple[str, ...] = ()
     fault: str = ""
     fault_of: Callable[[str], str] | None = None
+    fault_of_drive: Callable[[DriveFile], str] | None = None
     assuming: tuple[str, ...] = ()
 
 
@@ -129,6 +131,8 @@ def mismatch(entry: Entry, said: Certificate | DriveFile) -> str:
             return f"{entry.where} has {name}={common.options[name]}, but its file {name}={options[name]}"
         if isinstance(said, DriveFile):
             difference = _other_values(entry, said)
+            if not difference and entry.fault_of_drive is not None and (found := entry.fault_of_drive(said)):
+                difference = f"{entry.where}: {found}"
             if difference:
                 return difference
         elif said.assumed.said != entry.assuming:

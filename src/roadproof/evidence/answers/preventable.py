@@ -1,66 +1,164 @@
 """The index and the kept answers of ``roadproof preventable``: drives on both sides, and lemmas."""
 
-import re
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields, rational, read_assuming
+from roadproof.preventing import gradual
 from roadproof.preventing.boundary import Plane, plane_of
+from roadproof.preventing.claims import SIDES, Side, claim_of, with_also
+from roadproof.preventing.driving import Reading
 from roadproof.preventing.idle import idle
-from roadproof.preventing.lines import line_data, told_line, truths
-from roadproof.preventing.manoeuvres import MANOEUVRES
-from roadproof.preventing.models import manoeuvre_of, models_for, parts_of
+from roadproof.preventing.lines import End, Line, line_data, sides_in, told_line, truths
+from roadproof.preventing.manoeuvres import MANOEUVRES, Manoeuvre, signals_of
+from roadproof.preventing.models import MODELS, boundary_of, manoeuvre_of, models_for, parts_of, touched
+from roadproof.signals import STARTING
+from roadproof.spec.bind import values_with
 
 SCHEMA = "roadproof/preventable/1"
 DRIVERS = "driver.spec"
 _PLATE = ("name", "model", "fixed", "verdict", "formula", "stepped", "motion", "lines", "shown", "reason")
 _SHOWN = ("side", "at", "verdict", "formula", "scenario", "drive", "reason")
 _LEMMA = ("name", "title", "claim", "assuming", "verdict", "certificate", "reason")
-# What a drive on each side has to say, given the formula of the boundary.
-_CLAIMS = {
-    "unpreventable": r"{boundary} and {follows} and F touches\([A-Z0-9, ]+\)",
-    "preventable": r"\w+\([A-Z0-9, ]+\) and not {boundary} and {follows} and G not touches\([A-Z0-9, ]+\)",
-}
-# Of a controller that is stepped, a drive says how it begins, and what comes of it.
-_TOUCHES = r"F touches\([A-Z0-9, ]+\)"
-_STEPPED = {
-    "unpreventable": r"\w+\([A-Z0-9, ]+\) and {touched}",
-    "preventable": r"\w+\([A-Z0-9, ]+\) and {untouched}",
-}
-# Where POV's braking grows at a finite rate, it says what SV and POV do, and what comes of it.
-_GRADUAL = r"\w+\([A-Z0-9, ]+\) and follows_gradualDeceleration_{model}\([^()]*\) and {met}"
 _LINES = "that the lines of the plate are what its formula or its motion says"
 _PLACES = "that the places of the plate are where it holds of the controller's drives"
 _CONTROLLER = "that the accelerations of SV are what the controller of its model computes"
 
 
+@dataclass(frozen=True)
+class _Plate:
+    """What a plate says of itself, compared with what is asked; ``fixed`` in SI units."""
+
+    line: Fields
+    name: str
+    model: str
+    manoeuvre: Manoeuvre
+    fixed: Mapping[str, Fraction]
+
+    @property
+    def is_stepped(self) -> bool:
+        return MODELS[self.model].is_stepped
+
+    @property
+    def is_gradual(self) -> bool:
+        return gradual.RATE in self.fixed
+
+    @property
+    def boundary(self) -> str:
+        vehicles = self.manoeuvre.vehicles
+        return (
+            touched(vehicles) if self.is_gradual else boundary_of(self.manoeuvre.name, self.model, vehicles)
+        )
+
+    def fault(self, lines: Sequence[Line], along: tuple[Fraction, Fraction]) -> str:
+        """What the plate says that does not follow from its model, its values and its lines, or nothing."""
+        told = "-".join(f"{name}-{value}".replace("/", "_") for name, value in self.fixed.items())
+        name = f"{self.model}-{told}" if told else self.model
+        if self.name != name:
+            return f"its name is {self.name[:60]}, but its model and values say {name}"
+        if self.line.text("formula") != self.boundary:
+            return (
+                f"its formula is {self.line.text('formula')[:80]}, but that of its model is {self.boundary}"
+            )
+        for field, is_so in (("stepped", self.is_stepped), ("motion", self.is_gradual)):
+            if bool(self.line.text(field)) is not is_so:
+                return f"'{field}' does not go with its model and values"
+        shown = [Fields(x, self.line.where, _SHOWN) for x in self.line.items("shown")]
+        sides = [x.text("side") for x in shown]
+        if lines and sorted(sides) != sorted(SIDES):
+            return (
+                f"it shows the sides {', '.join(sides)[:60] or 'none'}, but has to show {' and '.join(SIDES)}"
+            )
+        asked = sides_in(lines, along, self.is_stepped)
+        lacking = [
+            x.text("side") for x in shown if x.text("side") in asked and x.text("verdict") != "WITNESSED"
+        ]
+        verdict = "UNKNOWN" if lacking or not lines else "WITNESSED"
+        if self.line.text("verdict") != verdict:
+            return f"it is {self.line.text('verdict')[:20]}, but its lines and drives say {verdict}"
+        return ""
+
+
+def _read_plate(content: object, background: Background, number: int) -> _Plate:
+    """Raises ``InputError``."""
+    common = background.home
+    line = Fields(content, f"{common.where}, plate {number}", _PLATE)
+    model, said = line.text("model"), background.said.text("manoeuvre")
+    if said not in MANOEUVRES or model not in MODELS or said not in MODELS[model].manoeuvres:
+        raise InputError(f"{line.where}: there is no model '{model[:40]}' of a manoeuvre '{said[:40]}'")
+    fixed = {name: rational(x, f"{line.where}, fixed.{name}") for name, x in line.mapping("fixed").items()}
+    return _Plate(line, line.text("name"), model, MANOEUVRES[said], fixed)
+
+
 def _plate(content: object, background: Background, number: int, beyond: tuple[str, ...]) -> Iterator[Entry]:
     """The entries of a plate; ``beyond``: what is not checked of its lines where they are exact."""
-    common = background.home
-    plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
-    name, model, boundary = plate.text("name"), plate.text("model"), plate.text("formula")
-    stepped, motion = plate.text("stepped") != "", plate.text("motion") != ""
-    for x in plate.items("shown"):
-        line = Fields(x, f"{plate.where}, drive", _SHOWN)
+    common, plate = background.home, _read_plate(content, background, number)
+    plane = _plane(background.said, plate)
+    lines = [_read_line(x, plate.line.where) for x in plate.line.items("lines")]
+    of_plate = plate.fault(lines, plane.along)
+    for k, x in enumerate(plate.line.items("shown")):
+        line = Fields(x, f"{plate.line.where}, drive {k + 1}", _SHOWN)
         side, verdict, claim = line.text("side"), line.text("verdict"), line.text("formula")
-        scenario = line.text("scenario")
-        shows, fault = shows_of(verdict, line.where, "proof", "drive"), ""
-        if DRIVERS not in background.said.texts("specs"):
-            fault = f"{line.where} is about a driver of {DRIVERS}, which is not among its specification files"
-        elif scenario and scenario not in _scenarios(background.said):
-            fault = f"{line.where} is of '{scenario[:40]}', which is not what is asked for"
-        elif shows == "drive" and not _says(
-            _without(claim, scenario), side, boundary, model, stepped, motion
-        ):
-            fault = f"{line.where} is about '{side}' of {boundary}, but its formula is not: {claim[:120]}"
-        file = evidence_name(line, "drive")
-        what = f"{name}, {side}"
+        shows = shows_of(verdict, line.where, "proof", "drive")
+        at = {name: rational(v, f"{line.where}, at.{name}") for name, v in line.mapping("at").items()}
+        fault = of_plate and f"{plate.line.where}: {of_plate}"
+        if shows == "drive" and not fault:
+            fault = _drive_fault(line, plate, plane, background, at)
+        elif shows != "drive" and (at or claim) and not fault:
+            fault = f"{line.where}: {verdict} with initial values or a formula"
         yield Entry(
-            common, line.where, ("drive", name, side), verdict, what, shows, claim, file,
-            unchecked=(_PLACES, _CONTROLLER) if stepped else beyond, fault=fault,
+            common, line.where, ("drive", plate.name, side), verdict, f"{plate.name}, {side}", shows, claim,
+            evidence_name(line, "drive"), unchecked=(_PLACES, _CONTROLLER) if plate.is_stepped else beyond,
+            fault=fault, fault_of_drive=partial(_begins_otherwise, plate.manoeuvre, at),
         )  # fmt: skip
+
+
+def _drive_fault(
+    line: Fields, plate: _Plate, plane: Plane, background: Background, at: Mapping[str, Fraction]
+) -> str:
+    """Why a drive's formula is not what its side, its values and its scenario demand, or nothing."""
+    common, scenario = background.home, line.text("scenario")
+    side: Side | None = next((x for x in SIDES if x == line.text("side")), None)
+    if side is None:
+        return f"{line.where}: there is no side '{line.text('side')[:40]}'"
+    if DRIVERS not in background.said.texts("specs"):
+        return f"{line.where} is about a driver of {DRIVERS}, which is not among its specification files"
+    if scenario and scenario not in _scenarios(background.said):
+        return f"{line.where} is of '{scenario[:40]}', which is not what is asked for"
+    row, place = at.get(plane.manoeuvre.across), at.get(plane.manoeuvre.line)
+    if row is None or place is None or dict(at) != plane.values(row, place):
+        return f"{line.where}: its initial values are not those of the plate at a place of its lines"
+    if row not in plane.rows or not plane.along[0] <= place <= plane.along[1]:
+        told = f"{plane.manoeuvre.across}={row}, {plane.manoeuvre.line}={place}"
+        return f"{line.where}: {told} is not on the plate"
+    reading = Reading(values_with(common.library, common.values or {}), common.options)
+    wanted = with_also(claim_of(plate.manoeuvre, plate.model, at, side, reading), scenario)
+    claim = line.text("formula")
+    if common.formula(claim) != common.formula(wanted):
+        return f"{line.where} is '{side}' of {plate.boundary}, but its formula is not: {claim[:120]}"
+    return ""
+
+
+def _begins_otherwise(manoeuvre: Manoeuvre, at: Mapping[str, Fraction], file: DriveFile) -> str:
+    """Where a drive does not begin as the initial values say, or nothing."""
+    states = signals_of(manoeuvre, at)
+    if set(file.drive.vehicles) != set(manoeuvre.vehicles):
+        return f"its vehicles are {', '.join(file.drive.vehicles)}"
+    for vehicle, motion in file.drive.vehicles.items():
+        for size in ("length", "width"):
+            if getattr(motion, size) != at[size]:
+                return f"{size}({vehicle})={getattr(motion, size)}, but the plate says {at[size]}"
+        for signal in STARTING:
+            begins, said = getattr(motion, signal), states[signal, vehicle]
+            if begins != said:
+                return f"{signal}({vehicle})={begins} at time 0, but the plate says {said}"
+    return ""
 
 
 def _scenarios(said: Fields) -> tuple[str, ...]:
@@ -74,41 +172,23 @@ def _scenarios(said: Fields) -> tuple[str, ...]:
     return parts_of(number, MANOEUVRES[manoeuvre].vehicles)
 
 
-def _without(claim: str, scenario: str) -> str:
-    """A claim without what it says of a scenario; nothing where it has to say that and does not."""
-    if not scenario:
-        return claim
-    end = f" and {scenario}"
-    return claim.removesuffix(end) if claim.endswith(end) else ""
+def _read_line(content: object, where: str) -> Line:
+    """The inverse of ``line_data``. Raises ``InputError``."""
+    data = Fields(content, f"{where}, line", ("at", "unpreventable"))
+    spans = []
+    for span in data.items("unpreventable"):
+        if not isinstance(span, list) or len(span) != 2:
+            raise InputError(f"{data.where}: a span has two ends")
+        begin, end = (Fields(x, data.where, ("near", "exact")) for x in span)
+        spans.append((_end(begin), _end(end)))
+    return Line(data.rational("at"), tuple(spans))
 
 
-def _says(claim: str, side: str, boundary: str, model: str, stepped: bool, motion: bool) -> bool:
-    """Whether a drive of ``claim`` shows that side: in words, since only one text is ever written."""
-    if motion:
-        met = boundary if side == "unpreventable" else boundary.replace("F ", "G not ", 1)
-        pattern = _GRADUAL.format(model=re.escape(model), met=re.escape(met))
-        known = side in _CLAIMS and not stepped and re.fullmatch(_TOUCHES, boundary) is not None
-        return known and re.fullmatch(pattern, claim) is not None
-    if stepped:
-        return (
-            side in _STEPPED
-            and re.fullmatch(_TOUCHES, boundary) is not None
-            and _comes(claim, side, boundary)
-        )
-    if side not in _CLAIMS or not re.fullmatch(
-        rf"unpreventable_\w+_{re.escape(model)}\([A-Z0-9, ]+\)", boundary
-    ):
-        return False
-    follows = boundary.replace("unpreventable_", "follows_", 1).partition("(")[0]
-    driven = re.escape(follows) + r"\([^()]*\)"
-    return re.fullmatch(_CLAIMS[side].format(boundary=re.escape(boundary), follows=driven), claim) is not None
-
-
-def _comes(claim: str, side: str, boundary: str) -> bool:
-    """Whether what comes of the drive is what the plate's formula is about."""
-    untouched = boundary.replace("F ", "G not ", 1)
-    pattern = _STEPPED[side].format(touched=re.escape(boundary), untouched=re.escape(untouched))
-    return re.fullmatch(pattern, claim) is not None
+def _end(data: Fields) -> End:
+    near = data.get("near")
+    if not isinstance(near, int | float) or isinstance(near, bool):
+        raise InputError(f"{data.where}: near is no number")
+    return End(float(near), data.text("exact"))
 
 
 def _lemma(content: object, background: Background, number: int) -> Iterator[Entry]:
@@ -148,19 +228,26 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
         if tuple(data.texts("idle")) != found:
             yield f"what no boundary depends on is {', '.join(found) or 'nothing that was chosen'}"
     for number, content in enumerate(data.items("plates"), 1):
-        plate = Fields(content, f"{common.where}, plate {number}", _PLATE)
-        if plate.text("stepped") or not plate.items("lines"):
+        plate = _read_plate(content, background, number)
+        told = plate.line.items("lines")
+        if not told:
             continue
-        plane, told = _plane(data, plate), plate.items("lines")
-        if len(told) != plane.lines:
-            yield f"plate {plate.text('name')} has {len(told)} lines, but {plane.lines} are asked for"
+        plane = _plane(data, plate)
+        if len(told) != len(plane.rows):
+            yield f"plate {plate.name} has {len(told)} lines, but {len(plane.rows)} are asked for"
             continue
-        true = truths(common.specification, plane, plate.text("model"), common.values or {})
+        rows = [Fields(x, plate.line.where).rational("at") for x in told]
+        if rows != [*plane.rows]:
+            yield f"plate {plate.name}: its lines are at other values of {plane.manoeuvre.across}"
+            continue
+        if plate.is_stepped:
+            continue
+        true = truths(common.specification, plane, plate.model, common.values or {})
         known = map(line_data, map(told_line, plane.rows, true))
         wrong = next((x for said, x in zip(told, known, strict=True) if said != x), None)
         if wrong is not None:
             at = f"{plane.manoeuvre.across}={wrong['at']}"
-            yield f"plate {plate.text('name')} says otherwise at {at} than its formula or its motion"
+            yield f"plate {plate.name} says otherwise at {at} than its formula or its motion"
 
 
 def _idle(data: Fields, background: Background, models: Set[str]) -> tuple[str, ...]:
@@ -172,18 +259,17 @@ def _idle(data: Fields, background: Background, models: Set[str]) -> tuple[str, 
     return idle(common.specification, common.values or {}, MANOEUVRES[manoeuvre], asked)
 
 
-def _plane(data: Fields, plate: Fields) -> Plane:
-    """The plane of a plate, as the index says it. Raises ``InputError``, ``UsageError``."""
-    manoeuvre = MANOEUVRES.get(data.text("manoeuvre"))
-    along, across = data.texts("along"), data.texts("across")
-    if manoeuvre is None or (len(along), len(across)) != (3, 4) or not across[3].isdecimal():
-        raise InputError(f"{data.where}: manoeuvre, along and across say no plane")
+def _plane(said: Fields, plate: _Plate) -> Plane:
+    """The plane of a plate, as the question says it. Raises ``InputError``, ``UsageError``."""
+    manoeuvre = plate.manoeuvre
+    along, across = said.texts("along"), said.texts("across")
+    if (len(along), len(across)) != (3, 4) or not across[3].isdecimal():
+        raise InputError(f"{said.where}: along and across say no plane")
     if (along[0], across[0]) != (manoeuvre.line, manoeuvre.across):
-        raise InputError(f"{data.where}: a {manoeuvre.name} varies {manoeuvre.line} and {manoeuvre.across}")
-    fixed = {name: rational(x, f"{plate.where}, fixed.{name}") for name, x in plate.mapping("fixed").items()}
-    low, high = (rational(x, data.where) for x in along[1:])
-    least, most = (rational(x, data.where) for x in across[1:3])
-    return plane_of(manoeuvre, fixed, (low, high), (least, most), int(across[3]))
+        raise InputError(f"{said.where}: a {manoeuvre.name} varies {manoeuvre.line} and {manoeuvre.across}")
+    low, high = (rational(x, said.where) for x in along[1:])
+    least, most = (rational(x, said.where) for x in across[1:3])
+    return plane_of(manoeuvre, plate.fixed, (low, high), (least, most), int(across[3]))
 
 
 READER = Reader(
