@@ -6,6 +6,7 @@ as the same formula.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import Literal
 
 from roadproof.errors import UsageError
@@ -14,10 +15,12 @@ from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import rename, rename_vehicles, road_names, vehicles_of
-from roadproof.logic.syntax import Binary, Binding, Chain, Claim, Expression, Prefix, Temporal
+from roadproof.logic.syntax import Binary, BinaryOperator, Binding, Chain, Claim, Expression, Prefix, Temporal
+from roadproof.logic.terms import Dimension
 from roadproof.spec.elaborate import elaborate
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
+from roadproof.units import SI
 
 
 def both(*queries: Query) -> Query:
@@ -59,6 +62,29 @@ def always(query: Query) -> Query:
     """``G query``: it holds from now on."""
     claim = Claim(query.claim.given, Temporal("G", None, None, query.claim.body))
     return replace(query, claim=claim, formula=f.Always(f.FOREVER, query.formula), written="")
+
+
+def comparison(
+    specification: Specification,
+    given: tuple[Binding, ...],
+    left: Expression,
+    op: BinaryOperator,
+    value: Fraction,
+    dimension: Dimension,
+) -> Query:
+    """``left op value`` in the names that are ``given``; ``value`` in SI units of ``dimension``."""
+    return elaborate(specification, Claim(given, Binary(op, left, _quantity(value, dimension))))
+
+
+def _quantity(value: Fraction, dimension: Dimension) -> Expression:
+    """A number with its unit; where no unit has that dimension, a product of metres and seconds."""
+    unit = SI.get(dimension)
+    number: Expression = syntax.Literal_(abs(value), "" if unit in (None, "unitless") else unit or "")
+    if unit is None:
+        for power, base in zip(dimension, ("m", "s"), strict=True):
+            for _ in range(abs(power)):
+                number = Binary("*" if power > 0 else "/", number, syntax.Literal_(Fraction(1), base))
+    return Prefix("-", number) if value < 0 else number
 
 
 def with_vehicles(query: Query, roles: Mapping[str, str]) -> Query:

@@ -1,11 +1,14 @@
 """The index and the answers of ``roadproof classify``: classes with drives, and claims about them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
-from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of, shows_of_claim
+from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields
+from roadproof.logic import formula as f
+from roadproof.spec.elaborate import apply_definition
+from roadproof.spec.scenarios import LANE, name_of
 
 SCHEMA = "roadproof/classify/1"
 CLASSES = "classes"  # the spec set of the file that defines them
@@ -31,8 +34,7 @@ def read(data: Fields, background: Background) -> Iterator[Entry]:
             shows,
             line.text("formula"),
             evidence_name(line, "drive"),
-            unchecked=("that the formula is the class of that name",) if shows == "drive" else (),
-            fault="" if name in line.text("formula") else f"{line.where}: its formula is not {name}",
+            fault=_not_of_class(line, common),
         )
     for number, content in enumerate(data.items("claims"), 1):
         line = Fields(content, f"{data.where}, claim {number}", _CLAIM)
@@ -48,10 +50,51 @@ def read(data: Fields, background: Background) -> Iterator[Entry]:
             claim,
             evidence_name(line, "certificate"),
             unchecked=unchecked_of(verdict),
+            fault=_not_of_name(line, common),
         )
     for number, content in enumerate(data.items("doubts") if data.has("doubts") else (), 1):
         line = Fields(content, f"{data.where}, doubt {number}", _DOUBT)
         yield Entry(common, line.where, ("doubt", number), "UNKNOWN", line.text("about"), "nothing", "")
+
+
+def _not_of_class(line: Fields, common: Common) -> str:
+    """Why the formula of a class is not the definition of its name and vehicles, or nothing."""
+    name, specification = line.text("name"), common.specification
+    if name not in specification.definitions:
+        return f"{line.where}: there is no definition '{name[:60]}' in its specification files"
+    query = apply_definition(specification, name, (*line.texts("vehicles"), LANE))
+    if common.formula(line.text("formula")) == query.formula:
+        return ""
+    return f"{line.where}: its formula is not {name}: {line.text('formula')[:120]}"
+
+
+def _not_of_name(line: Fields, common: Common) -> str:
+    """Why a claim is not the one that its name and kind say, or nothing.
+
+    What excludes each other is named; of a scenario and its classes the scenario is.
+    """
+    name, kind, claim = line.text("name"), line.text("kind"), line.text("claim")
+    beginning = {"exclusive": "exclusive-", "covers": "covers-scenario-", "empty": "empty-"}
+    if kind not in beginning or not name.startswith(beginning[kind]):
+        return f"{line.where}: its name {name[:60]} is none of kind {kind[:20]}"
+    formula = common.formula(claim)
+    named = {x.name for x in f.subformulas(formula) if isinstance(x, f.Named)}
+    told = name.removeprefix(beginning[kind])
+    if kind == "exclusive":
+        inside = formula.body if isinstance(formula, f.Not) else None
+        parts = inside.parts if isinstance(inside, f.And) else ()
+        said = [x.name for x in parts if isinstance(x, f.Named)]
+        if len(parts) != 2 or len(said) != 2 or not (told + "-").startswith(f"{said[0]}-{said[1]}-"):
+            return f"{line.where} is called {name[:60]}, but its claim is {claim[:120]}"
+    elif kind == "covers" and not (told.isdecimal() and name_of(int(told)) in named):
+        return f"{line.where} is called {name[:60]}, but its claim is {claim[:120]}"
+    return ""
+
+
+def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+    """That the text of the classes is not the one that their evidence was read with."""
+    if data.text("text") not in [x.text for x in background.library.files]:
+        yield "the text of its classes is not that of a specification file beside it"
 
 
 READER = Reader(
@@ -61,4 +104,5 @@ READER = Reader(
     read,
     ("classes", "claims"),
     read,
+    _faults,
 )
