@@ -271,19 +271,25 @@ def test_a_class_that_occurs_in_traffic_may_say_where() -> None:
 
 DEFINED = """
 set classes extends base "classes of base" {}
-def fast(a: vehicle) := v_lon(a) > 20 m/s
-def slow(a: vehicle) := not fast(a)
+def fast(a: vehicle, L: lane) := atLane(a, L) and v_lon(a) > 20 m/s
+def slow(a: vehicle, L: lane) := not fast(a, L)
 """
 CLASSIFY = {
     "schema": "roadproof/classify/1",
     "set": "classes",
     **SAID,
     "classes": [
-        {"name": "fast", "formula": "fast(SV)", "verdict": "WITNESSED", "drive": "d.json"},
-        {"name": "slow", "formula": "slow(SV)", "verdict": "UNKNOWN", "drive": None},
+        {
+            "name": "fast",
+            "vehicles": ["SV"],
+            "formula": "fast(SV, L)",
+            "verdict": "WITNESSED",
+            "drive": "d.json",
+        },
+        {"name": "slow", "vehicles": ["SV"], "formula": "slow(SV, L)", "verdict": "UNKNOWN", "drive": None},
     ],
     "claims": [
-        {"name": "one of them", "kind": "cover", "claim": "fast(SV) or not fast(SV)"}
+        {"name": "exclusive-fast-slow", "kind": "exclusive", "claim": "not (fast(SV, L) and slow(SV, L))"}
         | {"verdict": "PROVED", "certificate": "c.json"}
     ],
 }
@@ -295,13 +301,32 @@ def test_classes_and_claims_about_them(tmp_path: Path) -> None:
     library = load_library((path,))
     fast, slow, claim = entries(CLASSIFY, library)
     assert (fast.shows, fast.file, fast.fault) == ("drive", "d.json", "")
-    assert fast.unchecked == ("that the formula is the class of that name",)
     assert (slow.shows, slow.file, slow.unchecked) == ("nothing", None, ())
-    assert (claim.where, claim.key) == ("index.json, claim 1", ("claim", "one of them"))
-    assert (claim.shows, claim.file, claim.claim) == ("proof", "c.json", "fast(SV) or not fast(SV)")
-    assert (
-        "its formula is not quick" in entries(with_one(CLASSIFY, "classes", name="quick"), library)[0].fault
-    )
+    assert (claim.where, claim.key) == ("index.json, claim 1", ("claim", "exclusive-fast-slow"))
+    assert (claim.shows, claim.file, claim.claim) == ("proof", "c.json", "not (fast(SV, L) and slow(SV, L))")
+    assert [slow.fault, claim.fault] == ["", ""]
+
+
+@pytest.mark.parametrize(
+    ("kind", "other", "told"),
+    [
+        ("classes", {"name": "quick"}, "there is no definition 'quick'"),
+        ("classes", {"name": "slow"}, "its formula is not slow"),
+        ("classes", {"vehicles": ["POV"]}, "its formula is not fast"),
+        ("classes", {"formula": "fast(SV, L) or slow(SV, L)"}, "its formula is not fast"),
+        ("claims", {"name": "exclusive-fast-quick"}, "is called exclusive-fast-quick, but its claim is"),
+        ("claims", {"name": "covers-scenario-01"}, "is none of kind exclusive"),
+        ("claims", {"kind": "covers", "name": "covers-scenario-01"}, "is called covers-scenario-01, but"),
+        ("claims", {"claim": "fast(SV, L) or not fast(SV, L)"}, "is called exclusive-fast-slow, but"),
+    ],
+)
+def test_classes_and_claims_under_another_name(
+    kind: str, other: dict[str, Any], told: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "classes.spec"
+    path.write_text(DEFINED, "utf-8")
+    found = entries(with_one(CLASSIFY, kind, **other), load_library((path,)))
+    assert told in found[0 if kind == "classes" else 2].fault
 
 
 def test_a_kept_answer_about_classes_and_doubts_about_all_of_them(tmp_path: Path) -> None:
@@ -333,13 +358,19 @@ EXPLORE = {
     **SAID,
     "explored": [
         {
+            "scenario": None,
             "set": "base",
+            "formula": FILE.formula,
             "vary": [{"name": "minSafe"}],
             "values": [finding("3/5"), finding("1", verdict="IMPOSSIBLE", file="certificate")],
             "boundaries": [
                 {"held": finding("3/5"), "missed": finding("1", verdict="UNKNOWN", file="reason")}
             ],
-            "extremes": [{"point": ["1/2"], "best": finding("20"), "missed": None, "surely": None}],
+            "extremes": [
+                {"sense": "greatest", "measure": "v_lon(SV)", "when": "", "point": ["1/2"]}
+                | {"best": {**finding("20"), "formula": f"{FILE.formula} and v_lon(SV) >= 20 m/s"}}
+                | {"missed": None, "surely": None}
+            ],
         }
     ],
 }
@@ -349,15 +380,50 @@ def test_values_with_and_without_a_drive() -> None:
     found = entries(EXPLORE)
     assert [x.fault for x in found] == [""] * 5
     assert [x.shows for x in found] == ["drive", "impossibility", "drive", "nothing", "drive"]
-    assert [x.values and str(x.values["minSafe"]) for x in found] == ["3/5", "1", "3/5", "1", None]
-    assert found[4].common.values is not None
-    assert str(found[4].common.values["minSafe"]) == "1/2"
+    assert [x.values and str(x.values["minSafe"]) for x in found] == ["3/5", "1", "3/5", "1", "1/2"]
     assert found[0].where == "index.json, exploration 1, value 1"
     (one,) = EXPLORE["explored"]
     short = {**EXPLORE, "explored": [{**one, "values": [finding()]}]}
-    assert entries(short)[0].fault.endswith("0 values of 1")
+    with pytest.raises(InputError, match="0 values of 1"):
+        entries(short)
     with pytest.raises(InputError, match="minSafe"):
         entries({**EXPLORE, "explored": [{**one, "values": [finding("x")]}]})
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"formula": "scenario_1(SV, POV, L)"}, "its formula is not that of its values"),
+        ({"scenario": 1}, "is called scenario 1, but its formula is another"),
+    ],
+)
+def test_an_exploration_of_another_formula(change: dict[str, Any], told: str) -> None:
+    (one,) = EXPLORE["explored"]
+    assert all(told in x.fault for x in entries({**EXPLORE, "explored": [{**one, **change}]}))
+
+
+def test_an_extreme_at_another_value_sense_or_measure() -> None:
+    (one,) = EXPLORE["explored"]
+    (extreme,) = one["extremes"]
+    best = extreme["best"]
+    for change in ({"best": {**best, "at": ["21"]}}, {"sense": "least"}, {"measure": "v_lon(POV)"}):
+        changed = {**EXPLORE, "explored": [{**one, "extremes": [{**extreme, **change}]}]}
+        assert "its formula is not that of its values" in entries(changed)[4].fault
+
+
+def test_limits_of_vehicles_are_in_the_formula_of_each_value() -> None:
+    """Two values exchanged: each drive is of the other's limit."""
+    (one,) = EXPLORE["explored"]
+    limited = {
+        value: {**finding(value), "formula": f"{FILE.formula} and G a_lon(POV) >= {value} m/s^2"}
+        for value in ("-6", "-1")
+    }
+    vary = [{"name": "POV.a_lon.min"}]
+    right = {**one, "vary": vary, "values": [*limited.values()], "boundaries": [], "extremes": []}
+    assert [x.fault for x in entries({**EXPLORE, "explored": [right]})] == ["", ""]
+    swapped = [{**limited["-6"], "at": ["-1"]}, {**limited["-1"], "at": ["-6"]}]
+    wrong = entries({**EXPLORE, "explored": [{**right, "values": swapped}]})
+    assert all("its formula is not that of its values" in x.fault for x in wrong)
 
 
 def test_a_kept_exploration_says_what_the_index_says() -> None:
