@@ -91,6 +91,7 @@ LENGTHY = (
     "tests/cli/test_schemas.py::test_what_a_command_says_is_what_its_schema_says[prove",
     "tests/cli/test_witness.py::test_impossible_names_its_core_and_is_unexpected",
     "tests/encode/test_facts.py::test_facts_are_true_where_the_comparison_is",
+    "tests/evidence/test_every_field.py::test_no_field_is_changed_in_silence",
     "tests/evidence/test_answers_jsonl.py::test_no_change_of_a_line_counts",
     "tests/evidence/test_forged_folders.py::test_no_change_is_accepted_that_changes_what_is_said",
     "tests/findings/test_findings.py::test_a_page_says_what_comes_out[roadproof overlap --among 1,4 --sta",

@@ -20,3 +20,11 @@ UNITS: Mapping[str, tuple[Fraction, Dimension]] = {
     "unitless": (Fraction(1), (0, 0)),
 }
 SI: Mapping[Dimension, str] = {dimension: unit for unit, (factor, dimension) in UNITS.items() if factor == 1}
+
+
+def unit_text(dimension: Dimension) -> str:
+    """The unit in which values of ``dimension`` are printed; empty without dimension."""
+    if dimension == (0, 0):
+        return ""
+    metres, seconds = dimension
+    return SI.get(dimension) or f"m^{metres} s^{seconds}"

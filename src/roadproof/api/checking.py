@@ -1,8 +1,8 @@
 """Evidence checked again, without the programs that made it."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from html import escape
 from pathlib import Path
@@ -40,6 +40,8 @@ class Checked:
 
     ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
     evidence, and were read on top of it. ``kernel``: what Coq needed and stands on, where it was asked.
+    ``not_checked``: by folder, the fields of its index and the files in it that nothing is compared with.
+    ``strict``: whether answers without evidence make the exit code 20.
     """
 
     findings: tuple[Finding, ...]
@@ -47,6 +49,8 @@ class Checked:
     library: Library
     specs: tuple[Path, ...] = ()
     kernel: kernels.Answered | None = None
+    not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    strict: bool = False
 
     @property
     def accepted(self) -> bool:
@@ -60,14 +64,19 @@ class Checked:
 
     @property
     def exit_code(self) -> ExitCode:
-        return exit_code(self.findings)
+        return exit_code(self.findings, self.strict)
 
     def as_data(self) -> dict[str, Any]:
         """As the plain data of ``--json``."""
         data: dict[str, Any] = {**heading(SCHEMA, self.library), "solver": self.solver}
         if self.kernel is not None:
             data["kernel"] = self.kernel.as_data()
-        return {**data, "findings": [_entry(x) for x in self.findings]}
+        findings = [_entry(x) for x in self.findings]
+        return {
+            **data,
+            "findings": findings,
+            "not_checked": {k: list(v) for k, v in self.not_checked.items()},
+        }
 
     def rows(self) -> list[Row]:
         """A row for each claim."""
@@ -100,6 +109,7 @@ class Checked:
         words = called_by(self.library.select(), (x.claim for x in self.findings))
         lines += [f"  {line}" for line in legend(words)]
         kernel = [] if self.kernel is None else [str(self.kernel)]
+        lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
         return "\n".join([*lines, summary(self.findings, self.solver), *kernel])
 
 
@@ -121,11 +131,13 @@ def check(
     jobs: int | None = None,
     progress: Progress | None = None,
     kernel: Kernel | None = None,
+    strict: bool = False,
 ) -> Checked:
     """Check certificates, drive files and folders of them, as ``roadproof check`` does.
 
     ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
-    certificates are put to Coq instead, drives too, and both accepted by its word alone. Raises
+    certificates are put to Coq instead, drives too, and both accepted by its word alone. ``strict``: the exit
+    code is 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN. Raises
     ``InputError`` for a path that holds nothing, ``MissingSolverError``.
     """
     one_of("solver", solver, Solver)
@@ -149,7 +161,10 @@ def check(
     answers = pool.in_order(pool.work(judge, work, jobs, _doubt, progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)
-    return Checked(tuple(conclude(surveyed, found)), kernel or solver, library, beside, answered)
+    left = {str(told.folder): told.not_checked for told in surveyed.told if told.not_checked}
+    return Checked(
+        tuple(conclude(surveyed, found)), kernel or solver, library, beside, answered, left, strict
+    )
 
 
 def write_sources(

@@ -2,6 +2,7 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from roadproof.cli.numbers import add_effort_options, add_working_options
 from roadproof.cli.options import add_json_option, add_spec_option, write_json
@@ -18,6 +19,7 @@ examples:
   roadproof check drives/scenario-04-base.json     judge a drive again, exactly
   roadproof check proofs/ --kernel coq             certificates and drives are put to Coq, and to no solver
   roadproof check proofs/ --kernel coq --write v/  what would be put to Coq, to be read
+  roadproof check proofs/ --strict                 for a pipeline: no answer may be without evidence
   roadproof check mine/ --spec mine.spec           claims that were made with definitions of yours
 
 A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
@@ -27,8 +29,10 @@ each entry must be that of its file, and no file may be without one; kept answer
 an index names specification files beside it, such as classes.spec, these are put on top of the library,
 unless they would change what is there.
 
-A line for each claim says what was checked, and what was not. Exit code 10 where something is rejected, 20
-where the solver did not decide, 3 where a file is damaged or speaks of definitions that are not at hand.
+A line for each claim says what was checked, and what was not; fields of an index and files that nothing is
+compared with are listed below. Exit code 10 where something is rejected, 20 where the solver did not decide
+or no evidence was accepted at all, 3 where a file is damaged or speaks of definitions that are not at hand.
+For pipelines: with --strict also 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
 """
 
 
@@ -44,6 +48,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--write", type=Path, metavar="DIR", help="with --kernel: only write the files for Coq"
     )
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit with 20 where an answer has no evidence (UNKNOWN, NONE-WITHIN)",
+    )
     add_effort_options(parser, each="a query")
     add_spec_option(parser, "a specification file that the claims were made with")
     add_working_options(parser)
@@ -57,7 +66,8 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--kernel {args.kernel} asks no solver: ask without --solver, or without --kernel")
     if args.write is not None:
         return _write(args)
-    more = {"effort": args.effort, "timeout": args.timeout, "jobs": args.jobs, "progress": Counter()}
+    more: dict[str, Any] = {"strict": args.strict}
+    more |= {"effort": args.effort, "timeout": args.timeout, "jobs": args.jobs, "progress": Counter()}
     checked = check(*args.paths, solver=args.solver, specs=args.specs, kernel=args.kernel, **more)
     if args.json != "-":
         print(checked)

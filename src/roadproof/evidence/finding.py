@@ -80,9 +80,17 @@ class Ruled:
     unchecked: tuple[str, ...] = ()
 
 
-def exit_code(findings: Iterable[Finding]) -> ExitCode:
-    """The gravest of all findings."""
-    return max((finding.outcome.exit_code for finding in findings), default=ExitCode.AS_EXPECTED)
+def exit_code(findings: Iterable[Finding], strict: bool = False) -> ExitCode:
+    """The gravest of all findings; UNKNOWN where none is grave, but no evidence at all was accepted.
+
+    ``strict``: UNKNOWN also where an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
+    """
+    found = list(findings)
+    gravest = max((x.outcome.exit_code for x in found), default=ExitCode.AS_EXPECTED)
+    without = [x for x in found if x.kind == NO_EVIDENCE]
+    if gravest is ExitCode.AS_EXPECTED and (len(without) == len(found) or (strict and without)):
+        return ExitCode.UNKNOWN
+    return gravest
 
 
 def summary(findings: Sequence[Finding], solver: str) -> str:

@@ -17,6 +17,7 @@ from roadproof.evidence.answers.read import (
     read_record,
     said_of,
     stands_alone,
+    unchecked_fields,
 )
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.checking import without_place
@@ -39,7 +40,8 @@ class Told:
     """What the index and the journal of a folder say of the files in it and below it.
 
     ``specs`` are the specification files beside them; ``problems`` are found before any file is checked;
-    ``unchecked`` is said of every entry; ``alone``: files that none names stand for themselves.
+    ``unchecked`` is said of every entry; ``alone``: files that none names stand for themselves. ``others``
+    are files that are no evidence, such as tables and pictures.
     """
 
     folder: Path
@@ -51,6 +53,14 @@ class Told:
     problems: list[Finding] = field(default_factory=list)
     unchecked: tuple[str, ...] = ()
     alone: bool = False
+    others: list[str] = field(default_factory=list)
+
+    @property
+    def not_checked(self) -> tuple[str, ...]:
+        """The fields of the index, and the files beside it, that nothing is compared with."""
+        has_drives = any(x.shows in ("drive", "counterexample") for x in self.entries)
+        fields = () if self.index is None else unchecked_fields(self.index, has_drives)
+        return (*fields, *sorted(self.others))
 
 
 @dataclass(frozen=True)
@@ -83,6 +93,10 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
         kept = {home / ANSWERS for home in homes if (home / HEAD).exists()}
         others = [x for x in inside if x.name not in (INDEX, HEAD) and x.parent not in kept]
         evidence = [x for x in others if x.suffix == ".json"]
+        for x in {*others} - {*evidence}:
+            home = next((folder for folder in x.parents if folder in by_home), None)
+            if home is not None and x.name != JOURNAL and x not in by_home[home].specs:
+                by_home[home].others.append(x.relative_to(home).as_posix())
         if not evidence and not homes and not links:
             raise InputError(f"{path} holds no .json file: name a folder with certificates or drive files")
         for x in evidence:

@@ -8,12 +8,12 @@ from typing import Any, TypeAlias
 
 from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
 from roadproof.analysis.explore.knobs import Knob
-from roadproof.analysis.explore.parts import unit_text
 from roadproof.analysis.explore.record import ends_of
 from roadproof.report.drive import draw_drive
 from roadproof.report.figures import as_bytes, legend_beside, make_figure
 from roadproof.report.overlap import COLOURS, SIGNS
 from roadproof.spec.words import words_of
+from roadproof.units import unit_text
 from roadproof.verdict import Verdict
 
 MOST_NOTES = 2  # for one verdict on a map or strip; JSON has them all

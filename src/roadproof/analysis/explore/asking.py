@@ -12,7 +12,6 @@ from typing import TypeAlias
 from roadproof.analysis.explore.answer import Explorable
 from roadproof.analysis.explore.knobs import Knob
 from roadproof.analysis.explore.measure import Measure, Sense, read_measure
-from roadproof.analysis.explore.parts import unit_text
 from roadproof.errors import UsageError
 from roadproof.logic.rewrite import parameters_of
 from roadproof.searching.ask import Search
@@ -20,7 +19,7 @@ from roadproof.searching.question import Setting
 from roadproof.spec.library import Library, unknown
 from roadproof.spec.query import Query
 from roadproof.spec.values import Number, exact
-from roadproof.units import UNITS
+from roadproof.units import UNITS, unit_text
 from roadproof.world.models import load_vehicle
 from roadproof.world.vehicle import LIMITS, with_limits
 

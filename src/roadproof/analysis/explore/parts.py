@@ -8,7 +8,6 @@ from roadproof.logic.terms import Dimension
 from roadproof.searching.ask import Search
 from roadproof.spec.compose import both, comparison
 from roadproof.spec.query import Query
-from roadproof.units import SI
 
 
 def with_parts(query: Query, parts: Sequence[Query]) -> Query:
@@ -21,11 +20,3 @@ def compared(
 ) -> Query:
     """``left op value`` in the names that the search has, where ``value`` is in SI units of ``dimension``."""
     return comparison(search.specification, search.query.claim.given, left, op, value, dimension)
-
-
-def unit_text(dimension: Dimension) -> str:
-    """The unit in which values of ``dimension`` are printed; empty without dimension."""
-    if dimension == (0, 0):
-        return ""
-    metres, seconds = dimension
-    return SI.get(dimension) or f"m^{metres} s^{seconds}"

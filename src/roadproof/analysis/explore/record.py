@@ -8,11 +8,11 @@ from typing import Any
 from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
 from roadproof.analysis.explore.extreme import Sought, soughts_of
 from roadproof.analysis.explore.knobs import Point
-from roadproof.analysis.explore.parts import unit_text
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import Certificate
 from roadproof.spec.query import Query
 from roadproof.study.shelf import Shelf
+from roadproof.units import unit_text
 from roadproof.verdict import Verdict
 
 _BOUNDARY = ("held", "missed", "surely")

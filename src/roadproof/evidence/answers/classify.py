@@ -7,8 +7,9 @@ from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields
 from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
 from roadproof.spec.elaborate import apply_definition
-from roadproof.spec.scenarios import LANE, name_of
+from roadproof.spec.scenarios import LANE, name_of, number_in
 
 SCHEMA = "roadproof/classify/1"
 CLASSES = "classes"  # the spec set of the file that defines them
@@ -78,7 +79,7 @@ def _not_of_name(line: Fields, common: Common) -> str:
     if kind not in beginning or not name.startswith(beginning[kind]):
         return f"{line.where}: its name {name[:60]} is none of kind {kind[:20]}"
     formula = common.formula(claim)
-    named = {x.name for x in f.subformulas(formula) if isinstance(x, f.Named)}
+    named = _outer_names(formula)
     told = name.removeprefix(beginning[kind])
     if kind == "exclusive":
         inside = formula.body if isinstance(formula, f.Not) else None
@@ -91,10 +92,38 @@ def _not_of_name(line: Fields, common: Common) -> str:
     return ""
 
 
+def _outer_names(formula: Formula) -> set[str]:
+    """The definitions that a formula applies itself, without those that their bodies apply."""
+    if isinstance(formula, f.Named):
+        return {formula.name}
+    return {name for part in f.children(formula) for name in _outer_names(part)}
+
+
 def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
-    """That the text of the classes is not the one that their evidence was read with."""
+    """What the index says as a whole otherwise than its definitions and claims."""
     if data.text("text") not in [x.text for x in background.library.files]:
         yield "the text of its classes is not that of a specification file beside it"
+    common = background.at(CLASSES)
+    home = common.library.sets[CLASSES].parent
+    if data.text("set") != home:
+        yield f"its classes are of set {home}, but it says {data.text('set')[:40]}"
+    covered: dict[int, set[str]] = {}
+    for content in data.items("claims"):
+        line = Fields(content, data.where)
+        if line.text("kind") == "covers":
+            number = int(line.text("name").removeprefix("covers-scenario-"))
+            covered[number] = _outer_names(common.formula(line.text("claim")))
+    if data.items("claims") and sorted(covered) != data.items("scenarios"):
+        yield "its scenarios are not those of which its claims say that classes cover them"
+    for content in data.items("classes") if covered else ():
+        line = Fields(content, data.where)
+        name = line.text("name")
+        formula = common.formula(line.text("formula"))
+        parts = _outer_names(formula.body) if isinstance(formula, f.Named) else set()
+        of_places = not any(number_in(x) for x in parts)  # what happens, and where
+        of = sorted(n for n, names in covered.items() if name in names or (of_places and parts <= names))
+        if line.items("scenarios") != of:
+            yield f"{name} is said to be of scenarios {line.items('scenarios')}, but its claims say {of}"
 
 
 READER = Reader(
@@ -105,4 +134,9 @@ READER = Reader(
     ("classes", "claims"),
     read,
     _faults,
+    unchecked=(
+        *("seconds", "shares", "doubts[].about", "doubts[].reason"),
+        *(f"classes[].{x}" for x in ("happens", "where", "description", "reason", "situations", "traces")),
+        *(f"claims[].{x}" for x in ("reason", "seconds")),
+    ),
 )

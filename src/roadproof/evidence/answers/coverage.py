@@ -197,4 +197,9 @@ READER = Reader(
     ("group", "classes", "claim", "need"),
     read_record,
     faults,
+    unchecked=(
+        *("seconds", "wider", "traffic", "claims[].reason"),
+        *(f"classes[].{x}" for x in ("description", "reason", "none_for", "in_traffic", "trace")),
+        *(f"gaps[].{x}" for x in ("number", "first", "caught_by", "classes")),
+    ),
 )

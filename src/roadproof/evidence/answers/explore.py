@@ -21,7 +21,7 @@ from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.motion import values_said
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, applied, name_of
-from roadproof.units import UNITS
+from roadproof.units import UNITS, unit_text
 from roadproof.world.vehicle import LIMITS
 
 SCHEMA = "roadproof/explore/1"
@@ -46,12 +46,15 @@ def read_record(record: Fields, background: Background) -> Iterator[Entry]:
 
 @dataclass(frozen=True)
 class _Knob:
-    """What is varied: a parameter, or an end of the range of a signal of some vehicles (SI units)."""
+    """What is varied from ``low`` to ``high``: a parameter, or an end of a signal's range (SI units)."""
 
     name: str
+    low: Fraction
+    high: Fraction
     vehicles: tuple[str, ...] = ()
     signal: SignalName | None = None
     end: str = ""
+    fault: str = ""
 
     def says(self, common: Common, base: Query, value: Fraction) -> Iterator[Query]:
         """The limit at a value, as formulas; nothing of a parameter."""
@@ -101,13 +104,13 @@ def _one(content: object, where: str, background: Background) -> Iterator[Entry]
     one = Fields(content, where, (*_EXPLORED, *_EXPLORED_MORE))
     common = background.at(one.text("set"))
     base = read_claim(common.specification, one.text("formula"))
-    exploration = _Exploration(
-        one,
-        common,
-        base,
-        tuple(_knob(x, where, common, base) for x in one.items("vary")),
-        _misnamed(one, common, base),
+    knobs = tuple(_knob(x, where, common, base) for x in one.items("vary"))
+    fault = (
+        _misnamed(one, common, base)
+        or next((x.fault for x in knobs if x.fault), "")
+        or _off_range(one, knobs)
     )
+    exploration = _Exploration(one, common, base, knobs, fault)
     of = tuple(str(one.content.get(name)) for name in ("scenario", "set", "formula"))
     for k, finding in enumerate(one.items("values"), 1):
         yield _at_point(exploration, finding, f"{where}, value {k}", (*of, "value", k))
@@ -137,12 +140,26 @@ def _misnamed(one: Fields, common: Common, base: Query) -> str:
     return f"{one.where} is called scenario {number}, but its formula is another: {one.text('formula')[:120]}"
 
 
+def _off_range(one: Fields, knobs: Sequence[_Knob]) -> str:
+    """Why the values are not from the least to the greatest of what is varied, or nothing."""
+    found = [Fields(x, one.where).items("at") for x in one.items("values")]
+    for k, knob in enumerate(knobs):
+        values = [rational(at[k], one.where) for at in found if k < len(at)]
+        if (min(values, default=knob.low), max(values, default=knob.high)) != (knob.low, knob.high):
+            return (
+                f"{one.where}: {knob.name} is varied from {knob.low} to {knob.high}, but its values are not"
+            )
+    return ""
+
+
 def _knob(content: object, where: str, common: Common, base: Query) -> _Knob:
     """What is varied. Raises ``InputError``."""
     data = Fields(content, f"{where}, vary", ("name", "unit", "low", "high"))
-    name = data.text("name")
+    name, unit = data.text("name"), data.text("unit")
+    low, high = data.rational("low"), data.rational("high")
     if name in common.library.parameters:
-        return _Knob(name)
+        known_unit = unit_text(UNITS[common.library.parameters[name].unit][1])
+        return _Knob(name, low, high, fault=_other_unit(data.where, unit, known_unit))
     vehicle, signal, end = (*name.split("."), "", "", "")[:3]
     known = next((x for x in LIMITED if x == signal), None)
     vehicles = base.vehicles if vehicle == "vehicle" else (vehicle,)
@@ -155,7 +172,11 @@ def _knob(content: object, where: str, common: Common, base: Query) -> _Knob:
         raise InputError(
             f"{data.where}: '{name[:60]}' is no parameter and no limit of a vehicle of the formula"
         )
-    return _Knob(name, tuple(vehicles), known, end)
+    return _Knob(name, low, high, tuple(vehicles), known, end, _other_unit(data.where, unit, LIMITS[known]))
+
+
+def _other_unit(where: str, said: str, known: str) -> str:
+    return "" if said == known else f"{where}: unit='{said[:20]}', but it is '{known}'"
 
 
 def _at_point(one: _Exploration, content: object, where: str, key: tuple[object, ...]) -> Entry:
@@ -179,6 +200,10 @@ def _of_measure(
     head = show(syntax.Claim(given, syntax.Literal_(True))).removesuffix("true") if given else ""
     term = head + extreme.text("measure")
     left, dimension = parse_claim(term).body, read_term(specification, term, "measure")[1]
+    if extreme.text("unit") != unit_text(dimension):
+        raise InputError(
+            f"{extreme.where}: unit='{extreme.text('unit')[:20]}', but it is '{unit_text(dimension)}'"
+        )
     bound = [
         comparison(specification, given, left, _SENSES[extreme.text("sense")], value, dimension)
         for value in at
@@ -243,4 +268,16 @@ READER = Reader(
     read_index,
     ("exploration",),
     read_record,
+    unchecked=(
+        "seconds",
+        *(f"explored[].{x}" for x in ("searches", "drives", "seconds", "stem")),
+        *(f"explored[].values[].{x}" for x in ("reason", "number")),
+        *(f"explored[].boundaries[].{x}.{y}" for x in _BOUNDARY for y in ("reason", "number")),
+        *(
+            f"explored[].extremes[].{x}.{y}"
+            for x in ("best", "missed", "surely")
+            for y in ("reason", "number")
+        ),
+        *(f"explored[].extremes[].{x}" for x in ("endless", "searches")),
+    ),
 )

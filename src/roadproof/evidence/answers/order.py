@@ -156,6 +156,9 @@ def faults(data: Fields, background: Background, formulas: Mapping[str, str]) ->
         meanings = {without_names(applied(common.specification, _node(name)).formula) for name in kind}
         if len(meanings) != 1:
             yield f"{', '.join(kind)} are not one formula"
+    asked = {_node(name).set_name for kind in kinds for name in kind}
+    if asked != {*data.texts("sets")}:
+        yield f"its sets are not those of its scenarios: {', '.join(sorted(asked))}"
     told = {(x.text("from"), x.text("to")) for field in ("missing", "doubts") for x in _lines(data, field)}
     yield from _unanswered([kind[0] for kind in kinds if kind], proved, told)
 
@@ -207,4 +210,5 @@ READER = Reader(
     ("family", "proved", "drives", "doubts"),
     read,
     faults,
+    unchecked=("seconds", "doubts[].reason"),
 )

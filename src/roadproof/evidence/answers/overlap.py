@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 
+from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader
@@ -31,6 +32,9 @@ def read_record(record: Fields, background: Background) -> Iterator[Entry]:
 def _entries(background: Background, records: Sequence[object]) -> Iterator[Entry]:
     common = background.home
     choices = {name: background.said.text(name) for name in ("lanes", "roles", "start")}
+    for name, choice in choices.items():
+        if choice not in ("same", "any"):
+            raise InputError(f"{common.where}: {name}='{choice[:40]}' must be same or any")
     for number, content in enumerate(records, 1):
         line = Fields(content, f"{common.where}, pair {number}", (*_ENTRY, *_ENTRY_MORE))
         yield _entry(line, common, choices)
@@ -103,4 +107,5 @@ READER = Reader(
     read_index,
     ("verdict",),
     read_record,
+    unchecked=("seconds", *(f"verdicts[].{x}" for x in ("core", "cores", "reason", "seconds"))),
 )

@@ -15,6 +15,7 @@ from roadproof.preventing.boundary import Plane, plane_of
 from roadproof.preventing.claims import SIDES, Side, claim_of, with_also
 from roadproof.preventing.driving import Reading
 from roadproof.preventing.idle import idle
+from roadproof.preventing.lemmas import lemmas_for
 from roadproof.preventing.lines import End, Line, line_data, sides_in, told_line, truths
 from roadproof.preventing.manoeuvres import MANOEUVRES, Manoeuvre, signals_of
 from roadproof.preventing.models import MODELS, boundary_of, manoeuvre_of, models_for, parts_of, touched
@@ -197,12 +198,18 @@ def _lemma(content: object, background: Background, number: int) -> Iterator[Ent
     name, verdict, claim = line.text("name"), line.text("verdict"), line.text("claim")
     shows = shows_of(verdict, line.where)
     file, assuming = evidence_name(line, "certificate"), read_assuming(line)
+    manoeuvre = background.said.text("manoeuvre")
+    known = lemmas_for(manoeuvre, models_for(manoeuvre), common.options.get("cc_aeb", "none"))
+    named = [x.claim for x in known if x.name == name]
+    fault = "" if claim in named else f"{line.where}: the claim of lemma '{name[:60]}' is another"
     yield Entry(
-        common, line.where, ("lemma", name), verdict, f"lemma {name}", shows, claim, file, assuming=assuming
-    )
+        common, line.where, ("lemma", name), verdict, f"lemma {name}", shows, claim, file, fault=fault,
+        assuming=assuming,
+    )  # fmt: skip
 
 
 def _index(data: Fields, background: Background) -> Iterator[Entry]:
+    _scenarios(data)
     for number, plate in enumerate(data.items("plates"), 1):
         yield from _plate(plate, background, number, ())
     for number, lemma in enumerate(data.items("lemmas"), 1):
@@ -280,4 +287,7 @@ READER = Reader(
     ("plate", "lemma"),
     _record,
     _faults,
+    unchecked=(
+        *("seconds", "plates[].reason", "plates[].shown[].reason", "lemmas[].title", "lemmas[].reason"),
+    ),
 )

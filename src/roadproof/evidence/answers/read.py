@@ -17,6 +17,8 @@ from roadproof.evidence.strict import Fields
 from roadproof.preventing import restriction
 from roadproof.spec.library import Library
 
+_HEADING_UNCHECKED = ("roadproof",)
+
 
 @cache
 def readers() -> Mapping[str, Reader]:
@@ -36,6 +38,8 @@ def index_fields(content: object, where: str) -> Fields:
     reader = readers()[schema]
     data = Fields(content, where, (*HEADING, *reader.said, *reader.index))
     library_of(data)
+    if "view" in data.content and data.text("view") != "dense":
+        raise InputError(f"{where}: view='{data.text('view')[:40]}', but these answers are about dense time")
     return data
 
 
@@ -56,6 +60,31 @@ def faults_of(data: Fields, library: Library, formulas: Mapping[str, str]) -> It
     if begins and begins != restriction.told(options):
         yield f"{data.where}: what it says of a driver that prevents is not what its options say"
     yield from readers()[data.text("schema")].faults(data, background, formulas)
+
+
+def unchecked_fields(data: Fields, has_drives: bool) -> tuple[str, ...]:
+    """The fields of an index that nothing is compared with, of those that it has; lists have ``[]``.
+
+    ``has_drives``: whether there are drives among its evidence.
+    """
+    there = {path for path, _ in leaves_of(data.content)}
+    every = (*_HEADING_UNCHECKED, *readers()[data.text("schema")].unchecked)
+    if not has_drives:
+        every = (*every, "parameters")  # proofs are about all values
+    return tuple(x for x in every if any(path == x or path.startswith((f"{x}.", f"{x}[")) for path in there))
+
+
+def leaves_of(content: object, path: str = "") -> Iterator[tuple[str, object]]:
+    """Every value of plain data that holds no others, with its path; entries of lists have one path."""
+    match content:
+        case dict():
+            for name, value in content.items():
+                yield from leaves_of(value, f"{path}.{name}" if path else str(name))
+        case list():
+            for value in content:
+                yield from leaves_of(value, f"{path}[]")
+        case _:
+            yield path, content
 
 
 def read_record(

@@ -72,6 +72,9 @@ class Reader:
     ``record`` those of a kept answer, none where none are kept. ``alone``: files that no answer names may lie
     beside them, and stand for themselves. ``faults``: what an index says as a whole
     and its entries do not show, given the formulas of its accepted drives by file. All raise ``InputError``.
+
+    ``unchecked`` are the fields of the index that nothing is compared with, as paths such as
+    ``verdicts[].seconds``; ``check`` lists them. A test changes every other field and expects a rejection.
     """
 
     schema: str
@@ -82,3 +85,4 @@ class Reader:
     read_record: Read = _nothing
     faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = _without_faults
     alone: bool = False
+    unchecked: tuple[str, ...] = ()
