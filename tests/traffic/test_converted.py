@@ -173,7 +173,10 @@ def test_a_changed_head_is_refused_by_its_digest(key: str, traffic: Path, tmp_pa
 
 
 VEHICLES = {
-    "tiny": (lambda v: v | {"length": [0.1] * len(v["length"])}, "a Car is usually 2 to 8 m long|wider than|say otherwise"),
+    "tiny": (
+        lambda v: v | {"length": [0.1] * len(v["length"])},
+        "is usually|wider than|say otherwise",
+    ),
     "no size": (lambda v: v | {"width": [0.0, *v["width"][1:]]}, "sizes are greater than 0"),
     "huge": (lambda v: v | {"length": [51.0, *v["length"][1:]]}, "at most 50 m"),
     "same id": (lambda v: v | {"vehicle_id": v["vehicle_id"][:1] * 2 + v["vehicle_id"][2:]}, "ids must"),
