@@ -163,4 +163,5 @@ LENGTHY = (
     "tests/traffic/test_sectors.py::test_the_same_traffic_in_a_zone_shows_the_scenarios_of_that_zone",
     "tests/traffic/test_sectors.py::test_traces_are_counted_where_they_begin",
     "tests/traffic/test_sectors.py::test_what_is_not_understood_is_asked",
+    "tests/traffic/test_two_runs.py::test_two_evaluations_that_begin_together[0.0",
 )

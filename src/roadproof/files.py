@@ -77,7 +77,7 @@ def make_folder(folder: Path) -> None:
 
 
 LETTING_GO = 5.0
-"""Seconds that a run which was ended from outside is given to let go of its folder."""
+"""Seconds that the processes of a run which was ended from outside are given to let go of its folder."""
 
 
 @contextmanager
@@ -85,7 +85,8 @@ def hold_folder(folder: Path, shared: bool = False) -> Iterator[None]:
     """Keep other runs out of a folder, which is made where there is none; the system lets go of it with us.
 
     ``shared``: but not runs that share it with this one. Raises ``InputError`` where another process holds
-    it. Nothing is kept out where the system or the disk knows no such locks.
+    it: at once where that process lives, and after LETTING_GO where it is gone and others that it began are
+    still there. Nothing is kept out where the system or the disk knows no such locks.
     """
     make_folder(folder)
     try:
@@ -102,7 +103,7 @@ def hold_folder(folder: Path, shared: bool = False) -> Iterator[None]:
                 fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
                 break
             except BlockingIOError:
-                if time.monotonic() > latest:
+                if time.monotonic() > latest or _holder_lives(handle):
                     raise
                 time.sleep(0.05)
     except BlockingIOError:
@@ -116,6 +117,29 @@ def hold_folder(folder: Path, shared: bool = False) -> Iterator[None]:
         yield
     finally:
         os.close(handle)
+
+
+def _holder_lives(handle: int) -> bool:
+    """Whether a process that has locked a file, ours is ``handle``, lives; False where nothing tells.
+
+    Processes that it began have the lock too, and keep it for a moment when it is gone.
+    """
+    try:
+        inode = os.fstat(handle).st_ino
+        rows = [line.split() for line in Path("/proc/locks").read_text().splitlines()]
+        holders = [row[4] for row in rows if row[1] == "FLOCK" and row[5].endswith(f":{inode}")]
+        states = [_state_of(pid) for pid in holders]
+    except (OSError, IndexError):
+        return False
+    return any(state not in "ZX" for state in states if state)
+
+
+def _state_of(pid: str) -> str:
+    """The letter that Linux has for the state of a process; empty for one that is gone."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return ""
 
 
 @contextmanager

@@ -270,6 +270,26 @@ def test_it_says_now_and_then_how_far_it_is(
     assert supervising.BEAT == 30.0
 
 
+def test_the_time_left_is_estimated_of_pieces_that_are_alike_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The first claims of a long run took a second each, the last one two minutes."""
+    from roadproof.cli import progress
+
+    lines: list[str] = []
+    monkeypatch.setattr(progress, "tell", lambda text, last=False: lines.append(text))
+    clock = iter([0.0, *(10.0 * k for k in range(20))])
+    monkeypatch.setattr("roadproof.cli.progress.time.monotonic", lambda: next(clock))
+    for what in ("recordings", "claims"):
+        told = progress.Counter()
+        for done in range(4):
+            told(done, 10, what)
+    assert [line for line in lines if "left" in line] == [
+        x for x in lines if x.startswith(("2 of 10 r", "3 of 10 r"))
+    ]
+    assert not any("left" in line for line in lines if "claims" in line)
+
+
 def test_the_time_left_is_told_where_it_is_known() -> None:
     from roadproof.cli.progress import time_left
 

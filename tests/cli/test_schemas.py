@@ -40,7 +40,7 @@ NAMES = {
 DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
 # What evaluate keeps of one recording, and convert, and what a page gives to the viewer in it: for this very
 # version, which alone reads it.
-INTERNAL = {"roadproof/recording-findings/4", "roadproof/recording/1", "roadproof/viewer/1"}
+INTERNAL = {"roadproof/recording-findings/4", "roadproof/recording/2", "roadproof/viewer/1"}
 NOT_HEADED = {"drive.json", "certificate.json", "question.json", "answer.json", "common.json"}
 
 STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted

@@ -15,7 +15,7 @@ from roadproof.evaluation.results import Totals, begin_totals
 from roadproof.report.answers import answer_questions
 from roadproof.report.paper import MARK
 from roadproof.report.tables import Table
-from roadproof.report.traffic import comparison_table, decimal, percent, results_tables
+from roadproof.report.traffic import Share, comparison_table, decimal, percent, results_tables
 from roadproof.report.traffic_figures import compose_figures, draw_figures
 from roadproof.report.write_traffic import write_report
 from roadproof.spec.scenarios import COMPARISON
@@ -184,6 +184,14 @@ def test_half_a_file_is_never_seen(totals: Totals, tmp_path: Path, monkeypatch: 
     with pytest.raises(KeyboardInterrupt):
         write_report(tmp_path, totals, {})
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("part", "whole", "population"), [(1, 2, ""), (1, 2, " "), (3, 2, "x"), (-1, 2, "x")]
+)
+def test_a_share_names_a_population_and_is_a_part_of_it(part: int, whole: int, population: str) -> None:
+    with pytest.raises(ValueError, match=r"population|is no part of"):
+        Share(part, whole, population)
 
 
 def test_numbers_as_text() -> None:

@@ -1,8 +1,12 @@
 """Recordings kept as Parquet: what comes back is what was read, of every format, and damage is named."""
 
+import hashlib
 import json
+import shutil
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +14,17 @@ import pytest
 import roadproof as rp
 from roadproof.cli.main import main
 from roadproof.errors import InputError
-from roadproof.formats.converted import HEAD, SAMPLES, read_converted, same_recording, write_converted
+from roadproof.formats.converted import (
+    HEAD,
+    SAMPLES,
+    digest_of,
+    divide_converted,
+    read_converted,
+    same_recording,
+    write_converted,
+)
 from roadproof.formats.sources import find_source, find_sources
+from roadproof.formats.table import polars_module
 from traffic.make_recording import Track, make_recording
 from traffic.planar_exid import write_exid
 from traffic.test_exid import bent
@@ -94,7 +107,8 @@ def test_damage_is_named(simulated: Path, tmp_path: Path) -> None:
         ({"vehicles": {}}, "not what convert writes"),
         ({"samples": {}}, "not what convert writes"),
     ):
-        head.write_text(json.dumps({**said, **change}))
+        changed = {**said, **change}
+        head.write_text(json.dumps(changed | {"sha256": digest_of(changed)}))
         with pytest.raises(InputError, match=told):
             read_converted(head)
     for text in ("", "[]", "{}", "null", '{"schema":', "x" * 100):
@@ -118,3 +132,139 @@ def test_what_is_no_use(simulated: Path, tmp_path: Path) -> None:
         rp.convert(simulated, simulated)
     with pytest.raises(InputError, match="no recording in it"):
         rp.convert(tmp_path, tmp_path / "again")
+
+
+def sealed_anew(head: Path, said: dict[str, Any], frame: Any = None) -> None:
+    """What a forger writes who knows how digests are made."""
+    samples = head.with_name(head.name.replace(HEAD, SAMPLES))
+    if frame is not None:
+        frame.write_parquet(samples)
+    digest = hashlib.sha256(samples.read_bytes()).hexdigest()
+    said = {**said, "samples": {**said["samples"], "sha256": digest}}
+    head.write_text(json.dumps({**said, "sha256": digest_of(said)}))
+
+
+def copied(folder: Path, to: Path) -> Path:
+    shutil.copytree(folder, to)
+    return next(to.glob(f"*{HEAD}"))
+
+
+@pytest.fixture(scope="module")
+def traffic(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Converted recordings by how they were made: with ramps, without, and on a measured road."""
+    folder = tmp_path_factory.mktemp("forged")
+    made = rp.simulate(folder / "plain-in", seconds=20, seed=1, jobs=1).folder
+    ramps = rp.simulate(folder / "ramp-in", seconds=20, seed=3, ramp="merge", jobs=1).folder
+    (folder / "measured-in").mkdir()
+    for name, path in (("plain", made), ("ramp", ramps), ("measured", commonroad(folder / "measured-in"))):
+        rp.convert(path, folder / name, jobs=1)
+    return folder
+
+
+@pytest.mark.parametrize("key", ["name", "rate", "lanes", "beside", "counts", "vehicles", "notes", "made_of"])
+def test_a_changed_head_is_refused_by_its_digest(key: str, traffic: Path, tmp_path: Path) -> None:
+    head = copied(traffic / "plain", tmp_path / "x")
+    said = json.loads(head.read_text())
+    said[key] = "x" if key == "name" else 30 if key == "rate" else said[key] and {**said, "more": 1}
+    said["notes"] = [*said["notes"], "x"] if key == "notes" else said["notes"]
+    head.write_text(json.dumps(said))
+    with pytest.raises(InputError, match="sha256 differs"):
+        read_converted(head)
+
+
+VEHICLES = {
+    "tiny": (
+        lambda v: v | {"length": [0.1] * len(v["length"])},
+        "is usually|wider than|say otherwise",
+    ),
+    "no size": (lambda v: v | {"width": [0.0, *v["width"][1:]]}, "sizes are greater than 0"),
+    "huge": (lambda v: v | {"length": [51.0, *v["length"][1:]]}, "at most 50 m"),
+    "same id": (lambda v: v | {"vehicle_id": v["vehicle_id"][:1] * 2 + v["vehicle_id"][2:]}, "ids must"),
+    "longer": (lambda v: v | {"width": [x + 1.5 for x in v["width"]]}, "usually|say otherwise"),
+    "turned": (lambda v: v | {"direction": [3 - x for x in v["direction"]]}, "say otherwise"),
+}
+
+
+@pytest.mark.parametrize("forgery", VEHICLES)
+@pytest.mark.parametrize("of", ["plain", "ramp"])
+def test_forged_vehicles_with_new_digests_are_refused(
+    forgery: str, of: str, traffic: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = copied(traffic / of, tmp_path / "x")
+    said = json.loads(head.read_text())
+    change, told = VEHICLES[forgery]
+    sealed_anew(head, said | {"vehicles": change(said["vehicles"])})
+    with pytest.raises(InputError, match=told):
+        read_converted(head)
+    monkeypatch.setattr("roadproof.formats.windows.MOST_SAMPLES", 2000)
+    with pytest.raises(InputError, match=told):
+        divide_converted(head)
+
+
+def _samples(name: str, change: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    pl = polars_module()
+    return lambda frame: frame.with_columns(change(pl.col(name)).alias(name))
+
+
+COLUMNS = {
+    "km/h": (_samples("v_lon", lambda x: x * 3.6), "km/h"),
+    "sign": (_samples("v_lat", lambda x: -x), "sign is turned"),
+    "fast": (_samples("v_lon", lambda x: x + 400.0), "must be finite"),
+    "jumps": (_samples("s", lambda x: x * 30), "say otherwise|contradict|does not move"),
+    "nan": (_samples("a_lon", lambda x: x * float("nan")), "must be finite"),
+    "other lanes": (_samples("occupancy", lambda x: x * 0 + 1), "say otherwise"),
+    "no such lane": (_samples("occupancy", lambda x: x * 0 + 2**31), "no such bit|say otherwise"),
+    "lane": (_samples("lane", lambda x: x * 0), "lane=0"),
+    "far lane": (_samples("lane", lambda x: x * 0 + 40), "there are"),
+    "zones": (_samples("zones", lambda x: x * 0 + 4), "say otherwise"),
+}
+
+
+@pytest.mark.parametrize("forgery", COLUMNS)
+@pytest.mark.parametrize("of", ["plain", "ramp", "measured"])
+def test_forged_samples_with_new_digests_are_refused(
+    forgery: str, of: str, traffic: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = copied(traffic / of, tmp_path / "x")
+    said = json.loads(head.read_text())
+    change, told = COLUMNS[forgery]
+    frame = polars_module().read_parquet(head.with_name(head.name.replace(HEAD, SAMPLES)))
+    changed = change(frame)
+    if changed.equals(frame) or (of == "measured" and forgery in ("km/h", "sign", "jumps", "lane", "zones")):
+        return  # too few vehicles, or the tiny road says so anyway
+    sealed_anew(head, said, changed)
+    with pytest.raises(InputError, match=told):
+        read_converted(head)
+    monkeypatch.setattr("roadproof.formats.windows.MOST_SAMPLES", 2000)
+    if said["samples"]["rows"] > 2000:
+        with pytest.raises(InputError, match=told):
+            divide_converted(head)
+
+
+def test_notes_that_a_forger_removes_come_back(traffic: Path, tmp_path: Path) -> None:
+    """Another 30 m/s for one vehicle is a note of the reader, and stays one."""
+    head = copied(traffic / "plain", tmp_path / "x")
+    said = json.loads(head.read_text())
+    frame = polars_module().read_parquet(head.with_name(head.name.replace(HEAD, SAMPLES)))
+    speeds = frame["v_lon"].to_numpy().copy()
+    speeds[: said["counts"][0]] *= 1.5
+    sealed_anew(head, said | {"notes": []}, frame.with_columns(polars_module().Series("v_lon", speeds)))
+    assert any("contradict each other" in note for note in read_converted(head).notes)
+
+
+def test_straight_lanes_cannot_pass_for_measured_ones(traffic: Path, tmp_path: Path) -> None:
+    """Columns of a measured road would turn the comparison with the lanes off."""
+    head = copied(traffic / "plain", tmp_path / "x")
+    pl = polars_module()
+    frame = pl.read_parquet(head.with_name(head.name.replace(HEAD, SAMPLES)))
+    more = frame.with_columns(**{f"slack:{x}": pl.lit(0.0) for x in ("along", "across", "turn", "off")})
+    sealed_anew(head, json.loads(head.read_text()), more)
+    with pytest.raises(InputError, match="no straight bands"):
+        read_converted(head)
+
+
+def test_a_recording_keeps_its_name(traffic: Path, tmp_path: Path) -> None:
+    head = copied(traffic / "plain", tmp_path / "x")
+    other = head.rename(head.with_name(f"02{HEAD}"))
+    with pytest.raises(InputError, match="it is of recording '01'"):
+        read_converted(other)

@@ -146,10 +146,16 @@ def check_table(counts: Counts, path: Path, sector: str) -> None:
             assert row[f"s{i}"] == str(sum(i in x or -i in x for x in matched))
 
 
-def check(folder: Path, recordings: Path, *sectors: str, drivers: Sequence[str] = ()) -> Counts:
+def check(
+    folder: Path,
+    recordings: Path,
+    *sectors: str,
+    drivers: Sequence[str] = (),
+    classes: Sequence[str] = ("Car",),
+) -> Counts:
     """Evaluate, and compare all that is written with what the two files say."""
     among = [i for sector in sectors for i in ROAD[sector]]
-    rp.evaluate(recordings, out=folder, among=among, drivers=drivers, pictures=False, jobs=1)
+    rp.evaluate(recordings, out=folder, among=among, drivers=drivers, classes=classes, pictures=False, jobs=1)
     counts = Counts(folder)
     assert told(folder) == list(answers(counts, sectors))
     for k, sector in enumerate(sectors):
@@ -181,6 +187,14 @@ def test_figures_of_a_main_road_with_trucks_and_three_vehicles(tmp_path: Path) -
     assert counts.marked("violating") > {
         (x["recording"], x["first"], x["second"]) for x in counts.pairs if x["min_danger"]
     }
+
+
+def test_figures_of_pairs_of_cars_and_trucks(tmp_path: Path) -> None:
+    rp.simulate(tmp_path / "made", seconds=60, seed=8, flow=2400, truck_share=0.4, jobs=1)
+    cars = check(tmp_path / "cars", tmp_path / "made", "main road")
+    both = check(tmp_path / "both", tmp_path / "made", "main road", classes=("Car", "Truck"))
+    assert both.marked("violating") > cars.marked("violating")
+    assert {*both.traces("0")} > {*cars.traces("0")}
 
 
 @pytest.mark.parametrize(("ramp", "zone"), [("merge", "merge zone"), ("depart", "departure zone")])

@@ -17,7 +17,7 @@ from roadproof.simulation.plant import Place, plant
 from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
 from traffic.drives import cut_in
-from traffic.lies import NOTED, REFUSED, Files, one_vehicle_twice, read_columns, write_columns
+from traffic.lies import NOTED, REFUSED, Files, one_vehicle_twice, read_columns, scaled, write_columns
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +48,12 @@ def test_lies_are_refused(name: str, honest: Files, tmp_path: Path) -> None:
     said = str(raised.value)
     assert "01_tracks" in said
     assert "column" in said
+
+
+def test_speeds_that_are_less_than_one_percent_off_have_no_note(honest: Files, tmp_path: Path) -> None:
+    files = copy.deepcopy(honest)
+    scaled(1.008, "xVelocity")(files)
+    assert read_highd(write_columns(files, tmp_path), "01").notes == ()
 
 
 @pytest.mark.parametrize("name", NOTED)

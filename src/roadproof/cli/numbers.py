@@ -13,8 +13,9 @@ if TYPE_CHECKING:
     from roadproof.hands import Hands
 
 _DECIMAL = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?")
-_WHOLE = re.compile(r"[0-9]{1,12}")
+_WHOLE = re.compile(r"[0-9]{1,20}")
 MOST = 1_000_000
+LARGEST_SEED = 2**64 - 1
 
 
 def add_effort_options(
@@ -107,14 +108,14 @@ def decimal(option: str) -> Callable[[str], float]:
     return read
 
 
-def whole(option: str, least: int) -> Callable[[str], int]:
-    """A reader of whole numbers from ``least`` on, which raises ``UsageError`` by the option's name."""
+def whole(option: str, least: int, most: int = MOST) -> Callable[[str], int]:
+    """A reader of whole numbers from ``least`` to ``most``; it raises ``UsageError`` by the option's name."""
 
     def read(text: str) -> int:
         value = int(text) if _WHOLE.fullmatch(text) else least - 1
-        if not least <= value <= MOST:
+        if not least <= value <= most:
             rule = "greater than 0" if least == 1 else f"not below {least}"
-            raise UsageError(f"{option} {text[:40]}: write a whole number {rule} and at most {MOST}")
+            raise UsageError(f"{option} {text[:40]}: write a whole number {rule} and at most {most}")
         return value
 
     return read

@@ -63,8 +63,14 @@ def warn(line: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
+ALIKE = ("recordings",)
+"""Pieces that take about as long as each other. One claim or search may take as long as all others."""
+LEAST_DONE = 2
+"""So many pieces must be done before the time for the others is estimated from them."""
+
+
 class Counter:
-    """Tells how many of many are done, and how long the rest will take about."""
+    """Tells how many of many are done; where pieces are alike, also how long the rest will take about."""
 
     def __init__(self) -> None:
         self.begun = time.monotonic()
@@ -74,7 +80,9 @@ class Counter:
         """So many are done of so many; ``what`` is the word for many of them."""
         if self.known is None or done < self.known:
             self.begun, self.known = time.monotonic(), done
-        left = time_left(time.monotonic() - self.begun, done - self.known, total - self.known)
+        known = what in ALIKE and done - self.known >= LEAST_DONE
+        seconds = time.monotonic() - self.begun
+        left = time_left(seconds, done - self.known, total - self.known) if known else ""
         tell(f"{done} of {total} {what}{left}", last=done == total)
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.cli.numbers import add_working_options, decimal, whole
+from roadproof.cli.numbers import LARGEST_SEED, add_working_options, decimal, whole
 from roadproof.cli.progress import note
 from roadproof.errors import InputError, UsageError
 from roadproof.verdict import ExitCode
@@ -43,7 +43,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", metavar="S", type=decimal("--seconds"), default=990.0, help="length (default: 990)"
     )
-    parser.add_argument("--seed", metavar="K", type=whole("--seed", 0), default=1, help="default: 1")
+    parser.add_argument(
+        "--seed",
+        metavar="K",
+        type=whole("--seed", 0, LARGEST_SEED),
+        default=1,
+        help="0 to 2^64 - 1 (default: 1)",
+    )
     parser.add_argument(
         "--lanes", metavar="N", type=whole("--lanes", 1), default=3, help="each way (default: 3)"
     )

@@ -1,8 +1,9 @@
 """Recordings as they were understood, in Parquet: read and checked once, the same in every later run.
 
-NAME.recording.json says what is said once: lanes, vehicles, notes, the version that read the recording, and a
-digest of NAME.samples.parquet, which has a row a sample. Another version may understand the files that they
-were made of otherwise, and refuses them.
+NAME.recording.json says what is said once: lanes, vehicles, notes, the version that read the recording, a
+digest of NAME.samples.parquet, which has a row a sample, and a digest of itself. Another version may
+understand the files that they were made of otherwise, and refuses them. A digest can be made anew, so
+whoever reads repeats the checks too (``believable``).
 """
 
 import hashlib
@@ -21,7 +22,16 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.files import read_limited, write_json, write_whole
 from roadproof.formats import windows
-from roadproof.formats.recording import Integers, Lane, Recording, Slack, offsets, zones_in
+from roadproof.formats.believable import Believing
+from roadproof.formats.recording import (
+    Integers,
+    Lane,
+    Recording,
+    Slack,
+    offsets,
+    with_notes,
+    zones_in,
+)
 from roadproof.formats.samples import CONVERTED
 from roadproof.formats.source import Files, Format, RecordingSource, with_suffix
 from roadproof.formats.table import Column, Frame, polars_module, require_unchanged, stamp_of
@@ -29,7 +39,7 @@ from roadproof.formats.windows import Divided, Window, divide
 from roadproof.signals import RECORDED
 from roadproof.world.road import Lanelet
 
-SCHEMA = "roadproof/recording/1"
+SCHEMA = "roadproof/recording/2"
 HEAD, SAMPLES = ".recording.json", CONVERTED
 _UNFIT = (ValueError, KeyError, TypeError, AttributeError, RecursionError)
 _NEAR = 100_000  # rows between those of two vehicles that are read with them
@@ -80,13 +90,20 @@ def head_of(
 
     ``digests``: of the files of the format called ``form`` that it was made of.
     """
-    return {
+    said = {
         "schema": SCHEMA,
         "roadproof": version("roadproof"),
         "made_of": {"format": form, "sha256": dict(digests)},
         "samples": {"rows": rows, "sha256": digest},
         **_said(recording),
     }
+    return {**said, "sha256": digest_of(said)}
+
+
+def digest_of(said: Mapping[str, Any]) -> str:
+    """The digest of what NAME.recording.json says beside its digest."""
+    plain = {name: value for name, value in said.items() if name != "sha256"}
+    return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
 
 
 def frame_of_samples(recording: Recording) -> Frame:
@@ -107,7 +124,10 @@ def read_converted(head: Path) -> Recording:
     """The recording of NAME.recording.json. Raises ``InputError``."""
     with _as_written(head):
         said = _read_head(head)
-        return _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
+        recording = _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
+        believing = Believing(head, recording.rate, recording.lanes)
+        believing.add(recording)
+        return with_notes(recording, believing.notes(recording.notes))
 
 
 def samples_in(head: Path) -> int:
@@ -116,10 +136,11 @@ def samples_in(head: Path) -> int:
         return _rows(_read_head(head))
 
 
-def divide_converted(head: Path) -> Divided | None:
+def divide_converted(head: Path, checked: bool = False) -> Divided | None:
     """The recording of NAME.recording.json in windows of time, None where it is small. Raises ``InputError``.
 
     Each is read from the rows of its vehicles. Raises ``InputError`` where the file changes meanwhile.
+    ``checked``: this run has written the files and need not repeat the checks.
     """
     with _as_written(head):
         said, table = _read_head(head), _table_of(head)
@@ -131,6 +152,7 @@ def divide_converted(head: Path) -> Divided | None:
         counts, first_frame = np.array(said["counts"]), np.array(said["vehicles"]["first_frame"])
         if counts.sum() != _rows(said) or counts.shape != first_frame.shape or counts.min() < 1:
             raise ValueError("vehicles and samples do not fit")
+        more = () if checked else _checked_in_parts(head, said, offsets(counts))
         zones = polars_module().scan_parquet(table).select("zones").unique().collect()["zones"].to_list()
 
     def read() -> Iterator[Window]:
@@ -140,9 +162,21 @@ def divide_converted(head: Path) -> Divided | None:
                 vehicles = np.flatnonzero(there)
                 recording = _recording(_of_vehicles(said, vehicles), _read_rows(table, start, vehicles))
                 require_unchanged(table, stamp)
-            yield Window(recording, new[vehicles])
+            yield Window(with_notes(recording, more), new[vehicles])
 
     return Divided(int(said["rate"]), zones_in(zones), read)
+
+
+def _checked_in_parts(head: Path, said: Mapping[str, Any], start: Integers) -> tuple[str, ...]:
+    """The notes that the checks of the whole add, some vehicles at a time. Raises ``InputError``."""
+    believing: Believing | None = None
+    group = start[:-1] // windows.MOST_SAMPLES
+    for number in np.unique(group):
+        vehicles = np.flatnonzero(group == number)
+        part = _recording(_of_vehicles(said, vehicles), _read_rows(_table_of(head), start, vehicles))
+        believing = believing or Believing(head, part.rate, part.lanes)
+        believing.add(part)
+    return () if believing is None else believing.notes(said["notes"])
 
 
 def _of_vehicles(said: Mapping[str, Any], vehicles: Integers) -> dict[str, Any]:
@@ -201,6 +235,10 @@ def _read_head(head: Path) -> dict[str, Any]:
             f"{head}: it was converted by version {str(said['roadproof'])[:40]}, and this is "
             f"{version('roadproof')}, which may read recordings otherwise; convert them again"
         )
+    if said["sha256"] != digest_of(said):
+        raise InputError(f"{head}: its content is not what convert wrote (sha256 differs); convert again")
+    if said["name"] != head.name.removesuffix(HEAD):
+        raise InputError(f"{head}: it is of recording {str(said['name'])[:40]!r}; give the file that name")
     return said
 
 

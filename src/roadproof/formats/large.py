@@ -65,7 +65,7 @@ def divide_large(files: Files) -> Divided | None:
     if not path.is_file() or not is_large(path):
         return None
     folder = tempfile.TemporaryDirectory()
-    made = divide_converted(write_large(path, Path(folder.name), {}, ""))
+    made = divide_converted(write_large(path, Path(folder.name), {}, ""), checked=True)
     assert made is not None
 
     def read() -> Iterator[Window]:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from roadproof.formats.blockwise import blocks_of, blockwise
 from roadproof.formats.median import Median
 from roadproof.formats.recording import Bools, Floats, Integers, Lane, Recording
+from roadproof.formats.scale import Scale, integrate
 from roadproof.formats.windows import MOST_SAMPLES
 from roadproof.signals import SignalName, SizeName
 
@@ -130,7 +131,7 @@ class _Motion:
     def add(self, recording: Recording, before: int, windows: tuple[Integers, Integers]) -> None:
         """``before``: how many rows there were already; ``windows``: the first and last rows of seconds."""
         signal, rate = getattr(recording, self.rule.signal), getattr(recording, self.rule.rate)
-        total = _sums(rate, recording.rate, self.last)
+        total = integrate(rate, recording.rate, self.last)
         self.last = float(total[-1]), float(rate[-1])
         begin, end = windows
         change, told = signal[end] - signal[begin], total[end] - total[begin]
@@ -169,24 +170,6 @@ def _seconds(recording: Recording, before: int) -> tuple[Integers, Integers]:
     vehicle = recording.row_vehicle
     rows = rows[vehicle[rows] == vehicle[rows + recording.rate]]
     return rows, rows + recording.rate
-
-
-def _sums(rate: Floats, frames_a_second: int, last: tuple[float, float] | None = None) -> Floats:
-    """The integral of a rate up to each sample, straight between samples; only differences mean something.
-
-    ``last``: the integral and the rate at the sample before, where there is one.
-    """
-    total = np.zeros(len(rate))
-    if last is not None:
-        total[0] = last[0] + (rate[0] + last[1]) / (2 * frames_a_second)
-    for part in blocks_of(len(rate), overlap=1):
-        values = rate[part]
-        steps = values[1:] + values[:-1]
-        steps /= 2 * frames_a_second
-        if len(steps):
-            steps[0] += total[part.start]
-            np.cumsum(steps, out=total[part.start + 1 : part.stop])
-    return total
 
 
 def _worst(signal: Floats, total: Floats, begin: int, end: int) -> int:
@@ -365,6 +348,7 @@ class Doubting:
     def __init__(self, rate: int, lanes: tuple[Lane, ...]) -> None:
         self.lanes = lanes
         self.motion = [_Motion(rule) for rule in _RATES]
+        self.scale = Scale()
         self.steps = _Steps(rate)
         self.places = _Places(lanes)
         self.vehicles: list[_Vehicles] = []
@@ -377,6 +361,7 @@ class Doubting:
         windows = _seconds(recording, self.rows)
         for rule in self.motion:
             rule.add(recording, self.rows, windows)
+        self.scale.add(recording, self.rows)
         self.steps.add(recording, self.rows)
         self.places.add(recording, self.rows)
         of = (recording.length, recording.width, recording.kind, recording.direction)
@@ -390,5 +375,9 @@ class Doubting:
         names = _Vehicles.__dataclass_fields__
         whole = _Vehicles(*(np.concatenate([getattr(x, name) for x in self.vehicles]) for name in names))
         found = [doubt for rule in self.motion for doubt in rule.doubts()]
+        scale = self.scale.told()
+        if scale is not None:
+            counts = self.scale.vehicles, len(whole.length)
+            found.append(Implausible(scale, "v_lon", self.scale.row, *counts, "vehicles", False))
         found += [*self.steps.doubts(), *_sizes(whole, self.lanes), *self.places.doubts(whole)]
         return sorted(found, key=lambda doubt: not doubt.refused)

@@ -72,10 +72,11 @@ def with_suffix(path: Path, suffix: str) -> list[Path]:
 
 
 def first_line(path: Path) -> str:
-    """The beginning of a text file up to its first line break; empty where it cannot be read."""
+    """The first line of a text file, without quotes; empty where it cannot be read."""
     try:
         with path.open("rb") as file:
-            return file.readline(4096).decode("utf-8-sig", "replace").strip()
+            line = file.readline(4096).decode("utf-8-sig", "replace").strip()
+            return line.partition("\r")[0].replace('"', "")
     except OSError:
         return ""
 

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from roadproof.errors import InputError, MissingSolverError
 from roadproof.files import whole_file
+from roadproof.formats.plain import plain_text
 from roadproof.mistaken import other_table
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: 
     """The numbers of ``names`` in about ``count`` rows, evenly over a file that ``read_table`` took."""
     places = [header.index(name) for name in names]
     found = []
-    with path.open("rb") as file:
+    with _Content.of(path).open() as file:
         size = file.seek(0, 2)
         for k in range(count):
             file.seek(size * k // count)
@@ -221,7 +222,8 @@ _MARK = b"\xef\xbb\xbf"
 class _Content:
     """What is in a file, without the mark of UTF-8: looked at piece by piece, and not kept.
 
-    ``kept``: of what is no file on a disk, which can be read once. ``stamp`` changes when the file does.
+    ``kept``: of what is no file on a disk, which can be read once, and of files with quoted cells or other
+    line ends, as they are without. ``stamp`` changes when the file does.
     """
 
     path: Path
@@ -235,15 +237,28 @@ class _Content:
             kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
             found = cls(path, stamp_of(path), kept)
             empty = not found.beginning() or (found.beginning().isspace() and found.all().isspace())
+            if not empty and found.needs_change():
+                found = cls(path, found.stamp, plain_text(path, found.all()))
         except OSError as error:
             raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
         if empty:
             raise InputError(f"{path}: the file is empty; get it again from its source")
         return found
 
+    def open(self) -> BinaryIO:
+        """The content, to be read."""
+        return self.path.open("rb") if self.kept is None else io.BytesIO(self.kept)
+
+    def needs_change(self) -> bool:
+        """Whether cells are quoted, or lines end with a carriage return alone; False of what is no text."""
+        first = self.beginning()
+        if not first.isascii() or b"\0" in first:
+            return False
+        return (b"\r" in first and b"\n" not in first) or any(b'"' in piece for piece in self.pieces())
+
     def pieces(self, size: int = 1 << 18) -> Iterator[bytes]:
         """All of it, in pieces that by default fit the cache."""
-        with self.path.open("rb") if self.kept is None else io.BytesIO(self.kept) as file:
+        with self.open() as file:
             if file.read(len(_MARK)) != _MARK or self.kept is not None:
                 file.seek(0)
             while piece := file.read(size):

@@ -237,6 +237,12 @@ class Share:
     whole: int
     population: str
 
+    def __post_init__(self) -> None:
+        if not self.population.strip():
+            raise ValueError("a share needs the name of its population")
+        if not 0 <= self.part <= self.whole:
+            raise ValueError(f"{self.part} is no part of {self.whole} {self.population}")
+
     @property
     def percent(self) -> str:
         """With one decimal; ``-`` of nothing."""
