@@ -14,6 +14,7 @@ from roadproof.evidence.derivation import Lemma, Site, derive_query, met_sites, 
 from roadproof.evidence.refutation import Countermodel
 from roadproof.evidence.times import ZERO
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import with_values
@@ -128,7 +129,11 @@ def prove(
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
             return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
-    condition = _premise(claim)
+    if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
+        return result(
+            Verdict.VACUOUS, "what is assumed contradicts itself, so every claim follows", certificate
+        )
+    condition = _premise(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
     return result(Verdict.PROVED, "", certificate)
@@ -184,10 +189,13 @@ def conjuncts(formula: Formula) -> Iterator[Formula]:
         yield formula
 
 
-def _premise(formula: Formula) -> Formula | None:
-    """A of a claim ``A -> B``, which is built as ``not A or B``."""
+def _premise(query: Query, formula: Formula) -> Formula | None:
+    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is false."""
+    body = query.claim.body
     match formula:
         case f.Or((f.Not(premise), _)):
+            return premise
+        case f.Not(premise) if isinstance(body, syntax.Binary) and body.op == "->":
             return premise
         case _:
             return None
