@@ -14,10 +14,12 @@ from roadproof.evidence.derivation import Lemma, Site, derive_query, met_sites, 
 from roadproof.evidence.refutation import Countermodel
 from roadproof.evidence.times import ZERO
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import with_values
 from roadproof.proving.countermodel import realise, with_truths
+from roadproof.proving.lasso import find_lasso
 from roadproof.proving.roster import Roster, roster_for
 from roadproof.proving.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.proving.states import Learnt, StateChecker
@@ -39,6 +41,7 @@ TURNS: tuple[tuple[bool, float], ...] = (
     (True, math.inf),
 )
 ON_FEW_LANES = 1.0
+REPEATING = 1.0
 VACUITY = 0.5
 NO_TRACE = "the only countermodels found over points in time are no traces"
 NO_PROOF = "no proof was found from what is known of motion"
@@ -128,7 +131,11 @@ def prove(
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
             return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
-    condition = _premise(claim)
+    if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
+        return result(
+            Verdict.VACUOUS, "what is assumed contradicts itself, so every claim follows", certificate
+        )
+    condition = _premise(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
     return result(Verdict.PROVED, "", certificate)
@@ -184,8 +191,11 @@ def conjuncts(formula: Formula) -> Iterator[Formula]:
         yield formula
 
 
-def _premise(formula: Formula) -> Formula | None:
-    """A of a claim ``A -> B``, which is built as ``not A or B``."""
+def _premise(query: Query, formula: Formula) -> Formula | None:
+    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is ``false``."""
+    match query.claim.body:
+        case syntax.Binary("->", _, syntax.Literal_(value)) if value is False:
+            return f.negation(formula)
     match formula:
         case f.Or((f.Not(premise), _)):
             return premise
@@ -219,6 +229,10 @@ class _Attempt:
                 few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
                 if isinstance(few, Countermodel):
                     return few
+            if number == len(turns[:3]) and not self.moving:
+                repeating = find_lasso(self.query, goal, self.states, self.meter.part(REPEATING))
+                if repeating is not None:
+                    return repeating
             found = self._run(self._search(goal, names, wishful), self.meter.part(units))
             if not isinstance(found, GaveUp):
                 return found
