@@ -65,6 +65,7 @@ class Answered:
             "reason": result.reason,
             **({"limits": settled.limits.as_json()} if settled.limits is not None else {}),
             "assumptions": list(result.certificate.assumptions) if result.certificate else [],
+            "premises": list(result.certificate.assumed.premises) if result.certificate else [],
             "certificate": file if result.certificate is not None else None,
             "counterexample": _counterexample(settled),
         }

@@ -238,11 +238,15 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
 
 
 def _assumed_data(assumed: Assumed) -> dict[str, Any]:
-    """What is assumed, and the facts about motion that the proof uses; nothing where nothing is."""
+    """What is assumed, the facts about motion that are premises, and the limits that are none.
+
+    Nothing where nothing is assumed.
+    """
     if not assumed.said:
         return {}
     axioms = [{"schema": x.schema, "arguments": x.named()} for x in assumed.axioms]
-    return {"assuming": list(assumed.said), "axioms": axioms}
+    unused = {"unused": list(assumed.unused)} if assumed.unused else {}
+    return {"assuming": list(assumed.said), "axioms": axioms, **unused}
 
 
 def read_certificate(path: Path) -> Certificate:
@@ -253,7 +257,7 @@ def read_certificate(path: Path) -> Certificate:
 _FIELDS = (
     *("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions"),
     *("formulas", "times", "instances", "lemmas", "queries", "assuming", "axioms", "pinned"),
-    "tableau",
+    *("unused", "tableau"),
 )
 
 
@@ -293,10 +297,11 @@ def read_certificate_data(content: object, where: str) -> Certificate:
 
 def _assumed(data: Fields) -> Assumed:
     """The inverse of ``_assumed_data``."""
-    if not {"assuming", "axioms"} & {*data.content}:
+    if not {"assuming", "axioms", "unused"} & {*data.content}:
         return NOTHING
     said, entries = read_assuming(data), data.items("axioms")
-    return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries))
+    unused = data.texts("unused") if "unused" in data.content else ()
+    return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries), unused)
 
 
 def _axiom(content: object, where: str) -> Axiom:

@@ -23,11 +23,35 @@ from roadproof.spec.query import Query
 
 
 @dataclass(frozen=True)
+class Premises:
+    """How many ``limits`` of vehicles and ``facts`` about motion a claim is proved under.
+
+    >>> str(Premises(1, 2))
+    '1 limit and 2 facts about motion'
+    """
+
+    limits: int = 0
+    facts: int = 0
+
+    @property
+    def count(self) -> int:
+        return self.limits + self.facts
+
+    def __str__(self) -> str:
+        counted = ((self.limits, "limit", ""), (self.facts, "fact", " about motion"))
+        return " and ".join(f"{n} {word}{'s' * (n != 1)}{of}" for n, word, of in counted if n)
+
+
+NO_PREMISES = Premises()
+
+
+@dataclass(frozen=True)
 class Statement:
     """``formula`` is what Coq is to prove for all parameters within ``bounds`` (name: strictly above 0).
 
-    ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``assumed``: how many
-    facts about motion are premises, which are not proved. ``values`` of parameters, as words, are put in.
+    ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``premises``: how
+    many limits and facts about motion are premises, which are not proved. ``values`` of parameters, as words,
+    are put in.
     """
 
     label: str
@@ -39,7 +63,7 @@ class Statement:
     lemmas: tuple[tuple[Formula, tuple[str, ...]], ...]
     parameters: tuple[str, ...]
     formals: Formals
-    assumed: int
+    premises: Premises
     values: tuple[str, ...]
     goal: Goal
 
@@ -90,7 +114,7 @@ def state(certificate: Certificate, library: Library) -> Statement:
         lemmas,
         parameters,
         formals,
-        len(premises),
+        Premises(len(certificate.assumed.limits), len(certificate.assumed.axioms)),
         value_texts(specification, here),
         goal,
     )

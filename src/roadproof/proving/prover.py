@@ -24,7 +24,16 @@ from roadproof.proving.states import Learnt, StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import Specification, is_within
-from roadproof.spec.motion import NOTHING, Assumed, Axiom, axiom_formula, is_moving, value_texts, values_said
+from roadproof.spec.motion import (
+    NOTHING,
+    Assumed,
+    axiom_formula,
+    is_moving,
+    limit_formulas,
+    limits_said,
+    value_texts,
+    values_said,
+)
 from roadproof.spec.query import Query
 from roadproof.stages import begin
 from roadproof.verdict import Verdict
@@ -110,9 +119,8 @@ def prove(
         if isinstance(found, GaveUp):
             return result(Verdict.UNKNOWN, found.reason)
         proofs.append(found)
-    needed = _needed(specification, query, assumed.axioms, values, proofs)
-    if len(needed) < len(assumed.axioms):
-        fewer = Assumed(assumed.said, needed)
+    fewer = _needed(specification, query, assumed, values, proofs, names)
+    if fewer != assumed:
         again = prove(specification, query, meter.effort(), label, scenario, fewer)
         if again.holds:
             return replace(again, seconds=since(begun), work=meter.spent + again.work)
@@ -272,32 +280,49 @@ def _certificate(
     scenario: int | None,
 ) -> Certificate:
     """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit the claim."""
-    instances: dict[Site, tuple[str, ...]] = {}
     lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
     for proof in proofs:
-        for site, texts in proof.instances.items():
-            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
         for lemma in proof.lemmas:
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
     atoms = Atoms()
     abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
-    met = met_sites(abstracted, atoms, instances, names, specification.library.bounds, query.lanes)
+    met = met_sites(abstracted, atoms, _instances(proofs), names, specification.library.bounds, query.lanes)
     made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
     return certify(specification, query, *met, made, label, scenario, assumed, pinned)
+
+
+def _instances(proofs: Sequence[Proof]) -> dict[Site, tuple[str, ...]]:
+    """The instances of several proofs, each once."""
+    instances: dict[Site, tuple[str, ...]] = {}
+    for proof in proofs:
+        for site, texts in proof.instances.items():
+            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
+    return instances
 
 
 def _needed(
     specification: Specification,
     query: Query,
-    axioms: Sequence[Axiom],
+    assumed: Assumed,
     values: Mapping[str, Fraction],
     proofs: Sequence[Proof],
-) -> tuple[Axiom, ...]:
-    """Those of ``axioms`` of which a proof has instances: each is a universal that holds at time 0."""
-    sites = {site for proof in proofs for site in proof.instances}
+    names: Mapping[Site, str],
+) -> Assumed:
+    """The same with those premises alone of which a proof has instances, and which the claim has not itself.
+
+    Each premise is a universal that holds at time 0.
+    """
+    instances = _instances(proofs)
     atoms = Atoms()
-    atoms.abstract(with_values(query.formula, values))
-    made = {x: with_values(axiom_formula(specification, query, x), values) for x in axioms}
-    formulas = {x: atoms.abstract(formula) for x, formula in made.items()}
-    return tuple(x for x in axioms if Site(prefix_form(formulas[x]), True, str(ZERO)) in sites)
+    claim = atoms.abstract(with_values(query.formula, values))
+    own, _ = met_sites(claim, atoms, instances, names, specification.library.bounds, query.lanes)
+
+    def is_used(formula: Formula) -> bool:
+        made = atoms.abstract(with_values(formula, values))
+        site = Site(prefix_form(made), True, str(ZERO))
+        return site in instances and site not in own
+
+    axioms = tuple(x for x in assumed.axioms if is_used(axiom_formula(specification, query, x)))
+    used = {x for x, made in limit_formulas(specification, query, assumed).items() if is_used(made)}
+    return Assumed(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))

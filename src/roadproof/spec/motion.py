@@ -68,16 +68,31 @@ class Axiom:
         """The arguments by name."""
         return dict(zip(SCHEMAS[self.schema], self.arguments, strict=True))
 
+    def __str__(self) -> str:
+        return f"{self.schema}({', '.join(self.arguments)})"
+
 
 @dataclass(frozen=True)
 class Assumed:
     """``said``: nothing, or motion and then limits and then values of parameters, as words; or values alone.
 
-    ``axioms``: what a proof needs of motion.
+    ``axioms``: the facts about motion that a proof has as premises. ``unused``: limits that are said and that
+    it does not have as premises; every other limit is one.
     """
 
     said: tuple[str, ...] = ()
     axioms: tuple[Axiom, ...] = ()
+    unused: tuple[str, ...] = ()
+
+    @property
+    def limits(self) -> tuple[str, ...]:
+        """The limits that are premises, in the order in which they are said."""
+        return tuple(x for x in limits_said(self.said) if x not in self.unused)
+
+    @property
+    def premises(self) -> tuple[str, ...]:
+        """All premises as words: limits, then facts about motion such as ``below(s(SV), s(POV))``."""
+        return (*self.limits, *map(str, self.axioms))
 
 
 @dataclass(frozen=True)
@@ -103,6 +118,11 @@ def statement(said: Sequence[str], claim: str) -> str:
 def is_moving(said: Sequence[str]) -> bool:
     """Whether motion is assumed, so that only a drive refutes."""
     return MOTION in said[:1]
+
+
+def limits_said(said: Sequence[str]) -> tuple[str, ...]:
+    """The limits in what is assumed: neither motion nor values of parameters."""
+    return tuple(x for x in said[is_moving(said) :] if not _VALUE.match(x))
 
 
 def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
@@ -267,9 +287,17 @@ def assumption(specification: Specification, query: Query, assumed: Assumed) -> 
         raise InputError("facts about motion are used, but the claim does not say that it assumes motion")
     if len(assumed.axioms) > MOST_AXIOMS:
         raise InputError(f"{len(assumed.axioms)} facts about motion; at most {MOST_AXIOMS} are read")
-    limits = (motion.limit(x.formula) for x in _limits(specification, query, assumed.said))
+    if tuple(x for x in limits_said(assumed.said) if x in assumed.unused) != assumed.unused:
+        raise InputError(f"unused={', '.join(assumed.unused)[:200]}: the claim does not say these limits")
+    limits = limit_formulas(specification, query, assumed).values()
     axioms = (axiom_formula(specification, query, x) for x in assumed.axioms)
     return f.conjunction(*limits, *axioms)
+
+
+def limit_formulas(specification: Specification, query: Query, assumed: Assumed) -> dict[str, Formula]:
+    """What the limits that are premises say at all times, by their texts. Raises ``InputError``."""
+    made = zip(limits_said(assumed.said), _limits(specification, query, assumed.said), strict=True)
+    return {x: motion.limit(y.formula) for x, y in made if x not in assumed.unused}
 
 
 def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> Formula:
