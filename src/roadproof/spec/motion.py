@@ -53,6 +53,8 @@ SCHEMAS: Mapping[str, tuple[str, ...]] = {
     "leaves": ("inside",),
     "within": ("left", "right", "speed", "time"),
     "after": ("left", "right", "speed", "time"),
+    "within-twice": ("left", "right", "speed", "growth", "time"),
+    "after-twice": ("left", "right", "speed", "growth", "time"),
 }
 """The schemas, and what each is made of: terms, but for ``inside``, a formula."""
 
@@ -326,11 +328,15 @@ def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
     }
     if axiom.schema in simple:
         return simple[axiom.schema](left.term, right.term)
-    speed, time = more
+    speed, *growth, time = more
     bound = arithmetic.bound(time, specification.library.parameters, _START)
     arithmetic.interval(bound, None, _START)
     metres, seconds = left.dimension or right.dimension or (0, 0)
     _alike(speed, Quantity(speed.term, (metres, seconds - 1)))
+    if growth:
+        _alike(growth[0], Quantity(growth[0].term, (metres, seconds - 2)))
+        twice = motion.within_twice if axiom.schema == "within-twice" else motion.after_twice
+        return twice(left.term, right.term, speed.term, growth[0].term, bound)
     bounded = motion.within if axiom.schema == "within" else motion.after
     return bounded(left.term, right.term, speed.term, bound)
 
