@@ -18,6 +18,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import with_values
 from roadproof.proving.countermodel import realise, with_truths
+from roadproof.proving.doubt import Doubt, Stop
 from roadproof.proving.roster import Roster, roster_for
 from roadproof.proving.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.proving.states import Learnt, StateChecker
@@ -58,7 +59,7 @@ class Result:
     """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
 
     ``work``: the units spent on the search. There is a ``certificate`` with PROVED and VACUOUS, and with
-    nothing else.
+    nothing else. Of an UNKNOWN ``stop`` says where the search stopped, and ``doubt`` its cause.
     """
 
     verdict: Verdict
@@ -67,6 +68,8 @@ class Result:
     work: float = 0.0
     certificate: Certificate | None = None
     countermodel: Countermodel | None = None
+    stop: Stop | None = None
+    doubt: Doubt | None = None
 
     @property
     def holds(self) -> bool:
@@ -117,7 +120,7 @@ def prove(
         if isinstance(found, Countermodel):
             return result(Verdict.REFUTED, "", None, with_truths(found, atoms))
         if isinstance(found, GaveUp):
-            return result(Verdict.UNKNOWN, found.reason)
+            return replace(result(Verdict.UNKNOWN, found.reason), stop=found.stop)
         proofs.append(found)
     fewer = _needed(specification, query, assumed, values, proofs, names)
     if fewer != assumed:
@@ -127,7 +130,8 @@ def prove(
     try:
         certificate = _certificate(specification, query, assumed, pinned, proofs, names, label, scenario)
     except InputError as error:
-        return result(Verdict.UNKNOWN, f"a proof was found, but no certificate can be made of it: {error}")
+        why = f"a proof was found, but no certificate can be made of it: {error}"
+        return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
     for title, script in certificate.queries:
         if script in settled:
@@ -135,7 +139,9 @@ def prove(
         answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
-            return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
+            if answer == "unknown":
+                return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
+            return result(Verdict.CROSSCHECK_FAILED, why)
     condition = _premise(claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
@@ -243,7 +249,7 @@ class _Attempt:
             if countermodel is not None:
                 return countermodel
             if not search.widen():
-                return GaveUp(NO_PROOF if self.moving else NO_TRACE)
+                return GaveUp(NO_PROOF, Stop.FACTS) if self.moving else GaveUp(NO_TRACE, Stop.PLACE)
             found = search.run(meter)
         return found
 

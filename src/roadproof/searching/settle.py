@@ -13,6 +13,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.judged import Judged
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.pins import pins
+from roadproof.proving.doubt import Stop
 from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
@@ -161,7 +162,7 @@ def settle_bounded(search: "Search") -> Settled:
     return Settled(result, found.drive, found.limits, bounded=True)
 
 
-def in_doubt(reason: str, begun: float | None = None) -> Settled:
+def in_doubt(reason: str, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settled:
     """What is said of a claim that nothing is known of; ``begun``: since when it was asked."""
     seconds = 0.0 if begun is None else since(begun)
-    return Settled(Result(Verdict.UNKNOWN, reason, seconds))
+    return Settled(Result(Verdict.UNKNOWN, reason, seconds, stop=stop))
