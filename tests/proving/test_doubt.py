@@ -77,12 +77,12 @@ def test_every_cause_says_what_was_tried_and_what_helps(cause):
 
 def test_the_whole_limit_is_named_not_that_of_a_part(capsys):
     claim = "assuming motion: scenario_4(SV,POV,L) -> G s(SV) < s(POV) + 9 m"
-    main(["prove", claim, "--effort", "2", "--no-drive", "--json", "-"])
+    main(["prove", claim, "--effort", "0.5", "--no-drive", "--json", "-"])
     data = json.loads(capsys.readouterr().out)
     assert not [*validator("verdicts.json").iter_errors(data)]
     (entry,) = data["verdicts"]
     assert (entry["doubt"]["cause"], entry["doubt"]["tried"]) == ("work", ["proof"])
-    assert entry["reason"].startswith("no answer within 2 units of work; tried: a proof; more work may help:")
+    assert entry["reason"].startswith("no answer within 0.5 units of work; tried: a proof; more work may help:")
 
 
 def test_an_answer_has_no_doubt():

@@ -167,6 +167,9 @@ def ruled(ruling: Ruling) -> Ruled:
     premises = ruling.premises
     words = "that is a premise" if premises.count == 1 else "that are premises"
     said = (f"under {premises} {words}",) if premises.count else ()
-    untold = ("that the facts are true of motion",) if premises.facts else ()
+    untold = (
+        *(("that the facts are true of motion",) * bool(premises.facts)),
+        *(("that the inductions hold on every trace",) * bool(premises.inductions)),
+    )
     unchecked = ("queries for solvers", *untold)
     return Ruled(_OUTCOMES[ruling.word], ruling.reason, str(ruling), said, unchecked)

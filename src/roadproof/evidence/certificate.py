@@ -23,7 +23,7 @@ from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import parameters_of, with_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification, unknown
-from roadproof.spec.motion import NOTHING, SCHEMAS, Assumed, Axiom, assumption, value_texts, values_said
+from roadproof.spec.motion import ALL_SCHEMAS, NOTHING, Assumed, Axiom, assumption, value_texts, values_said
 from roadproof.spec.query import Query
 
 SCHEMA = "roadproof/certificate/2"
@@ -242,11 +242,12 @@ def _assumed_data(assumed: Assumed) -> dict[str, Any]:
 
     Nothing where nothing is assumed.
     """
-    if not assumed.said:
+    if not assumed.said and not assumed.axioms:
         return {}
     axioms = [{"schema": x.schema, "arguments": x.named()} for x in assumed.axioms]
     unused = {"unused": list(assumed.unused)} if assumed.unused else {}
-    return {"assuming": list(assumed.said), "axioms": axioms, **unused}
+    said = {"assuming": list(assumed.said)} if assumed.said else {}
+    return {**said, "axioms": axioms, **unused}
 
 
 def read_certificate(path: Path) -> Certificate:
@@ -299,7 +300,8 @@ def _assumed(data: Fields) -> Assumed:
     """The inverse of ``_assumed_data``."""
     if not {"assuming", "axioms", "unused"} & {*data.content}:
         return NOTHING
-    said, entries = read_assuming(data), data.items("axioms")
+    said = read_assuming(data) if "assuming" in data.content else ()
+    entries = data.items("axioms")
     unused = data.texts("unused") if "unused" in data.content else ()
     return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries), unused)
 
@@ -307,10 +309,10 @@ def _assumed(data: Fields) -> Assumed:
 def _axiom(content: object, where: str) -> Axiom:
     data = Fields(content, where, ("schema", "arguments"))
     schema, arguments = data.text("schema"), data.named_texts("arguments")
-    if schema not in SCHEMAS:
-        raise InputError(f"{where}: {unknown('schema of motion', schema[:40], SCHEMAS)}")
-    if tuple(arguments) != SCHEMAS[schema]:
-        raise InputError(f"{where}: schema {schema} takes {', '.join(SCHEMAS[schema])}, in this order")
+    if schema not in ALL_SCHEMAS:
+        raise InputError(f"{where}: {unknown('schema of motion', schema[:40], ALL_SCHEMAS)}")
+    if tuple(arguments) != ALL_SCHEMAS[schema]:
+        raise InputError(f"{where}: schema {schema} takes {', '.join(ALL_SCHEMAS[schema])}, in this order")
     return Axiom(schema, tuple(arguments.values()))
 
 

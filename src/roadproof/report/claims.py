@@ -97,12 +97,17 @@ def _values_of(certificate: Certificate) -> str:
 
 
 def _show_premises(assumed: Assumed) -> list[str]:
-    """The limits and facts about motion that the certificate has as premises, and all other limits."""
+    """The premises of a certificate: limits, facts about motion and inductions; and the other limits."""
+    return [*_show_assumed(assumed), *(f"  by induction over time: {x}" for x in assumed.inductions)]
+
+
+def _show_assumed(assumed: Assumed) -> list[str]:
+    """The limits and facts about motion that are premises, and the limits that are none."""
     if not is_moving(assumed.said):
         return []
     lines = [f"  of the limits: {', '.join(assumed.limits)}"] if assumed.limits else []
-    if assumed.axioms:
-        lines.append(f"  of motion: {', '.join(map(str, assumed.axioms))}")
+    if assumed.facts:
+        lines.append(f"  of motion: {', '.join(map(str, assumed.facts))}")
     if not lines:
         without = "neither a limit nor a fact about motion" if assumed.unused else "no fact about motion"
         return [f"  the proof uses {without}: the claim holds without them"]

@@ -14,6 +14,7 @@ from roadproof.evidence.judged import Judged
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.pins import pins
 from roadproof.proving.doubt import Stop
+from roadproof.proving.induction import prove_by_induction
 from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
@@ -71,6 +72,12 @@ def settle(
     search off.
     """
     begun = now()
+    try:
+        induced = prove_by_induction(specification, query, said, effort, label, scenario)
+    except Late as late:
+        return in_doubt(str(late), begun)
+    if induced is not None:
+        return Settled(induced)
     if is_moving(said):
         return _settle_of_motions(specification, query, said, effort, label, scenario, seek_drive)
     try:

@@ -16,7 +16,7 @@ from fractions import Fraction
 
 from roadproof.errors import InputError, Position, TextError
 from roadproof.logic import formula as f
-from roadproof.logic import motion, syntax
+from roadproof.logic import induction, motion, syntax
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
@@ -56,19 +56,30 @@ SCHEMAS: Mapping[str, tuple[str, ...]] = {
     "within-twice": ("left", "right", "speed", "growth", "time"),
     "after-twice": ("left", "right", "speed", "growth", "time"),
 }
-"""The schemas, and what each is made of: terms, but for ``inside``, a formula."""
+"""The schemas of motion, and what each is made of: terms, but for ``inside``, a formula."""
+INDUCTIONS: Mapping[str, tuple[str, ...]] = {
+    "steps": ("inside", "low", "high"),
+    "lasts": ("inside", "time"),
+}
+"""Schemas that are true on every trace, be it a motion or not."""
+ALL_SCHEMAS: Mapping[str, tuple[str, ...]] = {**SCHEMAS, **INDUCTIONS}
 
 
 @dataclass(frozen=True)
 class Axiom:
-    """An instance of a schema: the texts of its arguments, in the order of ``SCHEMAS``."""
+    """An instance of a schema: the texts of its arguments, in the order of ``ALL_SCHEMAS``."""
 
     schema: str
     arguments: tuple[str, ...]
 
     def named(self) -> dict[str, str]:
         """The arguments by name."""
-        return dict(zip(SCHEMAS[self.schema], self.arguments, strict=True))
+        return dict(zip(ALL_SCHEMAS[self.schema], self.arguments, strict=True))
+
+    @property
+    def is_induction(self) -> bool:
+        """Whether it is true on every trace."""
+        return self.schema in INDUCTIONS
 
     def __str__(self) -> str:
         return f"{self.schema}({', '.join(self.arguments)})"
@@ -92,9 +103,19 @@ class Assumed:
         return tuple(x for x in limits_said(self.said) if x not in self.unused)
 
     @property
+    def facts(self) -> tuple[Axiom, ...]:
+        """The facts about motion among the axioms."""
+        return tuple(x for x in self.axioms if not x.is_induction)
+
+    @property
+    def inductions(self) -> tuple[Axiom, ...]:
+        """The inductions over time among the axioms."""
+        return tuple(x for x in self.axioms if x.is_induction)
+
+    @property
     def premises(self) -> tuple[str, ...]:
-        """All premises as words: limits, then facts about motion such as ``below(s(SV), s(POV))``."""
-        return (*self.limits, *map(str, self.axioms))
+        """All premises as words: limits, then facts such as ``below(s(SV), s(POV))``, then inductions."""
+        return (*self.limits, *map(str, (*self.facts, *self.inductions)))
 
 
 @dataclass(frozen=True)
@@ -285,7 +306,7 @@ def assumption(specification: Specification, query: Query, assumed: Assumed) -> 
     of every motion within the limits that are said, or speaks of what the claim does not."""
     if under(specification, query, assumed.said).said != assumed.said:
         raise InputError(f"what is assumed is written otherwise than it is read: {', '.join(assumed.said)}")
-    if assumed.axioms and not is_moving(assumed.said):
+    if assumed.facts and not is_moving(assumed.said):
         raise InputError("facts about motion are used, but the claim does not say that it assumes motion")
     if len(assumed.axioms) > MOST_AXIOMS:
         raise InputError(f"{len(assumed.axioms)} facts about motion; at most {MOST_AXIOMS} are read")
@@ -304,9 +325,9 @@ def limit_formulas(specification: Specification, query: Query, assumed: Assumed)
 
 def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> Formula:
     """What an instance of a schema says. Raises ``InputError`` where it is none, and says why."""
-    if axiom.schema not in SCHEMAS:
-        raise InputError(unknown("schema of motion", axiom.schema[:40], SCHEMAS))
-    names = SCHEMAS[axiom.schema]
+    if axiom.schema not in ALL_SCHEMAS:
+        raise InputError(unknown("schema of motion", axiom.schema[:40], ALL_SCHEMAS))
+    names = ALL_SCHEMAS[axiom.schema]
     if len(names) != len(axiom.arguments):
         raise InputError(f"schema {axiom.schema} takes {', '.join(names)}")
     try:
@@ -317,8 +338,15 @@ def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> F
 
 
 def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
-    if axiom.schema == "leaves":
-        return motion.leaves(_elaborated(specification, query, axiom.arguments[0]).formula)
+    if ALL_SCHEMAS[axiom.schema][0] == "inside":
+        inside = _elaborated(specification, query, axiom.arguments[0]).formula
+        times = [_time(specification, query, x) for x in axiom.arguments[1:]]
+        of_formula: dict[str, Callable[..., Formula]] = {
+            "leaves": motion.leaves,
+            "steps": induction.steps,
+            "lasts": induction.lasts,
+        }
+        return of_formula[axiom.schema](inside, *times)
     left, right, *more = (_term(specification, query, x) for x in axiom.arguments)
     _alike(left, right)
     simple: dict[str, Callable[[Term, Term], Formula]] = {
@@ -328,9 +356,8 @@ def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
     }
     if axiom.schema in simple:
         return simple[axiom.schema](left.term, right.term)
-    speed, *growth, time = more
-    bound = arithmetic.bound(time, specification.library.parameters, _START)
-    arithmetic.interval(bound, None, _START)
+    speed, *growth, _ = more
+    bound = _time(specification, query, axiom.arguments[-1])
     metres, seconds = left.dimension or right.dimension or (0, 0)
     _alike(speed, Quantity(speed.term, (metres, seconds - 1)))
     if growth:
@@ -339,6 +366,13 @@ def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
         return twice(left.term, right.term, speed.term, growth[0].term, bound)
     bounded = motion.within if axiom.schema == "within" else motion.after
     return bounded(left.term, right.term, speed.term, bound)
+
+
+def _time(specification: Specification, query: Query, written: str) -> Term:
+    """A term as a bound of an interval. Raises ``InputError``, ``ValueError``."""
+    bound = arithmetic.bound(_term(specification, query, written), specification.library.parameters, _START)
+    arithmetic.interval(bound, None, _START)
+    return bound
 
 
 def _alike(one: Quantity, other: Quantity) -> None:
