@@ -82,7 +82,8 @@ def test_the_whole_limit_is_named_not_that_of_a_part(capsys):
     assert not [*validator("verdicts.json").iter_errors(data)]
     (entry,) = data["verdicts"]
     assert (entry["doubt"]["cause"], entry["doubt"]["tried"]) == ("work", ["proof"])
-    assert entry["reason"].startswith("no answer within 0.5 units of work; tried: a proof; more work may help:")
+    told = "no answer within 0.5 units of work; tried: a proof; more work may help:"
+    assert entry["reason"].startswith(told)
 
 
 def test_an_answer_has_no_doubt():

@@ -129,7 +129,8 @@ def test_a_trace_with_all_facts_at_its_instants_refutes_nothing():
 
 
 def test_without_a_proof_and_without_a_drive_it_is_in_doubt(monkeypatch):
-    monkeypatch.setattr(settling, "_drive_against", lambda *x: None)
+    monkeypatch.setattr(settling._Settling, "_quick", lambda *x: None)
+    monkeypatch.setattr(settling._Settling, "_searched", lambda *x: None)
     found = settle(specification, read_claim(specification, FALSE), Effort(2), said=("motion",))
     assert found.verdict is Verdict.UNKNOWN
 

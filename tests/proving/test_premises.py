@@ -86,6 +86,17 @@ def test_a_certificate_of_earlier_has_all_limits_as_premises():
     assert read_certificate_data(data, "it").assumed.limits == (LIMIT,)
 
 
+@pytest.mark.parametrize(
+    "claim",
+    ["v_lon(SV) <= 4 m/s -> v_lon(SV) <= 5 m/s", "a_lon(SV) <= 4 m/s^2", "a_lon(SV) <= 2 m/s^2"],
+)
+def test_limits_that_contradict_each_other_make_every_claim_vacuous(claim):
+    """Also one that follows without them, or from one of them alone."""
+    found = rp.prove(f"assuming motion, {LIMIT}, a_lon(SV) >= 5 m/s^2: {claim}", jobs=1)
+    assert str(found.verdict) == "VACUOUS"
+    assert found.rows()[0]["reason"] == "what is assumed contradicts itself, so every claim follows"
+
+
 @needs_coq
 def test_coq_names_limits_as_limits(tmp_path):
     claim = f"assuming motion, {LIMIT}: a_lon(SV) <= 4 m/s^2"

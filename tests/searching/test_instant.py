@@ -76,10 +76,12 @@ def test_a_state_in_which_the_claim_is_true_is_no_refutation(monkeypatch):
 def test_what_a_proof_does_not_decide_quickly_is_sampled(monkeypatch):
     """With no work for z3 the drive comes from a sampled state; with none for samples it stays in doubt."""
     monkeypatch.setattr(settle, "BRIEF", 1e-6)
+    monkeypatch.setattr("roadproof.searching.refute.quick_drive", lambda *_: None)
     found = settled(HOME, claim(FALSE), Effort(2e-6))
     assert found.verdict is Verdict.REFUTED
     assert found.refuted_by == "drive"
-    monkeypatch.setattr(settle, "_sampled_against", lambda *_: None)
+    monkeypatch.setattr(settle._Settling, "_quick", lambda _: None)
+    monkeypatch.setattr(settle._Settling, "_searched", lambda *_: None)
     assert settled(HOME, claim(FALSE), Effort(2e-6)).verdict is Verdict.UNKNOWN
 
 

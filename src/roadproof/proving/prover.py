@@ -14,6 +14,7 @@ from roadproof.evidence.derivation import Lemma, Site, derive_query, met_sites, 
 from roadproof.evidence.refutation import Countermodel
 from roadproof.evidence.times import ZERO
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import with_values
@@ -51,6 +52,7 @@ TURNS: tuple[tuple[bool, float], ...] = (
 ON_FEW_LANES = 1.0
 VACUITY = 0.5
 NO_TRACE = "the only countermodels found over points in time are no traces"
+CONTRADICTION = "what is assumed contradicts itself, so every claim follows"
 NO_PROOF = "no proof was found from what is known of motion"
 
 
@@ -125,6 +127,8 @@ def prove(
     fewer = _needed(specification, query, assumed, values, proofs, names)
     if fewer != assumed:
         again = prove(specification, query, meter.effort(), label, scenario, fewer)
+        if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
+            again = replace(again, verdict=Verdict.VACUOUS, reason=CONTRADICTION)
         if again.holds:
             return replace(again, seconds=since(begun), work=meter.spent + again.work)
     try:
@@ -142,7 +146,9 @@ def prove(
             if answer == "unknown":
                 return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
             return result(Verdict.CROSSCHECK_FAILED, why)
-    condition = _premise(claim)
+    if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
+        return result(Verdict.VACUOUS, CONTRADICTION, certificate)
+    condition = _premise(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
     return result(Verdict.PROVED, "", certificate)
@@ -198,10 +204,13 @@ def conjuncts(formula: Formula) -> Iterator[Formula]:
         yield formula
 
 
-def _premise(formula: Formula) -> Formula | None:
-    """A of a claim ``A -> B``, which is built as ``not A or B``."""
+def _premise(query: Query, formula: Formula) -> Formula | None:
+    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is false."""
+    body = query.claim.body
     match formula:
         case f.Or((f.Not(premise), _)):
+            return premise
+        case f.Not(premise) if isinstance(body, syntax.Binary) and body.op == "->":
             return premise
         case _:
             return None

@@ -5,6 +5,7 @@ What searches for drives is imported when one is looked for: most claims are pro
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 from roadproof.effort import Effort, Late
@@ -19,7 +20,7 @@ from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
 from roadproof.searching.steady import steady_drive
-from roadproof.spec.library import Specification
+from roadproof.spec.library import Library, Specification
 from roadproof.spec.motion import Assumed, is_moving, under_limits
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
@@ -27,9 +28,8 @@ from roadproof.verdict import Verdict
 if TYPE_CHECKING:
     from roadproof.searching.ask import Search
 
-DRIVE = 5.0  # units of work for a drive that refutes
-BRIEF = 0.25  # units for a proof of a claim about one instant, before sampled states are looked at
-BEFORE = 5.0  # units for a proof from what is known of motion, before a drive is looked for
+# Units of work for a proof, before short drives are looked at, and before a solver looks for a drive.
+BRIEF, BEFORE = 0.25, 5.0
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,12 @@ class Settled:
             return None
         return "trace" if self.drive is None else "drive"
 
+    def beyond(self, library: Library) -> str:
+        """How the refuting drive leaves the limits of the usual models; '' where there is none, or it keeps
+        them, or was looked for within limits of the user's own.
+        """
+        return "" if self.drive is None or self.bounded else _beyond(self.drive, library)
+
 
 def settle(
     specification: Specification,
@@ -72,86 +78,123 @@ def settle(
     search off.
     """
     begun = now()
+    if seek_drive:
+        return _Settling(specification, query, effort, (label, scenario), tuple(said), begun).run()
     try:
-        induced = prove_by_induction(specification, query, said, effort, label, scenario)
+        found = _proved(specification, query, effort, (label, scenario), tuple(said))
     except Late as late:
         return in_doubt(str(late), begun)
-    if induced is not None:
-        return Settled(induced)
-    if is_moving(said):
-        return _settle_of_motions(specification, query, said, effort, label, scenario, seek_drive)
-    try:
-        asked = label, scenario, Assumed(tuple(said))
-        brief = seek_drive and effort.units > BRIEF and is_cubic_state(query.formula)
-        result = prove(specification, query, effort.of(BRIEF) if brief else effort, *asked)
-        if brief and result.verdict is Verdict.UNKNOWN:
-            drive = _sampled_against(under_limits(specification, query, said), specification)
-            if drive is not None:
-                return Settled(replace(result, reason=""), drive)
-            result = prove(specification, query, effort, *asked)
-    except Late as late:
-        return in_doubt(str(late), begun)
-    if not seek_drive or result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
-        return Settled(result)
-    against = under_limits(specification, query, said)
-    try:
-        drive = _drive_against(against, specification, effort)
-    except Late as late:
-        if result.verdict is not Verdict.REFUTED:
-            return in_doubt(str(late), begun)
-        drive = None
-    if drive is None and result.countermodel is not None:
-        drive = steady_drive(specification, against, result.countermodel)
-    return Settled(result, drive)
+    if is_moving(said) and not found.holds:
+        found = replace(found, reason=f"{found.reason}; no drive that refutes it was looked for")
+    return Settled(found)
 
 
-def _settle_of_motions(
+@dataclass(frozen=True)
+class _Settling:
+    """Proofs and drives in turns, each with more work than before."""
+
+    specification: Specification
+    query: Query
+    effort: Effort
+    called: tuple[str, int | None]
+    said: tuple[str, ...]
+    begun: float
+
+    @cached_property
+    def against(self) -> Query:
+        """What a drive refutes."""
+        return under_limits(self.specification, self.query, self.said)
+
+    def run(self) -> Settled:
+        try:
+            result = self._prove(BRIEF)
+        except Late as late:
+            return in_doubt(str(late), self.begun)
+        if result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
+            return Settled(result)
+        try:
+            return self._run(result)
+        except Late as late:
+            if result.verdict is Verdict.REFUTED:
+                return Settled(result)
+            return in_doubt(str(late), self.begun)
+
+    def _run(self, result: Result) -> Settled:
+        """A quick drive, a longer proof, a drive that takes a search, and the longest proof."""
+        quick = self._quick()
+        if quick is not None and not _beyond(quick, self.specification.library):
+            return self._refuted(result, quick)
+        if quick is None and self._may_change(result, BRIEF):
+            result = self._prove(BEFORE)
+        if result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
+            return Settled(result)
+        drive = self._searched(quick)
+        if drive is not None:
+            return self._refuted(result, drive)
+        if self._may_change(result, BEFORE):
+            result = self._prove(self.effort.units)
+        if result.countermodel is not None:
+            drive = steady_drive(self.specification, self.against, result.countermodel)
+        if result.verdict is Verdict.UNKNOWN and is_moving(self.said):
+            result = replace(result, reason=f"{result.reason}; no drive was found that refutes it")
+        return Settled(replace(result, seconds=since(self.begun)), drive)
+
+    def _prove(self, units: float) -> Result:
+        effort = self.effort.of(min(units, self.effort.units))
+        return _proved(self.specification, self.query, effort, self.called, self.said)
+
+    def _may_change(self, result: Result, units: float) -> bool:
+        """Whether more work than ``units`` may bring another answer."""
+        return result.verdict is Verdict.UNKNOWN and units < self.effort.units
+
+    def _refuted(self, result: Result, drive: Judged) -> Settled:
+        return Settled(replace(result, reason="", seconds=since(self.begun)), drive)
+
+    def _quick(self) -> Judged | None:
+        """A short or steady drive on which the claim is false, found without a solver; None as below."""
+        from roadproof.searching.instant import sampled_drive
+        from roadproof.searching.question import Setting
+        from roadproof.searching.refute import quick_drive
+
+        try:
+            found = quick_drive(self.specification, self.against)
+            if found is None and is_cubic_state(self.against.formula):
+                values = pins(self.against.formula)
+                return sampled_drive(self.specification, self.against, values, Setting())
+            return found
+        except (InputError, UsageError):
+            return None
+
+    def _searched(self, known: Judged | None) -> Judged | None:
+        """A drive on which the claim is false; ``known`` or None where none is found that is better."""
+        from roadproof.searching.refute import refuting_drive
+
+        try:
+            return refuting_drive(self.specification, self.against, self.effort, known)
+        except (InputError, UsageError):
+            return known
+
+
+def _beyond(drive: Judged, library: Library) -> str:
+    from roadproof.searching.refute import beyond_limits
+
+    return beyond_limits(drive, library)
+
+
+def _proved(
     specification: Specification,
     query: Query,
-    said: Sequence[str],
     effort: Effort,
-    label: str,
-    scenario: int | None,
-    seek_drive: bool,
-) -> Settled:
-    """A quick proof, else a drive on which the claim is false within the limits said, else a long proof."""
-    begun = now()
-    asked = specification, query, said
-    try:
-        result = prove_of_motions(*asked, effort.of(min(BEFORE, effort.units)), label, scenario)
-        if result.holds:
-            return Settled(result)
-        drive = _drive_against(under_limits(*asked), specification, effort) if seek_drive else None
-        if drive is not None:
-            return Settled(replace(result, reason=""), drive)
-        if effort.units > BEFORE:
-            result = prove_of_motions(*asked, effort, label, scenario)
-    except Late as late:
-        return in_doubt(str(late), begun)
-    sought = "no drive was found that refutes it" if seek_drive else "no drive that refutes it was looked for"
-    reason = result.reason if result.holds else f"{result.reason}; {sought}"
-    return Settled(replace(result, reason=reason, seconds=since(begun)))
-
-
-def _drive_against(claim: Query, specification: Specification, effort: Effort) -> Judged | None:
-    """A drive on which ``claim`` is false; None where none is found, or it is not about drives."""
-    from roadproof.searching.refute import refuting_drive
-
-    try:
-        return refuting_drive(specification, claim, effort.of(min(DRIVE, effort.units)))
-    except (InputError, UsageError):
-        return None
-
-
-def _sampled_against(claim: Query, specification: Specification) -> Judged | None:
-    """Constant motion on which a claim about one instant is false, from a sampled state; None as above."""
-    from roadproof.searching.instant import sampled_drive
-    from roadproof.searching.question import Setting
-
-    try:
-        return sampled_drive(specification, claim, pins(claim.formula), Setting())
-    except (InputError, UsageError):
-        return None
+    called: tuple[str, int | None],
+    said: Sequence[str],
+) -> Result:
+    """What the prover says. Raises ``Late``."""
+    induced = prove_by_induction(specification, query, said, effort, *called)
+    if induced is not None:
+        return induced
+    if is_moving(said):
+        return prove_of_motions(specification, query, said, effort, *called)
+    return prove(specification, query, effort, *called, Assumed(tuple(said)))
 
 
 def settle_bounded(search: "Search") -> Settled:
