@@ -12,6 +12,7 @@ from typing import Any, Literal, assert_never
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import road_data
+from roadproof.evidence.periodic import Loop, judge_periodic
 from roadproof.judge import TruthSet, judge
 from roadproof.judge.signals import AbstractSignals
 from roadproof.judge.truth import from_switches
@@ -33,26 +34,30 @@ NOWHERE = Road("no road", (), frozenset())
 class Instant:
     """A state: signals, sizes and variables by name, ``s(SV)``, ``length(SV)``, ``v``, in SI units.
 
-    ``atoms`` tells a reader which predicates are true; nothing rests on it.
+    ``atoms`` tells a reader which predicates are true; nothing rests on it. ``after``: the state from just
+    after the instant up to the next, where it is one of its own.
     """
 
     time: Fraction
     values: Mapping[str, Fraction]
     atoms: Mapping[str, bool]
+    after: Mapping[str, Fraction] | None = None
 
 
 @dataclass(frozen=True)
 class Countermodel:
     """A trace on which a claim is false at time 0.
 
-    ``held`` says which of two states fills the time between their instants. ``road`` is None where
-    the claim speaks of none; its lanes and lanelets have the names that are free in the claim.
+    ``held`` says which of two states fills the time between their instants, where the first has none of its
+    own. ``road`` is None where the claim speaks of none; its lanes and lanelets have the names that are free
+    in the claim. ``loop``: how the trace repeats itself for ever, where it does.
     """
 
     instants: tuple[Instant, ...]
     parameters: Mapping[str, Fraction]
     held: Held
     road: Road | None = None
+    loop: Loop | None = None
 
 
 def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, str]) -> str | None:
@@ -66,7 +71,13 @@ def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, st
     times = [instant.time for instant in countermodel.instants]
     if not times or times[0] != 0 or times != sorted(set(times)):
         return f"its instants are {', '.join(map(str, times))}, but must ascend from 0"
-    sizes = [_sizes(instant) for instant in countermodel.instants]
+    loop = countermodel.loop
+    if loop is not None:
+        if loop.start not in times or loop.period <= 0 or loop.end <= times[-1]:
+            return f"it repeats itself from {loop.start} s each {loop.period} s, which fits no instants of it"
+        if countermodel.held != "before":
+            return "it repeats itself, so between instants it must keep the state of the one before"
+    sizes = [_sizes(values) for instant in countermodel.instants for values in _states(instant)]
     if any(other != sizes[0] for other in sizes) or any(value <= 0 for value in sizes[0].values()):
         return "a length, width or kind changes or is not greater than 0"
     try:
@@ -93,8 +104,10 @@ def when_true(formula: Formula, trace: Countermodel) -> TruthSet:
     given: dict[Formula, TruthSet] = {}
     for part in f.subformulas(bare):
         if isinstance(part, f.Compare):
-            truths = [_holds(part, instant) for instant in trace.instants]
-            given[part] = _spread(times, truths, trace.held)
+            truths = [_holds(part, instant.values) for instant in trace.instants]
+            given[part] = _spread(times, truths, _after(part, truths, trace))
+    if trace.loop is not None:
+        return judge_periodic(bare, given, trace.loop)
     return judge(bare, None, given).truth(bare)
 
 
@@ -139,10 +152,10 @@ def _with_variables(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
     return t.replace_leaves(term, leaf)
 
 
-def _holds(part: f.Compare, instant: Instant) -> bool:
+def _holds(part: f.Compare, values: Mapping[str, Fraction]) -> bool:
     """Whether a comparison holds in a state."""
     names = sorted(dict.fromkeys(_named(part).values()))
-    return _holds_at(part, tuple((name, instant.values[name]) for name in names if name in instant.values))
+    return _holds_at(part, tuple((name, values[name]) for name in names if name in values))
 
 
 @lru_cache(maxsize=10_000)
@@ -170,32 +183,52 @@ def _named(part: f.Compare) -> Mapping[t.Leaf, str]:
     return named | {leaf: leaf.told for leaf in found if isinstance(leaf, t.Own)}
 
 
-def _spread(times: Sequence[Fraction], values: Sequence[bool], held: Held) -> TruthSet:
-    """Truth at instants, carried over to what lies between them."""
-    after = values if held == "before" else [*values[1:], values[-1]]
+def _after(part: f.Compare, truths: Sequence[bool], trace: Countermodel) -> list[bool]:
+    """Whether a comparison holds after each instant, up to the next."""
+    held = truths if trace.held == "before" else [*truths[1:], truths[-1]]
+    return [
+        usual if instant.after is None else _holds(part, instant.after)
+        for instant, usual in zip(trace.instants, held, strict=True)
+    ]
+
+
+def _spread(times: Sequence[Fraction], values: Sequence[bool], after: Sequence[bool]) -> TruthSet:
+    """Truth at instants and after them."""
     return from_switches(zip(times, values, after, strict=True))
 
 
-def _sizes(instant: Instant) -> dict[str, Fraction]:
-    return {name: value for name, value in instant.values.items() if name.partition("(")[0] in FIXED}
+def _states(instant: Instant) -> Sequence[Mapping[str, Fraction]]:
+    return (instant.values,) if instant.after is None else (instant.values, instant.after)
+
+
+def _sizes(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    return {name: value for name, value in values.items() if name.partition("(")[0] in FIXED}
 
 
 # --- plain data ----------------------------------------------------------------------------------
 
 
 def trace_data(countermodel: Countermodel) -> dict[str, Any]:
-    """A countermodel: its road, and what holds at each instant."""
+    """A countermodel: its road, and what holds at each instant; how it repeats itself, where it does."""
+    loop = countermodel.loop
+    repeats = {} if loop is None else {"repeats": {"from": str(loop.start), "period": str(loop.period)}}
     return {
         "kind": "trace",
         "between": f"the state of the instant {countermodel.held}",
         "parameters": {name: str(value) for name, value in sorted(countermodel.parameters.items())},
         "road": None if countermodel.road is None else road_data(countermodel.road),
+        **repeats,
         "instants": [
             {
                 "time": str(instant.time),
                 "true": sorted(name for name, true in instant.atoms.items() if true),
-                "values": {name: str(value) for name, value in sorted(instant.values.items())},
+                "values": _texts(instant.values),
+                **({} if instant.after is None else {"after": _texts(instant.after)}),
             }
             for instant in countermodel.instants
         ],
     }
+
+
+def _texts(values: Mapping[str, Fraction]) -> dict[str, str]:
+    return {name: str(value) for name, value in sorted(values.items())}

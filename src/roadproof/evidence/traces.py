@@ -6,6 +6,7 @@ from fractions import Fraction
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import read_road
 from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.periodic import Loop
 from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of
 from roadproof.evidence.strict import Fields, rational
 from roadproof.spec.bind import values_with
@@ -40,7 +41,9 @@ def judge_trace(
 
 def read_trace(content: object, where: str) -> Countermodel:
     """The inverse of ``refutation.trace_data``. Raises ``InputError``."""
-    data = Fields(content, f"{where}, trace", ("kind", "between", "parameters", "road", "instants"))
+    data = Fields(
+        content, f"{where}, trace", ("kind", "between", "parameters", "road", "repeats", "instants")
+    )
     if data.text("kind") != "trace":
         raise InputError(f"{data.where}: kind={data.text('kind')[:40]!r}; a drive is a file beside the index")
     if data.text("between") not in _BETWEEN:
@@ -54,12 +57,20 @@ def read_trace(content: object, where: str) -> Countermodel:
         _numbers(data, "parameters"),
         _BETWEEN[data.text("between")],
         read_road(data.get("road"), f"{data.where}, road") if data.has("road") else None,
+        _loop(data.get("repeats"), f"{data.where}, repeats") if data.has("repeats") else None,
     )
 
 
 def _instant(content: object, where: str) -> Instant:
-    data = Fields(content, where, ("time", "true", "values"))
-    return Instant(data.rational("time"), _numbers(data, "values"), dict.fromkeys(data.texts("true"), True))
+    data = Fields(content, where, ("time", "true", "values", "after"))
+    after = _numbers(data, "after") if data.has("after") else None
+    truths = dict.fromkeys(data.texts("true"), True)
+    return Instant(data.rational("time"), _numbers(data, "values"), truths, after)
+
+
+def _loop(content: object, where: str) -> Loop:
+    data = Fields(content, where, ("from", "period"))
+    return Loop(data.rational("from"), data.rational("period"))
 
 
 def _numbers(data: Fields, field: str) -> dict[str, Fraction]:

@@ -6,18 +6,20 @@ paper's sense, signals as functions of time; it may jump. What the model says of
 only guides the making of a road: whether the claim is false there is judged from the numbers.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import TypeAlias
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.periodic import Loop
 from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of, when_true
 from roadproof.logic import terms as t
 from roadproof.logic.own import code_of, kind_of
 from roadproof.logic.rewrite import terms_of, vehicles_of
-from roadproof.proving.place import place
+from roadproof.proving.place import Values, place
 from roadproof.proving.roads import lay_road
 from roadproof.proving.search import Model
 from roadproof.proving.states import TYPICAL_SIZE
@@ -26,12 +28,26 @@ from roadproof.signals import FIXED
 from roadproof.spec.query import Query
 
 HELD: tuple[Held, ...] = ("before", "after")
+Trace: TypeAlias = tuple[tuple[Instant, ...], Held, Loop | None]
+
+
+def held_either_way(times: Sequence[Fraction], states: Sequence[Values]) -> Iterator[Trace]:
+    """Between two instants the state of the one before, or of the one after."""
+    instants = tuple(Instant(time, found, {}) for time, found in zip(times, states, strict=True))
+    return ((instants, held, None) for held in HELD)
 
 
 def realise(
-    query: Query, atoms: Atoms, model: Model, defaults: Mapping[str, Fraction], bounds: Mapping[str, str]
+    query: Query,
+    atoms: Atoms,
+    model: Model,
+    defaults: Mapping[str, Fraction],
+    bounds: Mapping[str, str],
+    traces: Callable[[Sequence[Fraction], Sequence[Values]], Iterable[Trace]] = held_either_way,
 ) -> Countermodel | None:
     """The model as a trace on which the claim is judged false, or None.
+
+    ``traces``: what can be made of its states, given their times.
 
     None also where two instants need different values of one parameter or one vehicle's size, and
     where no road is found that has what the model says of lanes and lanelets.
@@ -42,14 +58,13 @@ def realise(
     states = place(query.formula, atoms, model, fixed)
     times = tuple(model.states)
     parameters = {name: fixed[name] for name in defaults}
-    plain = tuple(Instant(time, found, {}) for time, found in zip(times, states, strict=True))
     for strict in (True, False):
         layout = layout_of(query.formula, atoms, model, states, strict)
         road = None if layout is None else lay_road(layout)
         if layout is not None and road is None:
             continue
-        for held in HELD:
-            found = Countermodel(plain, parameters, held, road)
+        for instants, held, loop in traces(times, states):
+            found = Countermodel(instants, parameters, held, road, loop)
             if fault_of(found, query.formula, bounds) is None:
                 return found
         if layout is None:

@@ -20,6 +20,7 @@ from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import with_values
 from roadproof.proving.countermodel import realise, with_truths
 from roadproof.proving.doubt import Doubt, Stop
+from roadproof.proving.lasso import find_lasso
 from roadproof.proving.roster import Roster, roster_for
 from roadproof.proving.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.proving.states import Learnt, StateChecker
@@ -50,6 +51,7 @@ TURNS: tuple[tuple[bool, float], ...] = (
     (True, math.inf),
 )
 ON_FEW_LANES = 1.0
+REPEATING = 1.0
 VACUITY = 0.5
 NO_TRACE = "the only countermodels found over points in time are no traces"
 CONTRADICTION = "what is assumed contradicts itself, so every claim follows"
@@ -242,6 +244,10 @@ class _Attempt:
                 few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
                 if isinstance(few, Countermodel):
                     return few
+            if number == len(turns[:3]) and not self.moving:
+                repeating = find_lasso(self.query, goal, self.states, self.meter.part(REPEATING))
+                if repeating is not None:
+                    return repeating
             found = self._run(self._search(goal, names, wishful), self.meter.part(units))
             if not isinstance(found, GaveUp):
                 return found

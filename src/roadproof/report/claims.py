@@ -1,6 +1,6 @@
 """Settled claims to look at: a line, a table, or all details."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby
 
@@ -143,6 +143,9 @@ def _show_countermodel(countermodel: Countermodel) -> list[str]:
         "  false on this trace over points in time, judged; it may jump:",
         f"    between two instants it keeps the state of the one {countermodel.held}",
     ]
+    if countermodel.loop is not None:
+        loop = countermodel.loop
+        lines.append(f"    from {_number(loop.start)} s on it repeats itself every {_number(loop.period)} s")
     if countermodel.parameters:
         shown = ", ".join(f"{n}={_number(v)}" for n, v in sorted(countermodel.parameters.items()))
         lines.append(f"    parameters: {shown}")
@@ -152,10 +155,16 @@ def _show_countermodel(countermodel: Countermodel) -> list[str]:
     for instant in countermodel.instants:
         true = ", ".join(sorted(x for x, holds in instant.atoms.items() if holds)) or "none of the predicates"
         lines.append(f"    at {_number(instant.time)} s: {true}")
-        values = {n: v for n, v in instant.values.items() if n not in countermodel.parameters}
-        if values:
-            lines.append(f"      {', '.join(f'{n}={_number(v)}' for n, v in sorted(values.items()))}")
+        lines += [f"      {x}" for x in _values_in(instant.values, countermodel)]
+        if instant.after is not None and instant.after != instant.values:
+            lines += [f"      after it {x}" for x in _values_in(instant.after, countermodel)]
     return lines
+
+
+def _values_in(values: Mapping[str, Fraction], countermodel: Countermodel) -> list[str]:
+    """A state without the parameters, in a line; none where nothing is left."""
+    shown = [f"{n}={_number(v)}" for n, v in sorted(values.items()) if n not in countermodel.parameters]
+    return [", ".join(shown)] if shown else []
 
 
 def _lane(lane: str, road: Road) -> str:
