@@ -48,7 +48,7 @@ def test_beyond_the_limits_of_the_shipped_car(text):
     assert small_drive(HOME, claim(text), "model") is None
     drive = quick_drive(HOME, claim(text))
     assert judge(drive.judgement.formula, drive.file.drive).holds
-    assert "limits of the shipped car" in beyond_limits(drive, HOME.library)
+    assert "limits of the shipped car" in beyond_limits(drive)
 
 
 @pytest.mark.parametrize("text", WITHIN)
@@ -58,7 +58,7 @@ def test_within_the_limits_of_the_shipped_car(text):
     models = {name: usual_model(query.formula, name) for name in query.vehicles}
     assert first_breach(found.file.drive, models, None) is None
     assert first_overlap(found.file.drive, found.file.horizon) is None
-    assert beyond_limits(found, HOME.library) == ""
+    assert beyond_limits(found) == ""
 
 
 @pytest.mark.parametrize("within", ["model", "forward", "claim"])

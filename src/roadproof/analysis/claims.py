@@ -62,6 +62,7 @@ class Answered:
             "expected": str(self.expected),
             "verdict": str(settled.verdict),
             "refuted_by": settled.refuted_by,
+            "beyond_limits": settled.beyond or None,
             "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
             "seconds": result.seconds,
             "reason": result.reason,

@@ -207,12 +207,12 @@ def conjuncts(formula: Formula) -> Iterator[Formula]:
 
 
 def _premise(query: Query, formula: Formula) -> Formula | None:
-    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is false."""
-    body = query.claim.body
+    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is ``false``."""
+    match query.claim.body:
+        case syntax.Binary("->", _, syntax.Literal_(value)) if value is False:
+            return f.negation(formula)
     match formula:
         case f.Or((f.Not(premise), _)):
-            return premise
-        case f.Not(premise) if isinstance(body, syntax.Binary) and body.op == "->":
             return premise
         case _:
             return None

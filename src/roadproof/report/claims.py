@@ -85,8 +85,7 @@ def details(answered: Answered, asked: Claims) -> str:
         lines += _show_premises(certificate.assumed)
     if settled.drive is not None:
         lines += _show_drive(settled.drive)
-        beyond = settled.beyond(asked.library)
-        lines += [f"  this drive lies outside the {beyond}"] if beyond else []
+        lines += [f"  this drive lies outside the {settled.beyond}"] if settled.beyond else []
     elif result.countermodel is not None:
         lines += _show_countermodel(result.countermodel)
     return "\n".join(lines)

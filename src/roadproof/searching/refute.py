@@ -13,8 +13,7 @@ from roadproof.searching.enumeration import Within, small_drive
 from roadproof.searching.kinds import usual_model
 from roadproof.searching.question import SearchOptions, Setting
 from roadproof.spec.compose import negation
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification
+from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 from roadproof.world.vehicle import Vehicle
 
@@ -88,14 +87,13 @@ def _without_limits(model: Vehicle) -> Vehicle:
     )
 
 
-def beyond_limits(drive: Judged, library: Library) -> str:
+def beyond_limits(drive: Judged) -> str:
     """How a drive leaves the limits of the usual models, in words; '' where it keeps them.
 
     Boxes that overlap within the horizon of the file count as well.
     """
     file = drive.file
-    query = read_claim(library.select(file.set_name, file.options), file.formula)
-    models = {name: usual_model(query.formula, name) for name in file.drive.vehicles}
+    models = {name: usual_model(drive.judgement.formula, name) for name in file.drive.vehicles}
     breach = first_breach(file.drive, models, None)
     if breach is not None:
         return f"limits of the shipped {models[breach.vehicle].name}: {breach}"

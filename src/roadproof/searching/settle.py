@@ -20,7 +20,7 @@ from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
 from roadproof.searching.steady import steady_drive
-from roadproof.spec.library import Library, Specification
+from roadproof.spec.library import Specification
 from roadproof.spec.motion import Assumed, is_moving, under_limits
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
@@ -56,11 +56,12 @@ class Settled:
             return None
         return "trace" if self.drive is None else "drive"
 
-    def beyond(self, library: Library) -> str:
+    @property
+    def beyond(self) -> str:
         """How the refuting drive leaves the limits of the usual models; '' where there is none, or it keeps
         them, or was looked for within limits of the user's own.
         """
-        return "" if self.drive is None or self.bounded else _beyond(self.drive, library)
+        return "" if self.drive is None or self.bounded else _beyond(self.drive)
 
 
 def settle(
@@ -122,7 +123,7 @@ class _Settling:
     def _run(self, result: Result) -> Settled:
         """A quick drive, a longer proof, a drive that takes a search, and the longest proof."""
         quick = self._quick()
-        if quick is not None and not _beyond(quick, self.specification.library):
+        if quick is not None and not _beyond(quick):
             return self._refuted(result, quick)
         if quick is None and self._may_change(result, BRIEF):
             result = self._prove(BEFORE)
@@ -175,10 +176,10 @@ class _Settling:
             return known
 
 
-def _beyond(drive: Judged, library: Library) -> str:
+def _beyond(drive: Judged) -> str:
     from roadproof.searching.refute import beyond_limits
 
-    return beyond_limits(drive, library)
+    return beyond_limits(drive)
 
 
 def _proved(
