@@ -135,6 +135,8 @@ def _realised(
         own = (x != y for x, y in shape.states)
         found = zip(shape.times, states[::2], states[1::2], own, strict=True)
         instants = (Instant(time, at, {}, after if differs else None) for time, at, after, differs in found)
-        yield tuple(instants), "before", shape.loop
+        at, after = shape.states[-1]
+        stays = at == after and shape.again == len(shape.states) - 1
+        yield tuple(instants), "before", None if stays else shape.loop
 
     return realise(query, checker.atoms, model, checker.defaults, checker.bounds, traces)
