@@ -302,6 +302,8 @@ def _assumed(data: Fields) -> Assumed:
         return NOTHING
     said = read_assuming(data) if "assuming" in data.content else ()
     entries = data.items("axioms")
+    if not said and not entries:
+        raise InputError(f"{data.where}: 'axioms' is empty, and nothing is assumed: leave it out")
     unused = data.texts("unused") if "unused" in data.content else ()
     return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries), unused)
 
