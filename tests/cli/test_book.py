@@ -19,6 +19,7 @@ PAGES = [
     ROOT / "README.md",
     ROOT / "docs/language.md",
     ROOT / "docs/interop.md",
+    ROOT / "docs/motion.md",
 ]
 
 

@@ -54,7 +54,7 @@ OPTIONAL = {
     "monitor.json": {"exact"},
     "redundancy.json": {"road"},
     "traffic-results.json": {"drivers"},
-    "verdicts.json": {"limits", "road"},
+    "verdicts.json": {"limits", "road", "doubt"},
     "witness.json": {"limits"},
 }
 # Objects that hold something for each of some names.

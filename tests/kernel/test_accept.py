@@ -62,7 +62,7 @@ def test_what_is_assumed_of_motion_is_a_premise_that_is_said():
     certificate = proved.answers[0].settled.result.certificate
     module = prepare("one", certificate, bundled_library()).module
     assert "Definition claim : formula := motion_1 -> " in module.text
-    assert "Under 1 facts about motion: premises of the claim, not proved here." in module.text
+    assert "Under 1 fact about motion: premises of the claim, not proved here." in module.text
 
 
 @needs_coq

@@ -12,6 +12,7 @@ from roadproof.evidence.atoms import Atoms
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.proving import countermodel, prover
+from roadproof.proving.doubt import Stop
 from roadproof.proving.grounding import Grounding
 from roadproof.proving.place import place
 from roadproof.proving.search import GaveUp, Model
@@ -72,7 +73,7 @@ def test_a_road_of_few_lanes_proves_nothing(monkeypatch):
     monkeypatch.setattr(prover._Attempt, "_run", run)
     monkeypatch.setattr(prover, "TURNS", ((False, 0.0), (True, 0.0)))
     assert settle("(every K in lanes: F atLane(SV,K)) -> F p").verdict is Verdict.UNKNOWN
-    assert found == [GaveUp("no countermodel on a road of few lanes")]
+    assert found == [GaveUp("no countermodel on a road of few lanes", Stop.PLACE)]
 
 
 def test_where_no_road_is_found_nothing_is_refuted(monkeypatch):

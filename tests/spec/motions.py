@@ -19,6 +19,7 @@ ABOUT = read_claim(
 ROAD = load_road("main-2")
 VALUES = default_values(specification.library)
 
+TWICE = ("within-twice", "after-twice")
 # Each schema with terms of every kind: places, speeds, sizes, parameters, factors.
 AXIOMS = [
     *(Axiom(schema, ("s(SV)", "s(POV)")) for schema in ("at-most", "below", "meets")),
@@ -35,6 +36,10 @@ AXIOMS = [
     *(Axiom(schema, ("s(SV)", "s(POV) + 3 m", "2 m/s", "3/2*1 s")) for schema in ("within", "after")),
     *(Axiom(schema, ("v_lon(SV)", "4 m/s", "-2 m/s^2", "2 s")) for schema in ("within", "after")),
     *(Axiom(schema, ("0 m", "d(POV)", "1 m/s - a_max*rho", "minSafe")) for schema in ("within", "after")),
+    *(Axiom(x, ("s(SV)", "s(POV) + 3 m", "2 m/s", "1 m/s^2", "3/2*1 s")) for x in TWICE),
+    *(Axiom(x, ("s(SV)", "s(POV)", "2 m/s", "-2 m/s^2", "2 s")) for x in TWICE),
+    *(Axiom(x, ("d(POV)", "d(SV) + width(SV)", "-1 m/s", "a_max", "minSafe")) for x in TWICE),
+    *(Axiom(x, ("0 m", "2*s(POV) - s(SV)", "1 m/s", "0 m/s^2", "1 s")) for x in TWICE),
 ]
 
 

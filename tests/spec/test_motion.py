@@ -1,5 +1,7 @@
 """Facts about motion are true on every drive; faults planted in them are not; nothing else can be assumed."""
 
+from fractions import Fraction
+
 import pytest
 
 from roadproof.errors import InputError
@@ -64,7 +66,37 @@ def grown(metres, time=TWO):
     return always(BEHIND, slow, f.negation(more), f.Interval(f.ZERO, time))
 
 
+def more(left, right, by, seconds):
+    """left <= right + by, of signals"""
+    return f.Compare(left, "<=", t.Sum((right, t.number(by, (1, -seconds)))))
+
+
+MINE, YOURS = (t.Signal("a_lon", vehicle) for vehicle in ("SV", "POV"))
+
+
+def risen(metres, start=None, growth=1, time=TWO):
+    """SV is 1 m/s faster at most, gains 1 m/s^2 at most for 2 s, and is then so many metres ahead at most."""
+    begins = f.conjunction(BEHIND, start or more(MY_SPEED, YOUR_SPEED, 1, 1))
+    slow = f.Always(f.Interval(f.ZERO, TWO), more(MINE, YOURS, growth, 2))
+    ends = f.Always(f.Interval(time, time), more(ME, YOU, metres, 0))
+    return f.Always(f.FOREVER, f.implication(f.conjunction(begins, slow), ends))
+
+
+def risen_within(metres, growth=1):
+    """The same at all times up to 2 s."""
+    begins = f.conjunction(BEHIND, more(MY_SPEED, YOUR_SPEED, 1, 1))
+    ahead = f.negation(more(ME, YOU, metres, 0))
+    return always(begins, more(MINE, YOURS, growth, 2), ahead, f.Interval(f.ZERO, TWO))
+
+
 FAULTS = {
+    "after-twice, half the growth": risen(3),
+    "after-twice, without what the rate is at first": risen(4, f.TRUE),
+    "after-twice, growth without its square": risen(2 + Fraction(1, 2)),
+    "after-twice, later": risen(4, time=FIVE),
+    "after-twice, faster at first": risen(4, more(YOUR_SPEED, MY_SPEED, 1, 1)),
+    "within-twice, half the growth": risen_within(3),
+    "within-twice, a growth below zero for all of the time": risen_within(0, -1),
     "at-most, wrong sign": always(
         BEHIND, f.disjunction(BEHIND, f.Compare(YOUR_SPEED, "<=", MY_SPEED)), f.negation(BEHIND)
     ),
@@ -130,7 +162,10 @@ def test_the_faults_are_written_like_the_schemas():
     kept = f.disjunction(BEHIND, NOT_FASTER)
     assert always(BEHIND, kept, f.negation(BEHIND)) == motion.at_most(ME, YOU)
     assert always(FAR_BEHIND, NOT_FASTER, f.negation(FAR_BEHIND)) == motion.below(ME, YOU)
-    assert grown(2) == motion.within(ME, YOU, t.number(1, (1, -1)), TWO)
+    one = t.number(1, (1, -1))
+    assert grown(2) == motion.within(ME, YOU, one, TWO)
+    assert risen(4) == motion.after_twice(ME, YOU, one, t.number(1, (1, -2)), TWO)
+    assert risen_within(4) == motion.within_twice(ME, YOU, one, t.number(1, (1, -2)), TWO)
 
 
 # --- what cannot be assumed ----------------------------------------------------------------------
@@ -159,6 +194,13 @@ REFUSED = [
     ("after", ("s(SV)", "0 m", "3 m/s", "1 s - rho"), "may never be negative"),
     ("after", ("s(SV)", "0 m", "3 m/s", "-1 s"), "may not start in the past"),
     ("after", ("s(SV)", "0 m", "3 m/s", "v_lon(SV)*1 s^2/(1 m)"), ""),
+    ("after-twice", ("s(SV)", "0 m", "3 m/s", "1 s"), "takes left, right, speed, growth, time"),
+    ("after-twice", ("v_lon(SV)", "0 m/s", "3 m/s^2", "0 m/s^3", "1 s"), "no affine combination"),
+    ("after-twice", ("s(SV)", "0 m", "3 m/s", "3 m/s", "1 s"), "units do not fit"),
+    ("after-twice", ("s(SV)", "0 m", "3 m/s", "a_lon(POV)", "1 s"), "may not change"),
+    ("within-twice", ("s(SV)", "0 m", "v_lon(POV)", "3 m/s^2", "1 s"), "may not change"),
+    ("within-twice", ("s(SV)", "0 m", "3 m/s", "3 m/s^2", "-1 s"), "may not start in the past"),
+    ("within-twice", ("s(SV)*s(SV)", "0 m*1 m", "0", "0", "1 s"), "no affine combination"),
 ]
 
 

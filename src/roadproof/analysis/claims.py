@@ -14,11 +14,13 @@ from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.traces import read_trace
 from roadproof.logic.own import told_freedom
+from roadproof.proving.doubt import Cause, Doubt, Stop, doubt_of
 from roadproof.proving.properties import Task, find_label, name_of_claim
 from roadproof.proving.prover import Result
 from roadproof.searching.settle import Settled, in_doubt, settle, settle_bounded
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification
+from roadproof.spec.query import Query
 from roadproof.stages import about
 from roadproof.study.shelf import Question, Shelf, specification_names
 from roadproof.verdict import Verdict
@@ -64,8 +66,10 @@ class Answered:
             "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
             "seconds": result.seconds,
             "reason": result.reason,
+            **({"doubt": result.doubt.as_data()} if result.doubt is not None else {}),
             **({"limits": settled.limits.as_json()} if settled.limits is not None else {}),
             "assumptions": list(result.certificate.assumptions) if result.certificate else [],
+            "premises": list(result.certificate.assumed.premises) if result.certificate else [],
             "certificate": file if result.certificate is not None else None,
             "counterexample": _counterexample(settled),
         }
@@ -140,11 +144,22 @@ class Claims:
         else:
             label = piece.id + (f"-{piece.part}" if piece.part else "")
             more = piece.scenario, self.seek_drive, piece.assuming
-            settled = settle(specification, query, self.effort, label, *more)
+            settled = self._explained(piece, query, settle(specification, query, self.effort, label, *more))
         return {name_of(piece): Answered(piece, settled)}
 
+    def _explained(self, piece: Task, query: Query, settled: Settled) -> Settled:
+        """The same, with the cause of an UNKNOWN."""
+        result = settled.result
+        if settled.verdict is not Verdict.UNKNOWN or result.stop is None:
+            return settled
+        asked = query, piece.assuming, result.stop, self.effort, self.seek_drive
+        doubt = doubt_of(*asked, result.reason)
+        return replace(settled, result=replace(result, reason=str(doubt), doubt=doubt))
+
     def doubt(self, piece: Task, reason: str) -> dict[str, Answered]:
-        settled = replace(in_doubt(reason), bounded=self.within is not None)
+        settled = replace(in_doubt(reason, stop=Stop.PROCESS), bounded=self.within is not None)
+        doubt = Doubt(Cause.PROCESS, (), self.effort.units, reason)
+        settled = replace(settled, result=replace(settled.result, doubt=doubt))
         return {name_of(piece): Answered(piece, settled)}
 
     def is_sure(self, answer: Answered) -> bool:

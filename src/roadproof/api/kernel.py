@@ -155,7 +155,7 @@ def _read(path: Path) -> Certificate | DriveFile | None:
 
 
 def _unprepared(asked: Asked, reason: str) -> Prepared:
-    return Prepared(None, 0, Ruling(Word.UNKNOWN, reason))
+    return Prepared(None, refusal=Ruling(Word.UNKNOWN, reason))
 
 
 def _lost(part: Mapping[str, Prepared], reason: str) -> Judged:
@@ -164,9 +164,12 @@ def _lost(part: Mapping[str, Prepared], reason: str) -> Judged:
 
 def ruled(ruling: Ruling) -> Ruled:
     """What Coq says, for a finding."""
-    assumed = ruling.assumed
-    premises = (
-        (f"under {assumed} fact{'s' * (assumed != 1)} about motion that are premises",) if assumed else ()
+    premises = ruling.premises
+    words = "that is a premise" if premises.count == 1 else "that are premises"
+    said = (f"under {premises} {words}",) if premises.count else ()
+    untold = (
+        *(("that the facts are true of motion",) * bool(premises.facts)),
+        *(("that the inductions hold on every trace",) * bool(premises.inductions)),
     )
-    unchecked = ("queries for solvers", *(("that these are true of motion",) * bool(assumed)))
-    return Ruled(_OUTCOMES[ruling.word], ruling.reason, str(ruling), premises, unchecked)
+    unchecked = ("queries for solvers", *untold)
+    return Ruled(_OUTCOMES[ruling.word], ruling.reason, str(ruling), said, unchecked)

@@ -116,6 +116,7 @@ class Proofs(Studied[Claims, Answered]):
             {
                 "claim": " ".join(x.task.claim.split()),
                 "assuming": ", ".join(x.task.assuming),
+                "premises": _premises(x),
                 "set": x.task.set_name,
                 "verdict": str(x.verdict),
                 "refuted_by": x.settled.refuted_by,
@@ -224,6 +225,12 @@ def prove(
     with listening(stage):
         found = Proofs.asked(asked, out, jobs, progress, say)
     return found if kernel is None else found.put_to_kernel(jobs, progress)
+
+
+def _premises(answer: Answered) -> str:
+    """The limits and facts about motion that a proof uses; empty where there is no proof or it uses none."""
+    certificate = answer.settled.result.certificate
+    return "" if certificate is None else "; ".join(certificate.assumed.premises)
 
 
 def ask_kernel(kernel: str, engine: str) -> None:

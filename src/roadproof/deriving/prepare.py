@@ -14,12 +14,12 @@ def prepare(name: str, file: DriveFile, library: Library) -> Prepared:
     try:
         what = shown(file, library)
     except RoadproofError as error:
-        return Prepared(None, 0, Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return Prepared(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
     try:
         printed = claim_text(what)
         derivation = derive(what.formula, file.drive, file.road, file.lanes, what.values)
         return Prepared(module(name, what, printed, derivation))
     except NoDerivationError as error:
-        return Prepared(None, 0, Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
+        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
     except RoadproofError as error:
-        return Prepared(None, 0, Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))

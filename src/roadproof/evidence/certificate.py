@@ -23,7 +23,7 @@ from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import parameters_of, with_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library, Specification, unknown
-from roadproof.spec.motion import NOTHING, SCHEMAS, Assumed, Axiom, assumption, value_texts, values_said
+from roadproof.spec.motion import ALL_SCHEMAS, NOTHING, Assumed, Axiom, assumption, value_texts, values_said
 from roadproof.spec.query import Query
 
 SCHEMA = "roadproof/certificate/2"
@@ -238,11 +238,16 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
 
 
 def _assumed_data(assumed: Assumed) -> dict[str, Any]:
-    """What is assumed, and the facts about motion that the proof uses; nothing where nothing is."""
-    if not assumed.said:
+    """What is assumed, the facts about motion that are premises, and the limits that are none.
+
+    Nothing where nothing is assumed.
+    """
+    if not assumed.said and not assumed.axioms:
         return {}
     axioms = [{"schema": x.schema, "arguments": x.named()} for x in assumed.axioms]
-    return {"assuming": list(assumed.said), "axioms": axioms}
+    unused = {"unused": list(assumed.unused)} if assumed.unused else {}
+    said = {"assuming": list(assumed.said)} if assumed.said else {}
+    return {**said, "axioms": axioms, **unused}
 
 
 def read_certificate(path: Path) -> Certificate:
@@ -253,7 +258,7 @@ def read_certificate(path: Path) -> Certificate:
 _FIELDS = (
     *("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions"),
     *("formulas", "times", "instances", "lemmas", "queries", "assuming", "axioms", "pinned"),
-    "tableau",
+    *("unused", "tableau"),
 )
 
 
@@ -293,19 +298,23 @@ def read_certificate_data(content: object, where: str) -> Certificate:
 
 def _assumed(data: Fields) -> Assumed:
     """The inverse of ``_assumed_data``."""
-    if not {"assuming", "axioms"} & {*data.content}:
+    if not {"assuming", "axioms", "unused"} & {*data.content}:
         return NOTHING
-    said, entries = read_assuming(data), data.items("axioms")
-    return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries))
+    said = read_assuming(data) if "assuming" in data.content else ()
+    entries = data.items("axioms")
+    if not said and not entries:
+        raise InputError(f"{data.where}: 'axioms' is empty, and nothing is assumed: leave it out")
+    unused = data.texts("unused") if "unused" in data.content else ()
+    return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries), unused)
 
 
 def _axiom(content: object, where: str) -> Axiom:
     data = Fields(content, where, ("schema", "arguments"))
     schema, arguments = data.text("schema"), data.named_texts("arguments")
-    if schema not in SCHEMAS:
-        raise InputError(f"{where}: {unknown('schema of motion', schema[:40], SCHEMAS)}")
-    if tuple(arguments) != SCHEMAS[schema]:
-        raise InputError(f"{where}: schema {schema} takes {', '.join(SCHEMAS[schema])}, in this order")
+    if schema not in ALL_SCHEMAS:
+        raise InputError(f"{where}: {unknown('schema of motion', schema[:40], ALL_SCHEMAS)}")
+    if tuple(arguments) != ALL_SCHEMAS[schema]:
+        raise InputError(f"{where}: schema {schema} takes {', '.join(ALL_SCHEMAS[schema])}, in this order")
     return Axiom(schema, tuple(arguments.values()))
 
 

@@ -16,7 +16,7 @@ from roadproof.kernel.branch import NotFoundError
 from roadproof.kernel.coq import Coq, Ran
 from roadproof.kernel.search import find
 from roadproof.kernel.source import Module, UnreasonedError, file, module
-from roadproof.kernel.statement import Statement, state
+from roadproof.kernel.statement import NO_PREMISES, Premises, Statement, state
 from roadproof.kernel.tableau import Tableau, lines, read_lines
 from roadproof.spec.library import Library
 
@@ -44,24 +44,23 @@ class Word(StrEnum):
 class Ruling:
     """What Coq says of a certificate. ``lemma``: which fact about one instant was not proved, from 1.
 
-    ``assumed``: how many facts about motion are premises of what is proved.
+    ``premises``: the limits and facts about motion that the theorem has as premises; Coq does not prove them.
     """
 
     word: Word
     reason: str = ""
     lemma: int | None = None
-    assumed: int = 0
+    premises: Premises = NO_PREMISES
     axioms: tuple[str, ...] = ()
 
     @property
     def told(self) -> str:
-        """The word, with what is a premise and not proved."""
-        facts = f" under {self.assumed} fact{'s' * (self.assumed != 1)} about motion, as premises"
-        return f"{self}{facts * bool(self.assumed)}"
+        """The word, with the premises."""
+        return f"{self} under {self.premises}, as premises" if self.premises.count else str(self)
 
     def as_data(self) -> dict[str, Any]:
         """As plain data of ``--json``."""
-        return {"says": str(self), "reason": self.reason, "premises": self.assumed}
+        return {"says": str(self), "reason": self.reason, "premises": self.premises.count}
 
     def __str__(self) -> str:
         return f"{self.word} (lemma {self.lemma})" if self.lemma is not None else str(self.word)
@@ -72,7 +71,7 @@ class Prepared:
     """A certificate as a module of Coq, or why there is none."""
 
     module: Module | None
-    assumed: int = 0
+    premises: Premises = NO_PREMISES
     refusal: Ruling | None = None
 
 
@@ -99,15 +98,15 @@ def prepare(name: str, certificate: Certificate, library: Library) -> Prepared:
         statement = state(certificate, library)
         tableau = _tableau(certificate, statement)
     except NotFoundError as error:
-        return Prepared(None, 0, Ruling(Word.UNKNOWN, f"no tableau was found: {error}"))
+        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"no tableau was found: {error}"))
     except RoadproofError as error:
-        return Prepared(None, 0, Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return Prepared(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
     try:
-        return Prepared(module(name, statement, tableau), statement.assumed)
+        return Prepared(module(name, statement, tableau), statement.premises)
     except UnreasonedError as error:
-        return Prepared(None, 0, Ruling(Word.UNKNOWN, str(error), error.number))
+        return Prepared(None, refusal=Ruling(Word.UNKNOWN, str(error), error.number))
     except RoadproofError as error:
-        return Prepared(None, 0, Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
 
 
 def _tableau(certificate: Certificate, statement: Statement) -> Tableau:
@@ -161,13 +160,13 @@ def closing(modules: Sequence[Module]) -> str:
 def _conclude(modules: Sequence[Module], prepared: Mapping[str, Prepared], ran: Ran, judged: Judged) -> None:
     axioms = axioms_of(ran.said)
     for x in modules:
-        assumed = prepared[x.name].assumed
+        premises = prepared[x.name].premises
         if axioms is None:
             ruling = Ruling(Word.UNKNOWN, "coqc did not say on which axioms it stands")
         elif set(axioms) - AXIOMS:
             ruling = Ruling(Word.REFUSED, f"it stands on {', '.join(sorted(set(axioms) - AXIOMS))}")
         else:
-            ruling = Ruling(Word.ACCEPTED, "", None, assumed, axioms)
+            ruling = Ruling(Word.ACCEPTED, "", None, premises, axioms)
         judged.rulings[x.name] = ruling
 
 

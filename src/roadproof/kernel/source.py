@@ -125,8 +125,8 @@ def _said(statement: Statement) -> Iterator[str]:
     yield statement.claim
     if statement.values:
         yield f"At {', '.join(statement.values)}: numbers in place of these parameters."
-    if statement.assumed:
-        yield f"Under {statement.assumed} facts about motion: premises of the claim, not proved here."
+    if statement.premises.count:
+        yield f"Under {statement.premises}: premises of the claim, not proved here."
 
 
 def comment_lines(said: Iterable[str]) -> list[str]:

@@ -18,16 +18,45 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of, with_values
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Library
-from roadproof.spec.motion import assumption, axiom_formula, value_texts, values_said
+from roadproof.spec.motion import NOTHING, assumption, axiom_formula, value_texts, values_said
 from roadproof.spec.query import Query
+
+
+@dataclass(frozen=True)
+class Premises:
+    """How many ``limits`` of vehicles, ``facts`` about motion and ``inductions`` a claim is proved under.
+
+    >>> str(Premises(1, 2))
+    '1 limit and 2 facts about motion'
+    """
+
+    limits: int = 0
+    facts: int = 0
+    inductions: int = 0
+
+    @property
+    def count(self) -> int:
+        return self.limits + self.facts + self.inductions
+
+    def __str__(self) -> str:
+        counted = (
+            (self.limits, "limit", ""),
+            (self.facts, "fact", " about motion"),
+            (self.inductions, "induction", " over time"),
+        )
+        return " and ".join(f"{n} {word}{'s' * (n != 1)}{of}" for n, word, of in counted if n)
+
+
+NO_PREMISES = Premises()
 
 
 @dataclass(frozen=True)
 class Statement:
     """``formula`` is what Coq is to prove for all parameters within ``bounds`` (name: strictly above 0).
 
-    ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``assumed``: how many
-    facts about motion are premises, which are not proved. ``values`` of parameters, as words, are put in.
+    ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``premises``: how
+    many limits and facts about motion are premises, which are not proved. ``values`` of parameters, as words,
+    are put in.
     """
 
     label: str
@@ -39,7 +68,7 @@ class Statement:
     lemmas: tuple[tuple[Formula, tuple[str, ...]], ...]
     parameters: tuple[str, ...]
     formals: Formals
-    assumed: int
+    premises: Premises
     values: tuple[str, ...]
     goal: Goal
 
@@ -54,6 +83,7 @@ def state(certificate: Certificate, library: Library) -> Statement:
     query = read_claim(specification, certificate.claim)
     if certificate.pinned:
         raise NotFoundError("values that its own premise demands are put in before it is proved")
+    assumed = certificate.assumed
     premises = _premises(certificate, library, query)
     here = values_said(specification, certificate.assumed.said)
     formula = with_values(f.implication(f.conjunction(*premises), query.formula), here)
@@ -90,7 +120,7 @@ def state(certificate: Certificate, library: Library) -> Statement:
         lemmas,
         parameters,
         formals,
-        len(premises),
+        Premises(*map(len, (assumed.limits, assumed.facts, assumed.inductions))),
         value_texts(specification, here),
         goal,
     )
@@ -98,7 +128,7 @@ def state(certificate: Certificate, library: Library) -> Statement:
 
 def _premises(certificate: Certificate, library: Library, query: Query) -> list[Formula]:
     """The facts about motion and the limits of vehicles that are assumed, each with a name of its own."""
-    if not certificate.assumed.said:
+    if certificate.assumed == NOTHING:
         return []
     specification = library.select(certificate.set_name, certificate.options)
     whole = assumption(specification, query, certificate.assumed)
@@ -109,7 +139,8 @@ def _premises(certificate: Certificate, library: Library, query: Query) -> list[
     limits = parts[: len(parts) - len(axioms)]
     if parts[len(limits) :] != axioms or f.conjunction(*limits, *axioms) != whole:
         raise InputError("what is assumed of motion cannot be told apart into facts")
-    named = [("limit", x) for x in limits] + [("motion", x) for x in axioms]
+    words = ["induction" if x.is_induction else "motion" for x in certificate.assumed.axioms]
+    named = [("limit", x) for x in limits] + [*zip(words, axioms, strict=True)]
     return [f.Named(f"{word}_{number}", (), x) for number, (word, x) in enumerate(named, 1)]
 
 

@@ -210,6 +210,32 @@ def after(left: Term, right: Term, speed: Term, time: Term) -> Formula:
     return _always(premise, f.Always(f.Interval(time, time), grown))
 
 
+def within_twice(left: Term, right: Term, speed: Term, growth: Term, time: Term) -> Formula:
+    """What is at most so much and grows at a bounded rate is little more within a bounded ``time``.
+
+    With e(T) <= 0, e'(T) <= v, and e'' <= r before T + t, t <= d: e'(T + u) <= v + r·u for u <= t, so that
+    e(T + t) <= v·t + r·t²/2 <= max(0, v)·d + max(0, r)·d²/2. Raises ``ValueError``.
+    """
+    most = add(_times(_positive(speed), time), _half_square(_positive(growth), time))
+    grown = f.Compare(left, "<=", add(right, most))
+    slow = _at_growth(left, right, growth, time)
+    premise = f.conjunction(f.Compare(left, "<=", right), _at_speed(left, right, speed, time))
+    return _always(premise, f.negation(f.Until(slow, _up_to(time), f.negation(grown))))
+
+
+def after_twice(left: Term, right: Term, speed: Term, growth: Term, time: Term) -> Formula:
+    """What is at most so much, and grows at a bounded rate for a ``time``, is bounded after it.
+
+    With e(T) <= 0, e'(T) <= v, and e'' <= r from T to T + d: e'(T + u) <= v + r·u for u <= d, so that
+    e(T + d) <= v·d + r·d²/2. Raises ``ValueError``.
+    """
+    most = add(_times(speed, time), _half_square(growth, time))
+    grown = f.Compare(left, "<=", add(right, most))
+    slow = f.Always(_up_to(time), _at_growth(left, right, growth, time))
+    start = f.conjunction(f.Compare(left, "<=", right), _at_speed(left, right, speed, time))
+    return _always(f.conjunction(start, slow), f.Always(f.Interval(time, time), grown))
+
+
 def limit(formula: Formula) -> Formula:
     """What a model of a vehicle says of a signal, at all times."""
     return f.Always(f.FOREVER, formula)
@@ -221,6 +247,16 @@ def _at_speed(left: Term, right: Term, speed: Term, time: Term) -> f.Compare:
         raise ValueError("rate and time may not change")
     moved, carried = rates(left, right)
     return f.Compare(moved, "<=", add(carried, speed))
+
+
+def _at_growth(left: Term, right: Term, growth: Term, time: Term) -> f.Compare:
+    """left'' <= right'' + growth. Raises ``ValueError`` where ``growth`` or ``time`` may change."""
+    return _at_speed(*rates(left, right), growth, time)
+
+
+def _half_square(growth: Term, time: Term) -> Term:
+    """growth·time²/2."""
+    return _times(growth, time, time, t.number(Fraction(1, 2)))
 
 
 def _positive(speed: Term) -> Term:

@@ -6,9 +6,10 @@ prover as by whoever checks a certificate.
 
 import math
 from collections import deque
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 
 from roadproof.effort import Effort
 from roadproof.elapsed import now, since
@@ -25,7 +26,7 @@ from roadproof.logic.show import text
 from roadproof.logic.terms import SignalName, Term
 from roadproof.proving.prover import Result, prove
 from roadproof.spec.library import Specification
-from roadproof.spec.motion import Assumed, Axiom, axiom_formula, under_limits
+from roadproof.spec.motion import Assumed, Axiom, axiom_formula, limits_said, under_limits
 from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
 
@@ -34,6 +35,7 @@ MOST = 120  # instances that are tried at once
 QUICK = 0.5
 TURNS = (1.0, 4.0, 16.0, math.inf)
 Sides = tuple[Term, Term]
+Moving = tuple[tuple[t.Signal, Fraction], ...]
 
 
 def prove_of_motions(
@@ -49,12 +51,18 @@ def prove_of_motions(
     PROVED, VACUOUS or UNKNOWN: what refutes is looked for among drives. Raises ``Late``, ``InputError``.
     """
     begun, meter = now(), effort.meter()
-    none, *others = stages(specification, under_limits(specification, query, said))
+    none, *choices = stages(specification, under_limits(specification, query, said))
+    others = [x for x in choices if x] or [none]
     result = None
     for axioms, units in dict.fromkeys([(none, QUICK), *((x, y) for y in TURNS for x in others)]):
         part = effort.of(min(units, max(1.0, meter.left())))
         result = prove(specification, query, part, label, scenario, Assumed(tuple(said), axioms))
         meter.spend(result.work)
+        if result.verdict is Verdict.PROVED and not axioms and limits_said(said):
+            bare = Assumed(tuple(said), (), limits_said(said))
+            plain = prove(specification, query, effort.of(QUICK), label, scenario, bare)
+            meter.spend(plain.work)
+            result = plain if plain.holds else result
         if result.verdict is not Verdict.UNKNOWN or meter.is_out():
             break
     assert result is not None, "something is always tried"
@@ -64,9 +72,10 @@ def prove_of_motions(
 def stages(specification: Specification, query: Query) -> list[tuple[Axiom, ...]]:
     """Choices of facts about motion, to be tried in this order; ``query`` with the limits it has.
 
-    First none; then of one kind each, since most proofs need no other, what is soon exhausted first: instants
-    at which two are level, growth in bounded time, what does not grow stays, what is left has a first instant
-    outside; then these together; last rates of which the claim says nothing, and what predicates compare.
+    First none; then of one kind each, since most proofs need no other, what is soon exhausted first: growth
+    that is integrated twice, instants at which two are level, growth in bounded time, what does not grow
+    stays, what is left has a first instant outside; then these together; last rates of which the claim says
+    nothing, and what predicates compare.
     """
     atoms = list(_atoms(query.formula))
     simple = [x for x in atoms if _comparison(x) is not None]
@@ -75,7 +84,8 @@ def stages(specification: Specification, query: Query) -> list[tuple[Axiom, ...]
     spoken = {*signals_of([query.formula])}
     left = [x for x in [*atoms, *_states(query.formula)] if _comparison(x) is None]
     kept, met = _kept(sides, spoken), _met(sides)
-    kinds = [met, _grown(query.formula, sides), kept, _left(list(dict.fromkeys(left)))]
+    grown, twice = _grown(query.formula, sides), _grown_twice(query.formula, sides)
+    kinds = [twice, met, grown, kept, _left(list(dict.fromkeys(left)))]
     valid = [_valid(specification, query, list(x)) for x in kinds]
     together = tuple(x for kind in valid for x in kind)
     rates = [x for x in map(_rates, [*sides, *hidden]) if x is not None]
@@ -237,22 +247,63 @@ def _scaled(term: Term, factor: Fraction) -> Term:
 
 def _grown(formula: Formula, sides: Sequence[Sides]) -> Iterator[Axiom]:
     """Growth from each bound of a combination, at each bound of its rate, for each time of the claim."""
-    bounds: dict[tuple[tuple[t.Signal, Fraction], ...], dict[Term, None]] = {}
-    for left, right in sides:
-        both = _total([_affine(left), _affine(right, Fraction(-1))])
-        if both is not None and both.moving:
-            bounds.setdefault(both.moving, {})[_sum([_scaled(x, Fraction(-1)) for x in both.rest])] = None
+    bounds = _bounds(sides)
     times = _times(formula)
     for moving, known in bounds.items():
-        if not all(signal.name in motion.RATES for signal, _ in moving):
+        faster = _rate_of(moving)
+        if faster is None:
             continue
-        faster = tuple((t.Signal(motion.RATES[x.name], x.vehicle), k) for x, k in moving)
         for start in known:
             for speed in (x for x in bounds.get(faster, {}) if t.constant_value(x) != 0):
                 for duration in times:
                     arguments = _texts(*_two_sides(moving, start), speed, duration)
                     yield Axiom("within", arguments)
                     yield Axiom("after", arguments)
+
+
+def _grown_twice(formula: Formula, sides: Sequence[Sides]) -> Iterator[Axiom]:
+    """The same from bounds of a combination and its rate, at each bound of the rate of that."""
+    bounds = _bounds(sides)
+    times = _times(formula)
+    for moving, known in bounds.items():
+        faster = _rate_of(moving)
+        second = None if faster is None else _rate_of(faster)
+        if faster is None or second is None:
+            continue
+        for start, speed in product(known, _bounds_of(faster, bounds)):
+            for growth, duration in product(_bounds_of(second, bounds), times):
+                arguments = _texts(*_two_sides(moving, start), speed, growth, duration)
+                yield Axiom("after-twice", arguments)
+                yield Axiom("within-twice", arguments)
+
+
+def _bounds(sides: Sequence[Sides]) -> dict[Moving, dict[Term, None]]:
+    """What each combination of signals is compared with, as bounds from above."""
+    bounds: dict[Moving, dict[Term, None]] = {}
+    for left, right in sides:
+        both = _total([_affine(left), _affine(right, Fraction(-1))])
+        if both is not None and both.moving:
+            bounds.setdefault(both.moving, {})[_sum([_scaled(x, Fraction(-1)) for x in both.rest])] = None
+    return bounds
+
+
+def _bounds_of(moving: Moving, bounds: Mapping[Moving, Collection[Term]]) -> list[Term]:
+    """Bounds of a combination; where it has none, sums of bounds of its signals."""
+    known = bounds.get(moving)
+    if known:
+        return list(known)
+    single = [
+        [_scaled(x, abs(k)) for x in bounds.get(((signal, Fraction(1 if k > 0 else -1)),), ())]
+        for signal, k in moving
+    ]
+    return [_sum(chosen) for chosen in product(*single)]
+
+
+def _rate_of(moving: Moving) -> Moving | None:
+    """The rate of a combination of signals; None where one of them has none."""
+    if not all(signal.name in motion.RATES for signal, _ in moving):
+        return None
+    return tuple((t.Signal(motion.RATES[x.name], x.vehicle), k) for x, k in moving)
 
 
 def _times(formula: Formula) -> list[Term]:

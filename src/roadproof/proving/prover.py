@@ -19,6 +19,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import with_values
 from roadproof.proving.countermodel import realise, with_truths
+from roadproof.proving.doubt import Doubt, Stop
 from roadproof.proving.lasso import find_lasso
 from roadproof.proving.roster import Roster, roster_for
 from roadproof.proving.search import GaveUp, InstanceSearch, Model, Proof
@@ -26,7 +27,16 @@ from roadproof.proving.states import Learnt, StateChecker
 from roadproof.solve.smt import ask
 from roadproof.spec.bind import default_values
 from roadproof.spec.library import Specification, is_within
-from roadproof.spec.motion import NOTHING, Assumed, Axiom, axiom_formula, is_moving, value_texts, values_said
+from roadproof.spec.motion import (
+    NOTHING,
+    Assumed,
+    axiom_formula,
+    is_moving,
+    limit_formulas,
+    limits_said,
+    value_texts,
+    values_said,
+)
 from roadproof.spec.query import Query
 from roadproof.stages import begin
 from roadproof.verdict import Verdict
@@ -44,6 +54,7 @@ ON_FEW_LANES = 1.0
 REPEATING = 1.0
 VACUITY = 0.5
 NO_TRACE = "the only countermodels found over points in time are no traces"
+CONTRADICTION = "what is assumed contradicts itself, so every claim follows"
 NO_PROOF = "no proof was found from what is known of motion"
 
 
@@ -52,7 +63,7 @@ class Result:
     """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
 
     ``work``: the units spent on the search. There is a ``certificate`` with PROVED and VACUOUS, and with
-    nothing else.
+    nothing else. Of an UNKNOWN ``stop`` says where the search stopped, and ``doubt`` its cause.
     """
 
     verdict: Verdict
@@ -61,6 +72,8 @@ class Result:
     work: float = 0.0
     certificate: Certificate | None = None
     countermodel: Countermodel | None = None
+    stop: Stop | None = None
+    doubt: Doubt | None = None
 
     @property
     def holds(self) -> bool:
@@ -111,18 +124,20 @@ def prove(
         if isinstance(found, Countermodel):
             return result(Verdict.REFUTED, "", None, with_truths(found, atoms))
         if isinstance(found, GaveUp):
-            return result(Verdict.UNKNOWN, found.reason)
+            return replace(result(Verdict.UNKNOWN, found.reason), stop=found.stop)
         proofs.append(found)
-    needed = _needed(specification, query, assumed.axioms, values, proofs)
-    if len(needed) < len(assumed.axioms):
-        fewer = Assumed(assumed.said, needed)
+    fewer = _needed(specification, query, assumed, values, proofs, names)
+    if fewer != assumed:
         again = prove(specification, query, meter.effort(), label, scenario, fewer)
+        if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
+            again = replace(again, verdict=Verdict.VACUOUS, reason=CONTRADICTION)
         if again.holds:
             return replace(again, seconds=since(begun), work=meter.spent + again.work)
     try:
         certificate = _certificate(specification, query, assumed, pinned, proofs, names, label, scenario)
     except InputError as error:
-        return result(Verdict.UNKNOWN, f"a proof was found, but no certificate can be made of it: {error}")
+        why = f"a proof was found, but no certificate can be made of it: {error}"
+        return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
     for title, script in certificate.queries:
         if script in settled:
@@ -130,11 +145,11 @@ def prove(
         answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
-            return result(Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED, why)
+            if answer == "unknown":
+                return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
+            return result(Verdict.CROSSCHECK_FAILED, why)
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
-        return result(
-            Verdict.VACUOUS, "what is assumed contradicts itself, so every claim follows", certificate
-        )
+        return result(Verdict.VACUOUS, CONTRADICTION, certificate)
     condition = _premise(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
@@ -249,7 +264,7 @@ class _Attempt:
             if countermodel is not None:
                 return countermodel
             if not search.widen():
-                return GaveUp(NO_PROOF if self.moving else NO_TRACE)
+                return GaveUp(NO_PROOF, Stop.FACTS) if self.moving else GaveUp(NO_TRACE, Stop.PLACE)
             found = search.run(meter)
         return found
 
@@ -286,32 +301,49 @@ def _certificate(
     scenario: int | None,
 ) -> Certificate:
     """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit the claim."""
-    instances: dict[Site, tuple[str, ...]] = {}
     lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
     for proof in proofs:
-        for site, texts in proof.instances.items():
-            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
         for lemma in proof.lemmas:
             before = lemmas.get(lemma.literals, ())
             lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
     atoms = Atoms()
     abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
-    met = met_sites(abstracted, atoms, instances, names, specification.library.bounds, query.lanes)
+    met = met_sites(abstracted, atoms, _instances(proofs), names, specification.library.bounds, query.lanes)
     made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
     return certify(specification, query, *met, made, label, scenario, assumed, pinned)
+
+
+def _instances(proofs: Sequence[Proof]) -> dict[Site, tuple[str, ...]]:
+    """The instances of several proofs, each once."""
+    instances: dict[Site, tuple[str, ...]] = {}
+    for proof in proofs:
+        for site, texts in proof.instances.items():
+            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
+    return instances
 
 
 def _needed(
     specification: Specification,
     query: Query,
-    axioms: Sequence[Axiom],
+    assumed: Assumed,
     values: Mapping[str, Fraction],
     proofs: Sequence[Proof],
-) -> tuple[Axiom, ...]:
-    """Those of ``axioms`` of which a proof has instances: each is a universal that holds at time 0."""
-    sites = {site for proof in proofs for site in proof.instances}
+    names: Mapping[Site, str],
+) -> Assumed:
+    """The same with those premises alone of which a proof has instances, and which the claim has not itself.
+
+    Each premise is a universal that holds at time 0.
+    """
+    instances = _instances(proofs)
     atoms = Atoms()
-    atoms.abstract(with_values(query.formula, values))
-    made = {x: with_values(axiom_formula(specification, query, x), values) for x in axioms}
-    formulas = {x: atoms.abstract(formula) for x, formula in made.items()}
-    return tuple(x for x in axioms if Site(prefix_form(formulas[x]), True, str(ZERO)) in sites)
+    claim = atoms.abstract(with_values(query.formula, values))
+    own, _ = met_sites(claim, atoms, instances, names, specification.library.bounds, query.lanes)
+
+    def is_used(formula: Formula) -> bool:
+        made = atoms.abstract(with_values(formula, values))
+        site = Site(prefix_form(made), True, str(ZERO))
+        return site in instances and site not in own
+
+    axioms = tuple(x for x in assumed.axioms if is_used(axiom_formula(specification, query, x)))
+    used = {x for x, made in limit_formulas(specification, query, assumed).items() if is_used(made)}
+    return Assumed(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))

@@ -20,6 +20,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import road_names
+from roadproof.proving.doubt import Stop
 from roadproof.proving.grounding import Grounding, Universal
 from roadproof.proving.reason import is_plain, reason
 from roadproof.proving.roster import Roster, open_quantifiers
@@ -67,7 +68,10 @@ class Model:
 
 @dataclass(frozen=True)
 class GaveUp:
+    """Why neither was found, in words, and where the search stopped."""
+
     reason: str
+    stop: Stop = Stop.WORK
 
 
 class InstanceSearch:
@@ -122,16 +126,19 @@ class InstanceSearch:
                 return GaveUp(meter.reason())
             answer = self._check(meter)
             if answer == "unsat" and self.grounding.roster is not None:
-                return GaveUp("no countermodel on a road of few lanes")
+                return GaveUp("no countermodel on a road of few lanes", Stop.PLACE)
             if answer == "unsat":
                 return self._shrink(meter)
             if answer == "unknown":
                 out = meter.is_out()
-                return GaveUp(meter.reason() if out else "z3 gave no answer to the ground query")
+                if out:
+                    return GaveUp(meter.reason())
+                return GaveUp("z3 gave no answer to the ground query", Stop.SOLVER)
             values = self._values()
             if self._instantiate(values, meter, flat_only=self.sparing):
                 if len(self.grounding.elements) > MOST_ELEMENTS:
-                    return GaveUp(f"no end after {MOST_ELEMENTS} lanes and lanelets that must exist")
+                    said = f"no end after {MOST_ELEMENTS} lanes and lanelets that must exist"
+                    return GaveUp(said, Stop.LANES)
                 continue
             states, refused = self._refused(values, meter)
             if isinstance(refused, GaveUp):
@@ -139,7 +146,7 @@ class InstanceSearch:
             if refused is None and not (self.sparing and self._look_on(values, meter)):
                 signals = {instant: self.states.signals(state) for instant, state in states.items()}
                 return Model(values, states, signals, dict(self.grounding.elements), self._facts())
-        return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation")
+        return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation", Stop.ROUNDS)
 
     def _look_on(self, values: dict[str, Fraction], meter: Meter) -> bool:
         """Instantiate also what speaks of further moments; whether there is more to be looked at.
@@ -276,7 +283,7 @@ class InstanceSearch:
         for instant, state in states.items():
             clause = self.states.refute(state, meter, case)
             if isinstance(clause, str):
-                return GaveUp(clause)
+                return GaveUp(clause, Stop.WORK if meter.is_out() else Stop.SOLVER)
             if clause is not None:
                 learnt = True
                 for moment in self._moments_at(instant, values):

@@ -82,7 +82,7 @@ def details(answered: Answered, asked: Claims) -> str:
             f"{len(certificate.lemmas)} lemma{'s' if len(certificate.lemmas) != 1 else ''}"
             + _values_of(certificate)
         )
-        lines += _show_axioms(certificate.assumed)
+        lines += _show_premises(certificate.assumed)
     if settled.drive is not None:
         lines += _show_drive(settled.drive)
         lines += [f"  this drive lies outside the {settled.beyond}"] if settled.beyond else []
@@ -97,14 +97,22 @@ def _values_of(certificate: Certificate) -> str:
     return pinned + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
 
 
-def _show_axioms(assumed: Assumed) -> list[str]:
-    """What the proof uses of motion, by its schemas."""
+def _show_premises(assumed: Assumed) -> list[str]:
+    """The premises of a certificate: limits, facts about motion and inductions; and the other limits."""
+    return [*_show_assumed(assumed), *(f"  by induction over time: {x}" for x in assumed.inductions)]
+
+
+def _show_assumed(assumed: Assumed) -> list[str]:
+    """The limits and facts about motion that are premises, and the limits that are none."""
     if not is_moving(assumed.said):
         return []
-    if not assumed.axioms:
-        return ["  it holds without any of that: nothing known of motion was needed"]
-    shown = (f"{x.schema}({', '.join(x.arguments)})" for x in assumed.axioms)
-    return [f"  of motion: {', '.join(shown)}"]
+    lines = [f"  of the limits: {', '.join(assumed.limits)}"] if assumed.limits else []
+    if assumed.facts:
+        lines.append(f"  of motion: {', '.join(map(str, assumed.facts))}")
+    if not lines:
+        without = "neither a limit nor a fact about motion" if assumed.unused else "no fact about motion"
+        return [f"  the proof uses {without}: the claim holds without them"]
+    return lines + ([f"  limits not used: {', '.join(assumed.unused)}"] if assumed.unused else [])
 
 
 def _show_drive(judged: Judged) -> list[str]:

@@ -14,6 +14,8 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.judged import Judged
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.pins import pins
+from roadproof.proving.doubt import Stop
+from roadproof.proving.induction import prove_by_induction
 from roadproof.proving.motion import prove_of_motions
 from roadproof.proving.prover import Result, prove
 from roadproof.searching.limits import Limits
@@ -188,6 +190,9 @@ def _proved(
     said: Sequence[str],
 ) -> Result:
     """What the prover says. Raises ``Late``."""
+    induced = prove_by_induction(specification, query, said, effort, *called)
+    if induced is not None:
+        return induced
     if is_moving(said):
         return prove_of_motions(specification, query, said, effort, *called)
     return prove(specification, query, effort, *called, Assumed(tuple(said)))
@@ -208,7 +213,7 @@ def settle_bounded(search: "Search") -> Settled:
     return Settled(result, found.drive, found.limits, bounded=True)
 
 
-def in_doubt(reason: str, begun: float | None = None) -> Settled:
+def in_doubt(reason: str, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settled:
     """What is said of a claim that nothing is known of; ``begun``: since when it was asked."""
     seconds = 0.0 if begun is None else since(begun)
-    return Settled(Result(Verdict.UNKNOWN, reason, seconds))
+    return Settled(Result(Verdict.UNKNOWN, reason, seconds, stop=stop))

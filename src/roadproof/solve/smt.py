@@ -14,6 +14,8 @@ from roadproof.errors import MissingSolverError
 
 # What is counted in about a second; by z3 up to 4 million on linear queries, 0.3 on polynomial ones.
 UNIT = 1_000_000
+# Units of work for what z3 does not count: a context made and removed, a command read, a character of it.
+CONTEXT, COMMAND, CHARACTER = 4.5e-3, 1e-4, 2e-7
 UNIT_CVC5 = 200_000
 _MOST = 4_000_000_000  # both count in 32 bits
 _NEVER = 4294967295
@@ -36,12 +38,17 @@ class Session:
         self._z3 = z3
         self._unit = unit
         self._counted = 0
+        self._unspent = CONTEXT
         z3.Context.owner = False  # of one that Ctrl-C meets while it is made, which its end asks for
         self._context = z3.Context()
         self.tell("(set-option :produce-models true)(set-option :produce-unsat-cores true)")
 
     def tell(self, commands: str) -> str:
-        """Run SMT-LIB commands and return what they print. Raises ``SolverError``."""
+        """Run SMT-LIB commands and return what they print. Raises ``SolverError``.
+
+        Their cost is counted with the next answer.
+        """
+        self._unspent += COMMAND + CHARACTER * len(commands)
         try:
             answer: str = self._z3.Z3_eval_smtlib2_string(self._context.ref(), commands)
         except self._z3.Z3Exception as error:
@@ -75,8 +82,8 @@ class Session:
         limits = f"(set-option :rlimit {work})(set-option :timeout {milliseconds})"
         said = self.tell(f"{limits}\n{commands}\n(get-info :rlimit)")
         counted = int(said[said.rindex(":rlimit") + 7 :].strip(" )\n"))
-        meter.spend((counted - self._counted) / self._unit)
-        self._counted = counted
+        meter.spend((counted - self._counted) / self._unit + self._unspent)
+        self._counted, self._unspent = counted, 0.0
         answer = _answer(said)
         if answer == "unknown":
             meter.seconds_left()

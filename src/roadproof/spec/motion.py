@@ -16,7 +16,7 @@ from fractions import Fraction
 
 from roadproof.errors import InputError, Position, TextError
 from roadproof.logic import formula as f
-from roadproof.logic import motion, syntax
+from roadproof.logic import induction, motion, syntax
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
@@ -53,31 +53,69 @@ SCHEMAS: Mapping[str, tuple[str, ...]] = {
     "leaves": ("inside",),
     "within": ("left", "right", "speed", "time"),
     "after": ("left", "right", "speed", "time"),
+    "within-twice": ("left", "right", "speed", "growth", "time"),
+    "after-twice": ("left", "right", "speed", "growth", "time"),
 }
-"""The schemas, and what each is made of: terms, but for ``inside``, a formula."""
+"""The schemas of motion, and what each is made of: terms, but for ``inside``, a formula."""
+INDUCTIONS: Mapping[str, tuple[str, ...]] = {
+    "steps": ("inside", "low", "high"),
+    "lasts": ("inside", "time"),
+}
+"""Schemas that are true on every trace, be it a motion or not."""
+ALL_SCHEMAS: Mapping[str, tuple[str, ...]] = {**SCHEMAS, **INDUCTIONS}
 
 
 @dataclass(frozen=True)
 class Axiom:
-    """An instance of a schema: the texts of its arguments, in the order of ``SCHEMAS``."""
+    """An instance of a schema: the texts of its arguments, in the order of ``ALL_SCHEMAS``."""
 
     schema: str
     arguments: tuple[str, ...]
 
     def named(self) -> dict[str, str]:
         """The arguments by name."""
-        return dict(zip(SCHEMAS[self.schema], self.arguments, strict=True))
+        return dict(zip(ALL_SCHEMAS[self.schema], self.arguments, strict=True))
+
+    @property
+    def is_induction(self) -> bool:
+        """Whether it is true on every trace."""
+        return self.schema in INDUCTIONS
+
+    def __str__(self) -> str:
+        return f"{self.schema}({', '.join(self.arguments)})"
 
 
 @dataclass(frozen=True)
 class Assumed:
     """``said``: nothing, or motion and then limits and then values of parameters, as words; or values alone.
 
-    ``axioms``: what a proof needs of motion.
+    ``axioms``: the facts about motion that a proof has as premises. ``unused``: limits that are said and that
+    it does not have as premises; every other limit is one.
     """
 
     said: tuple[str, ...] = ()
     axioms: tuple[Axiom, ...] = ()
+    unused: tuple[str, ...] = ()
+
+    @property
+    def limits(self) -> tuple[str, ...]:
+        """The limits that are premises, in the order in which they are said."""
+        return tuple(x for x in limits_said(self.said) if x not in self.unused)
+
+    @property
+    def facts(self) -> tuple[Axiom, ...]:
+        """The facts about motion among the axioms."""
+        return tuple(x for x in self.axioms if not x.is_induction)
+
+    @property
+    def inductions(self) -> tuple[Axiom, ...]:
+        """The inductions over time among the axioms."""
+        return tuple(x for x in self.axioms if x.is_induction)
+
+    @property
+    def premises(self) -> tuple[str, ...]:
+        """All premises as words: limits, then facts such as ``below(s(SV), s(POV))``, then inductions."""
+        return (*self.limits, *map(str, (*self.facts, *self.inductions)))
 
 
 @dataclass(frozen=True)
@@ -103,6 +141,11 @@ def statement(said: Sequence[str], claim: str) -> str:
 def is_moving(said: Sequence[str]) -> bool:
     """Whether motion is assumed, so that only a drive refutes."""
     return MOTION in said[:1]
+
+
+def limits_said(said: Sequence[str]) -> tuple[str, ...]:
+    """The limits in what is assumed: neither motion nor values of parameters."""
+    return tuple(x for x in said[is_moving(said) :] if not _VALUE.match(x))
 
 
 def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
@@ -263,20 +306,28 @@ def assumption(specification: Specification, query: Query, assumed: Assumed) -> 
     of every motion within the limits that are said, or speaks of what the claim does not."""
     if under(specification, query, assumed.said).said != assumed.said:
         raise InputError(f"what is assumed is written otherwise than it is read: {', '.join(assumed.said)}")
-    if assumed.axioms and not is_moving(assumed.said):
+    if assumed.facts and not is_moving(assumed.said):
         raise InputError("facts about motion are used, but the claim does not say that it assumes motion")
     if len(assumed.axioms) > MOST_AXIOMS:
         raise InputError(f"{len(assumed.axioms)} facts about motion; at most {MOST_AXIOMS} are read")
-    limits = (motion.limit(x.formula) for x in _limits(specification, query, assumed.said))
+    if tuple(x for x in limits_said(assumed.said) if x in assumed.unused) != assumed.unused:
+        raise InputError(f"unused={', '.join(assumed.unused)[:200]}: the claim does not say these limits")
+    limits = limit_formulas(specification, query, assumed).values()
     axioms = (axiom_formula(specification, query, x) for x in assumed.axioms)
     return f.conjunction(*limits, *axioms)
 
 
+def limit_formulas(specification: Specification, query: Query, assumed: Assumed) -> dict[str, Formula]:
+    """What the limits that are premises say at all times, by their texts. Raises ``InputError``."""
+    made = zip(limits_said(assumed.said), _limits(specification, query, assumed.said), strict=True)
+    return {x: motion.limit(y.formula) for x, y in made if x not in assumed.unused}
+
+
 def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> Formula:
     """What an instance of a schema says. Raises ``InputError`` where it is none, and says why."""
-    if axiom.schema not in SCHEMAS:
-        raise InputError(unknown("schema of motion", axiom.schema[:40], SCHEMAS))
-    names = SCHEMAS[axiom.schema]
+    if axiom.schema not in ALL_SCHEMAS:
+        raise InputError(unknown("schema of motion", axiom.schema[:40], ALL_SCHEMAS))
+    names = ALL_SCHEMAS[axiom.schema]
     if len(names) != len(axiom.arguments):
         raise InputError(f"schema {axiom.schema} takes {', '.join(names)}")
     try:
@@ -287,8 +338,15 @@ def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> F
 
 
 def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
-    if axiom.schema == "leaves":
-        return motion.leaves(_elaborated(specification, query, axiom.arguments[0]).formula)
+    if ALL_SCHEMAS[axiom.schema][0] == "inside":
+        inside = _elaborated(specification, query, axiom.arguments[0]).formula
+        times = [_time(specification, query, x) for x in axiom.arguments[1:]]
+        of_formula: dict[str, Callable[..., Formula]] = {
+            "leaves": motion.leaves,
+            "steps": induction.steps,
+            "lasts": induction.lasts,
+        }
+        return of_formula[axiom.schema](inside, *times)
     left, right, *more = (_term(specification, query, x) for x in axiom.arguments)
     _alike(left, right)
     simple: dict[str, Callable[[Term, Term], Formula]] = {
@@ -298,13 +356,23 @@ def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
     }
     if axiom.schema in simple:
         return simple[axiom.schema](left.term, right.term)
-    speed, time = more
-    bound = arithmetic.bound(time, specification.library.parameters, _START)
-    arithmetic.interval(bound, None, _START)
+    speed, *growth, _ = more
+    bound = _time(specification, query, axiom.arguments[-1])
     metres, seconds = left.dimension or right.dimension or (0, 0)
     _alike(speed, Quantity(speed.term, (metres, seconds - 1)))
+    if growth:
+        _alike(growth[0], Quantity(growth[0].term, (metres, seconds - 2)))
+        twice = motion.within_twice if axiom.schema == "within-twice" else motion.after_twice
+        return twice(left.term, right.term, speed.term, growth[0].term, bound)
     bounded = motion.within if axiom.schema == "within" else motion.after
     return bounded(left.term, right.term, speed.term, bound)
+
+
+def _time(specification: Specification, query: Query, written: str) -> Term:
+    """A term as a bound of an interval. Raises ``InputError``, ``ValueError``."""
+    bound = arithmetic.bound(_term(specification, query, written), specification.library.parameters, _START)
+    arithmetic.interval(bound, None, _START)
+    return bound
 
 
 def _alike(one: Quantity, other: Quantity) -> None:
