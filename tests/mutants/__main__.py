@@ -2,7 +2,8 @@
 
 ``record`` which tests run which lines, ``run`` the faults, ``report`` what came out. A run goes on where
 it stopped: what was tried is in ``results.jsonl``, and is tried again where the function has changed, or
-where it survived and some test has.
+where it survived and some test has. ``--only`` takes some folders of
+the package, ``--tests`` some test files.
 """
 
 import argparse
@@ -24,7 +25,7 @@ from mutants.trial import Bench, copy_project
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "src/roadproof"
 OUT = ROOT / "out/mutants"
-SEED, NUMBER = 1, 400
+SEED, NUMBER = 1, 1000
 
 
 def main() -> int:
@@ -32,7 +33,10 @@ def main() -> int:
     parser.add_argument("action", choices=["record", "run", "report", "list"])
     parser.add_argument("--number", type=int, default=NUMBER, help="faults to choose (about)")
     parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--only", default="", help="a folder or file of the package, such as judge/")
+    parser.add_argument("--only", default="", help="folders or files of the package, such as judge/,kernel/")
+    parser.add_argument(
+        "--tests", default="", help="folders or files of tests to record, such as tests/kernel/"
+    )
     parser.add_argument("--most", type=int, default=None, help="stop after so many faults")
     parser.add_argument("--jobs", type=int, default=2)
     asked = parser.parse_args()
@@ -40,11 +44,11 @@ def main() -> int:
     chosen = choose(PACKAGE, asked.number, asked.seed, asked.only)
     match asked.action:
         case "record":
-            record(records, asked.jobs)
+            record(within(records.missing, asked.tests), asked.jobs)
         case "run":
             if records.missing:
                 told = ", ".join(path.name for path in records.missing)
-                print(f"not recorded, so not run: {told} (python -m mutants record)")
+                print(f"not recorded, so not run: {told} (python -m mutants record)", flush=True)
             run(chosen, records, asked.jobs, asked.most)
         case "list":
             for edit in chosen:
@@ -54,8 +58,13 @@ def main() -> int:
     return 0
 
 
-def record(records: Records, jobs: int) -> None:
-    """Run each test file that has no record, on the code as it stands."""
+def within(paths: list[Path], named: str) -> list[Path]:
+    """Those of ``paths`` in one of the folders or files that ``named`` lists with commas; all without any."""
+    return [path for path in paths if str(path.relative_to(ROOT)).startswith(tuple(named.split(",")))]
+
+
+def record(paths: list[Path], jobs: int) -> None:
+    """Run test files that have no record, on the code as it stands."""
 
     def one(path: Path) -> None:
         environment = {**os.environ, "MUTANTS_RECORD": str(OUT / "records" / record_name(path, ROOT))}
@@ -65,7 +74,7 @@ def record(records: Records, jobs: int) -> None:
         print(path.relative_to(ROOT), done.stdout.decode().strip().rpartition("\n")[2], flush=True)
 
     with ThreadPoolExecutor(jobs) as pool:
-        list(pool.map(one, records.missing))
+        list(pool.map(one, paths))
 
 
 def run(chosen: list[Edit], records: Records, jobs: int, most: int | None) -> None:

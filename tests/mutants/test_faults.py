@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from mutants.__main__ import ROOT, within
 from mutants.choose import choose, faults_of, targets
 from mutants.edits import edits_of, is_fault
 from mutants.places import places_of
@@ -104,8 +105,24 @@ def test_the_choice_follows_from_the_seed() -> None:
     folders = {str(file).split("/")[0] for file in targets(PACKAGE)}
     assert folders == {
         *("judge", "monitoring", "encode", "solve", "evidence", "proving", "searching", "spec"),
-        *("formats", "evaluation", "simulation"),
+        *("formats", "evaluation", "simulation", "exporting", "preventing", "deriving", "kernel"),
+        *("studio", "api", "analysis"),
     }
+
+
+def test_folders_are_chosen_alone_or_together() -> None:
+    one, other, both = (
+        {x.key for x in choose(PACKAGE, 60, 1, y)} for y in ("judge/", "encode/", "judge/,encode/")
+    )
+    assert one
+    assert other
+    assert both == one | other
+
+
+def test_test_files_are_recorded_alone_or_together() -> None:
+    paths = [ROOT / f"tests/{x}" for x in ("kernel/test_a.py", "judge/test_b.py", "traffic/test_c.py")]
+    assert within(paths, "tests/kernel/,tests/traffic/test_c") == [paths[0], paths[2]]
+    assert within(paths, "") == paths
 
 
 def test_tests_of_a_line_are_the_near_ones_and_then_the_fastest() -> None:
