@@ -3,7 +3,7 @@
 ``record`` which tests run which lines, ``run`` the faults, ``report`` what came out. A run goes on where
 it stopped: what was tried is in ``results.jsonl``, and is tried again where the function has changed, or
 where it survived and some test has. ``--only`` takes some folders of
-the package, ``--tests`` some test files.
+the package, ``--tests`` some test files. ``by-hand`` plants the faults of ``by_hand.toml``.
 """
 
 import argparse
@@ -16,6 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from mutants import journal
+from mutants.by_hand import listed, plant
 from mutants.choose import choose, faults_of, targets
 from mutants.edits import Edit
 from mutants.journal import Line
@@ -30,7 +31,7 @@ SEED, NUMBER = 1, 1000
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m mutants", description=__doc__)
-    parser.add_argument("action", choices=["record", "run", "report", "list"])
+    parser.add_argument("action", choices=["record", "run", "report", "list", "by-hand"])
     parser.add_argument("--number", type=int, default=NUMBER, help="faults to choose (about)")
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--only", default="", help="folders or files of the package, such as judge/,kernel/")
@@ -50,6 +51,8 @@ def main() -> int:
                 told = ", ".join(path.name for path in records.missing)
                 print(f"not recorded, so not run: {told} (python -m mutants record)", flush=True)
             run(chosen, records, asked.jobs, asked.most)
+        case "by-hand":
+            by_hand(asked.only)
         case "list":
             for edit in chosen:
                 print(show(edit))
@@ -107,6 +110,17 @@ def run(chosen: list[Edit], records: Records, jobs: int, most: int | None) -> No
         list(pool.map(one, left))
     there = {edit.key for file in targets(PACKAGE) for edit in faults_of(PACKAGE, file)}
     journal.write(line for line in journal.read().values() if line.key in there)
+
+
+def by_hand(only: str) -> None:
+    """Plant the faults that were thought of, and count for each room how many its tests noticed."""
+    faults = [fault for fault in listed() if fault.file.startswith(tuple(only.split(",")))]
+    rooms: dict[str, Counter[str]] = {}
+    for fault, verdict in plant(faults, ROOT, OUT / "by-hand"):
+        print(f"{verdict:9} {fault.file}: {fault.before} => {fault.after}", flush=True)
+        rooms.setdefault(fault.room, Counter())[verdict] += 1
+    for room, counted in {**rooms, "all": sum(rooms.values(), Counter())}.items():
+        print(f"{room:12} {counted.total():4}  " + ", ".join(f"{n} {v}" for v, n in counted.most_common()))
 
 
 def report(chosen: list[Edit]) -> None:
