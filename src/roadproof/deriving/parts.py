@@ -231,7 +231,7 @@ def breaks(
             spans = [
                 x for x in failing.spans() if first < x.begin and (free.end is None or x.begin < free.end)
             ]
-            times = (_instant(x, None if free.end is None else free.end.point, wanted) for x in spans)
+            times = (_instant(x, _first_end(x, free), wanted) for x in spans)
             found = [x for x in times if x is not None and failing.at(x) and never.at(x)]
             if not found:
                 raise NoDerivationError("both sides of an until change exactly at an irrational instant")
@@ -244,6 +244,11 @@ def breaks(
         if end is None or end <= cut:
             raise NoDerivationError("both sides of an until change exactly at an irrational instant")
         cut = end
+
+
+def _first_end(one: Span, other: Span) -> Point | None:
+    """When the first of two intervals ends, None where neither does."""
+    return min((x.end.point for x in (one, other) if x.end is not None), default=None)
 
 
 def _apart(low: Point, high: Point) -> tuple[Fraction, Fraction]:
