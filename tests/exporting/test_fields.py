@@ -10,13 +10,16 @@ import math
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import pairwise
 
 import pytest
 
 from exporting.kept import motion, subject
+from roadproof.errors import UsageError
+from roadproof.exporting.polyline import polyline_of
 from roadproof.exporting.registry import FORMATS
-from roadproof.exporting.subject import Subject
+from roadproof.exporting.subject import Subject, subject_of
 
 
 @dataclass(frozen=True)
@@ -526,3 +529,24 @@ def test_road_files_have_every_lanelet(format_: str, shifts: tuple[int, int], ma
                 f"d = [{short(bottom + across)}, {short(bottom + 3.5 + across)}]\n"
             )
     assert file_of(made, format_, name) == "\n".join(expected)
+
+
+@pytest.mark.parametrize("rate", [1, 10, 25, 64, 125, 512, 625, 1000])
+def test_rates_whose_steps_are_decimals_are_exported(rate: int) -> None:
+    """1/512 s has nine decimals, as many as files have."""
+    file = subject(SV=motion((None, "0", "0"))).file
+    assert subject_of("made", 1, file, rate).times[-1] == 4
+    assert len(subject_of("made", 1, file, rate).times) == 4 * rate + 1
+
+
+@pytest.mark.parametrize("rate", [0, -25, 3, 30, 1001, 1024, 2000])
+def test_other_rates_are_refused(rate: int) -> None:
+    with pytest.raises(UsageError, match=f"rate={rate}: write samples a second up to 1000"):
+        subject_of("made", 1, subject(SV=motion((None, "0", "0"))).file, rate)
+
+
+def test_a_bound_that_is_just_kept_needs_no_vertex_between() -> None:
+    """Braking by 1 m/s² for a second is within an eighth of a metre, exactly."""
+    braking = motion((None, "-1", "0"))
+    assert len(polyline_of(braking, Fraction(1), 0.125).vertices) == 2
+    assert len(polyline_of(braking, Fraction(1), 0.1249).vertices) == 3
