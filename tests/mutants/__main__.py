@@ -48,8 +48,10 @@ def main() -> int:
             record(within(records.missing, asked.tests), asked.jobs)
         case "run":
             if records.missing:
-                told = ", ".join(path.name for path in records.missing)
-                print(f"not recorded, so not run: {told} (python -m mutants record)", flush=True)
+                told = ", ".join(str(path.relative_to(ROOT)) for path in records.missing[:3])
+                print(
+                    f"{len(records.missing)} test files have no record and are not run: {told}, …", flush=True
+                )
             run(chosen, records, asked.jobs, asked.most)
         case "by-hand":
             by_hand(asked.only)
