@@ -20,6 +20,7 @@ from roadproof.errors import UsageError
 from roadproof.exporting.polyline import polyline_of
 from roadproof.exporting.registry import FORMATS
 from roadproof.exporting.subject import Subject, subject_of
+from roadproof.world.road import Lanelet, Road
 
 
 @dataclass(frozen=True)
@@ -550,3 +551,40 @@ def test_a_bound_that_is_just_kept_needs_no_vertex_between() -> None:
     braking = motion((None, "-1", "0"))
     assert len(polyline_of(braking, Fraction(1), 0.125).vertices) == 2
     assert len(polyline_of(braking, Fraction(1), 0.1249).vertices) == 3
+
+
+@pytest.mark.parametrize(
+    ("other", "plain"),
+    [
+        (Lanelet("b", "main-2", "main", "main", (None, None), (Fraction(4), Fraction(8))), True),
+        (Lanelet("b", "main-2", "main", "main", (None, Fraction(900)), (Fraction(4), Fraction(8))), False),
+        (Lanelet("b", "main-2", "main", "main", (Fraction(-900), None), (Fraction(4), Fraction(8))), False),
+        (Lanelet("b", "main-2", "merge", "main", (None, None), (Fraction(4), Fraction(8))), False),
+        (Lanelet("b", "ramp", "merge", "merge", (None, None), (Fraction(4), Fraction(8))), False),
+    ],
+)
+def test_highd_has_a_road_file_where_markings_do_not_say_all(other: Lanelet, plain: bool) -> None:
+    main = Lanelet("a", "main-1", "main", "main", (None, None), (Fraction(0), Fraction(4)))
+    road = Road("other", (main, other), frozenset({frozenset({"main-1", other.lane})}))
+    names = {*FORMATS["highd"](subject(road, SV=motion((None, "0", "0"))))}
+    assert ("01_road.toml" in names) == (not plain)
+
+
+def test_own_signals_are_columns_of_the_vehicles_that_have_them() -> None:
+    """One of SV alone, and one of no vehicle, which is in the rows of all."""
+    made = subject("main-2", "1", SV=motion((None, "0", "0")), POV=motion((None, "0", "0")))
+    courses = {
+        ("gaze", "SV"): ((Fraction(0), Fraction(2)), (Fraction(1), Fraction(3))),
+        ("red", ""): ((Fraction(0), Fraction(1)),),
+    }
+    drive = replace(made.file.drive, own=courses)
+    rows = rows_of(file_of(replace(made, file=replace(made.file, drive=drive), rate=2), "csv", "made.csv"))
+    assert [*rows[0]][10:] == ["gaze", "red"]
+    assert [(x["time"], x["vehicle"], x["gaze"], x["red"]) for x in rows] == [
+        ("0", "SV", "2", "1"),
+        ("0", "POV", "", "1"),
+        ("0.5", "SV", "2", "1"),
+        ("0.5", "POV", "", "1"),
+        ("1", "SV", "3", "1"),
+        ("1", "POV", "", "1"),
+    ]
