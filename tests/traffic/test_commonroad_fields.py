@@ -6,6 +6,7 @@ complex numbers, and none of the reader's functions.
 
 import cmath
 import math
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -336,3 +337,13 @@ def test_intervals_areas_and_turned_shapes_are_refused(old: str, new: str, said:
     with pytest.raises(InputError) as error:
         read_commonroad(path)
     assert said in str(error.value)
+
+
+@pytest.mark.parametrize("side", ["Left", "Right"])
+def test_a_neighbour_that_one_side_alone_names_is_one(side: str, tmp_path: Path) -> None:
+    path = put(tmp_path, [FIRST])
+    other = {"Left": "Right", "Right": "Left"}[side]
+    text = path.read_text("utf-8")
+    assert f'<adjacent{other} ref="' in text
+    path.write_text(re.sub(f'<adjacent{other} ref="[12]" drivingDir="same"/>', "", text), "utf-8")
+    assert read_commonroad(path).beside == {frozenset("12")}

@@ -213,3 +213,21 @@ def test_places_south_of_the_equator_count_from_ten_million() -> None:
         )
         east, north = utm_of(np.array([lat]), np.array([lon]))[0]
         assert (east, north) == pytest.approx((500000, 0.9996 * arc + (1e7 if lat < 0 else 0)), abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("listed", "reads"), [("8;7", True), ("7;8", True), ("-1", True), ("99", False), ("8;99", True)]
+)
+def test_lanelet_ids_are_lists(listed: str, reads: bool, tmp_path: Path) -> None:
+    """A box on several lanelets; one of them has to be of the map."""
+    path = write_exid(make_recording(cars(1)), with_ramps("merge"), tmp_path, rampwards)
+    head, first, *lines = path.read_text().splitlines()
+    at = head.split(",").index("laneletId")
+    cells = first.split(",")
+    cells[at] = listed
+    path.write_text("\n".join((head, ",".join(cells), *lines)) + "\n")
+    if reads:
+        assert read_exid(tmp_path, "07").vehicles == 5
+    else:
+        with pytest.raises(InputError, match="has no lanelet 99 among its lanes"):
+            read_exid(tmp_path, "07")
