@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import pytest
 
-from exporting.kept import motion, subject
+from exporting.kept import TURN, motion, subject
 from roadproof.errors import UsageError
 from roadproof.exporting.polyline import polyline_of
 from roadproof.exporting.registry import FORMATS
@@ -588,3 +588,16 @@ def test_own_signals_are_columns_of_the_vehicles_that_have_them() -> None:
         ("1", "SV", "3", "1"),
         ("1", "POV", "", "1"),
     ]
+
+
+def test_accelerations_across_grow_to_the_left_and_in_highd_to_the_right() -> None:
+    """A change of lane that begins and ends; y of highD grows down."""
+    made = subject(SV=TURN)
+    states = made.samples["SV"]
+    expected = [float(x.a_lat) for x in states]
+    assert {x > 0 for x in expected if x} == {True, False}
+    ours = [float(x["a_lat"]) for x in rows_of(file_of(made, "csv", "made.csv"))]
+    assert ours == pytest.approx(expected)
+    for column, signal in (("yAcceleration", "a_lat"), ("yVelocity", "v_lat")):
+        theirs = [-float(x[column]) for x in rows_of(file_of(made, "highd", "01_tracks.csv"))]
+        assert theirs == pytest.approx([float(getattr(x, signal)) for x in states], abs=1e-8)
