@@ -45,8 +45,9 @@ def written(made: Subject, format_: str, folder: Path) -> Path:
     return folder
 
 
-def by_id(made: Subject, ids: Mapping[str, int]) -> str:
-    return ",".join(str(ids[name]) for name in made.vehicles)
+def by_id(made: Subject) -> str:
+    """SV is 1 in every format, and the others follow."""
+    return ",".join(str(k) for k, _ in enumerate(made.vehicles, 1))
 
 
 def as_csv(made: Subject, folder: Path) -> Read:
@@ -55,17 +56,16 @@ def as_csv(made: Subject, folder: Path) -> Read:
 
 
 def as_csv_recording(made: Subject, folder: Path) -> Read:
-    """As a recording, whose vehicles are numbered by their names."""
-    numbers = {name: k for k, name in enumerate(sorted(made.vehicles), 1)}
+    """As a recording, whose vehicles are numbered."""
     path = written(made, "csv", folder) / f"{made.name}.csv"
-    return Read(read_pair(f"{path}:{by_id(made, numbers)}"), made.file.lanes["L"])
+    return Read(read_pair(f"{path}:{by_id(made)}"), made.file.lanes["L"])
 
 
 def as_highd(made: Subject, folder: Path) -> Read:
     """Lanes are called as on the road beside the files, or by laneId, which counts from the upper left."""
     name = f"{made.number:02d}"
     path = written(made, "highd", folder) / f"{name}_tracks.csv"
-    read = read_pair(f"{path}:{by_id(made, made.ids)}")
+    read = read_pair(f"{path}:{by_id(made)}")
     if (folder / f"{name}_road.toml").exists():
         return Read(read, made.file.lanes["L"])
     left = sorted(made.file.road.lanelets, key=lambda x: x.d, reverse=True)
@@ -76,7 +76,7 @@ def as_commonroad(made: Subject, folder: Path) -> Read:
     """A lane is called by its first lanelet, and lanelets count from 1001, section by section."""
     path = written(made, "commonroad", folder) / f"{made.name}.xml"
     lanes = [x.lane for section in made.layout.sections for x in section.lanelets]
-    return Read(read_pair(f"{path}:{by_id(made, made.ids)}"), str(1001 + lanes.index(made.file.lanes["L"])))
+    return Read(read_pair(f"{path}:{by_id(made)}"), str(1001 + lanes.index(made.file.lanes["L"])))
 
 
 READERS: Mapping[str, Callable[[Subject, Path], Read]] = {
@@ -232,5 +232,5 @@ def test_planted_fault_a_sample_of_another_vehicle_is_noticed(tmp_path: Path) ->
     made = next(x for x in PAIRS if x.file.scenario == 4)
     path = written(made, "csv", tmp_path) / f"{made.name}.csv"
     home, lanes = of_file(made.file), made.file.lanes
-    assert monitor(4, f"{path}:2,1", home, lanes).verdict == "true"
-    assert monitor(4, f"{path}:1,2", home, lanes).verdict == "false"
+    assert monitor(4, f"{path}:1,2", home, lanes).verdict == "true"
+    assert monitor(4, f"{path}:2,1", home, lanes).verdict == "false"

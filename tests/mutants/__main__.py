@@ -2,7 +2,8 @@
 
 ``record`` which tests run which lines, ``run`` the faults, ``report`` what came out. A run goes on where
 it stopped: what was tried is in ``results.jsonl``, and is tried again where the function has changed, or
-where it survived and some test has.
+where it survived and some test has. ``--only`` takes some folders of
+the package, ``--tests`` some test files. ``by-hand`` plants the faults of ``by_hand.toml``.
 """
 
 import argparse
@@ -15,6 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from mutants import journal
+from mutants.by_hand import listed, plant
 from mutants.choose import choose, faults_of, targets
 from mutants.edits import Edit
 from mutants.journal import Line
@@ -24,15 +26,18 @@ from mutants.trial import Bench, copy_project
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "src/roadproof"
 OUT = ROOT / "out/mutants"
-SEED, NUMBER = 1, 400
+SEED, NUMBER = 1, 1000
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m mutants", description=__doc__)
-    parser.add_argument("action", choices=["record", "run", "report", "list"])
+    parser.add_argument("action", choices=["record", "run", "report", "list", "by-hand"])
     parser.add_argument("--number", type=int, default=NUMBER, help="faults to choose (about)")
     parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--only", default="", help="a folder or file of the package, such as judge/")
+    parser.add_argument("--only", default="", help="folders or files of the package, such as judge/,kernel/")
+    parser.add_argument(
+        "--tests", default="", help="folders or files of tests to record, such as tests/kernel/"
+    )
     parser.add_argument("--most", type=int, default=None, help="stop after so many faults")
     parser.add_argument("--jobs", type=int, default=2)
     asked = parser.parse_args()
@@ -40,12 +45,16 @@ def main() -> int:
     chosen = choose(PACKAGE, asked.number, asked.seed, asked.only)
     match asked.action:
         case "record":
-            record(records, asked.jobs)
+            record(within(records.missing, asked.tests), asked.jobs)
         case "run":
             if records.missing:
-                told = ", ".join(path.name for path in records.missing)
-                print(f"not recorded, so not run: {told} (python -m mutants record)")
+                told = ", ".join(str(path.relative_to(ROOT)) for path in records.missing[:3])
+                print(
+                    f"{len(records.missing)} test files have no record and are not run: {told}, …", flush=True
+                )
             run(chosen, records, asked.jobs, asked.most)
+        case "by-hand":
+            by_hand(asked.only)
         case "list":
             for edit in chosen:
                 print(show(edit))
@@ -54,8 +63,13 @@ def main() -> int:
     return 0
 
 
-def record(records: Records, jobs: int) -> None:
-    """Run each test file that has no record, on the code as it stands."""
+def within(paths: list[Path], named: str) -> list[Path]:
+    """Those of ``paths`` in one of the folders or files that ``named`` lists with commas; all without any."""
+    return [path for path in paths if str(path.relative_to(ROOT)).startswith(tuple(named.split(",")))]
+
+
+def record(paths: list[Path], jobs: int) -> None:
+    """Run test files that have no record, on the code as it stands."""
 
     def one(path: Path) -> None:
         environment = {**os.environ, "MUTANTS_RECORD": str(OUT / "records" / record_name(path, ROOT))}
@@ -65,7 +79,7 @@ def record(records: Records, jobs: int) -> None:
         print(path.relative_to(ROOT), done.stdout.decode().strip().rpartition("\n")[2], flush=True)
 
     with ThreadPoolExecutor(jobs) as pool:
-        list(pool.map(one, records.missing))
+        list(pool.map(one, paths))
 
 
 def run(chosen: list[Edit], records: Records, jobs: int, most: int | None) -> None:
@@ -98,6 +112,17 @@ def run(chosen: list[Edit], records: Records, jobs: int, most: int | None) -> No
         list(pool.map(one, left))
     there = {edit.key for file in targets(PACKAGE) for edit in faults_of(PACKAGE, file)}
     journal.write(line for line in journal.read().values() if line.key in there)
+
+
+def by_hand(only: str) -> None:
+    """Plant the faults that were thought of, and count for each room how many its tests noticed."""
+    faults = [fault for fault in listed() if fault.file.startswith(tuple(only.split(",")))]
+    rooms: dict[str, Counter[str]] = {}
+    for fault, verdict in plant(faults, ROOT, OUT / "by-hand"):
+        print(f"{verdict:9} {fault.file}: {fault.before} => {fault.after}", flush=True)
+        rooms.setdefault(fault.room, Counter())[verdict] += 1
+    for room, counted in {**rooms, "all": sum(rooms.values(), Counter())}.items():
+        print(f"{room:12} {counted.total():4}  " + ", ".join(f"{n} {v}" for v, n in counted.most_common()))
 
 
 def report(chosen: list[Edit]) -> None:

@@ -19,6 +19,13 @@ FOLDERS = (
     "formats",
     "evaluation",
     "simulation",
+    "exporting",
+    "preventing",
+    "deriving",
+    "kernel",
+    "studio",
+    "api",
+    "analysis/catalogue",
 )
 SPECS = "spec/library"
 SPEC_WEIGHT = 3  # a definition says in a line what takes Python a page
@@ -37,7 +44,8 @@ def faults_of(package: Path, file: Path) -> list[Edit]:
 
 
 def choose(package: Path, number: int, seed: int, only: str = "") -> list[Edit]:
-    """About ``number`` faults of all targets, and of them those whose file begins with ``only``.
+    """About ``number`` faults of all targets, and of them those whose file begins with ``only``, or one of
+    several beginnings with commas between them.
 
     A file's share goes by the square root of how many faults it could have, so that long files do not
     crowd out short ones. Each fault has its rank by seed and key, so a change elsewhere moves no other.
@@ -50,7 +58,7 @@ def choose(package: Path, number: int, seed: int, only: str = "") -> list[Edit]:
     chosen: list[Edit] = []
     for file, faults in every.items():
         share = max(1, round(number * weights[file] / whole))
-        if str(file).startswith(only):
+        if str(file).startswith(tuple(only.split(","))):
             chosen += _best(faults, share, seed, (package / file).read_text("utf-8"))
     return chosen
 

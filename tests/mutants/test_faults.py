@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from mutants.__main__ import ROOT, within
+from mutants.by_hand import listed
 from mutants.choose import choose, faults_of, targets
 from mutants.edits import edits_of, is_fault
 from mutants.places import places_of
@@ -104,8 +106,24 @@ def test_the_choice_follows_from_the_seed() -> None:
     folders = {str(file).split("/")[0] for file in targets(PACKAGE)}
     assert folders == {
         *("judge", "monitoring", "encode", "solve", "evidence", "proving", "searching", "spec"),
-        *("formats", "evaluation", "simulation"),
+        *("formats", "evaluation", "simulation", "exporting", "preventing", "deriving", "kernel"),
+        *("studio", "api", "analysis"),
     }
+
+
+def test_folders_are_chosen_alone_or_together() -> None:
+    one, other, both = (
+        {x.key for x in choose(PACKAGE, 60, 1, y)} for y in ("judge/", "encode/", "judge/,encode/")
+    )
+    assert one
+    assert other
+    assert both == one | other
+
+
+def test_test_files_are_recorded_alone_or_together() -> None:
+    paths = [ROOT / f"tests/{x}" for x in ("kernel/test_a.py", "judge/test_b.py", "traffic/test_c.py")]
+    assert within(paths, "tests/kernel/,tests/traffic/test_c") == [paths[0], paths[2]]
+    assert within(paths, "") == paths
 
 
 def test_tests_of_a_line_are_the_near_ones_and_then_the_fastest() -> None:
@@ -119,3 +137,14 @@ def test_tests_of_a_line_are_the_near_ones_and_then_the_fastest() -> None:
     assert records.tests_for(fault, PACKAGE) == [near, far]
     del records.by_place[place]
     assert records.tests_for(fault, PACKAGE) == [other, near, far]
+
+
+def test_faults_by_hand_fit_the_code_and_name_their_tests() -> None:
+    """Each text is there once, and its room has tests; a change of the code has to keep its faults."""
+    faults = listed()
+    assert len(faults) == len({(x.file, x.before, x.after) for x in faults}) >= 60
+    for fault in faults:
+        text = (PACKAGE / fault.file).read_text("utf-8")
+        assert text.count(fault.before) == 1, fault
+        ast.parse(text.replace(fault.before, fault.after))
+        assert [x for x in fault.tests if (ROOT / x).exists()], fault

@@ -96,7 +96,7 @@ def test_a_road_may_lie_anywhere(tmp_path: Path) -> None:
 def test_it_is_a_format_of_recordings(tmp_path: Path) -> None:
     recording = find_source(put(tmp_path, SOME[0])).read()
     assert recording.rate == RATE
-    assert "vehicles are numbered: POV is 1, SV is 2" in recording.notes
+    assert "vehicles are numbered: SV is 1, POV is 2" in recording.notes
     assert recording.vehicles == 2
 
 

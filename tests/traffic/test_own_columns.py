@@ -110,12 +110,12 @@ def test_a_missing_column_names_the_signal_the_file_and_what_there_is(tmp_path: 
 def test_a_recording_has_own_signals_by_sample_and_kinds_by_vehicle(tmp_path: Path) -> None:
     recording = read_recording(written(tmp_path, table(), "csv"))
     assert recording.own["red"].tolist() == [float(k >= 4) for k in range(11)] * 2
-    assert [KINDS[code - 1] for code in recording.kind_code] == ["truck", "car"]
+    assert [KINDS[code - 1] for code in recording.kind_code] == ["car", "truck"]
     kept = keep_vehicles(recording, recording.kind == "Car")
     assert isinstance(kept, Recording)
     assert kept.own["red"].tolist() == recording.own["red"].tolist()[:11]
     assert (
-        rp.monitor("kind(SV) = truck and F[0, 1] swift(SV)", f"{tmp_path}/a.csv:1,2", HOME).verdict == "true"
+        rp.monitor("kind(SV) = truck and F[0, 1] swift(SV)", f"{tmp_path}/a.csv:2,1", HOME).verdict == "true"
     )
 
 

@@ -206,8 +206,8 @@ def test_names_are_numbered_and_time_may_begin_anywhere(tmp_path: Path) -> None:
     ]
     text = table(*rows).replace("width\n", "width,kind\n")
     r = read_recording(write_samples(tmp_path, "a", text, MERGE))
-    assert (r.rate, r.kind.tolist()) == (30, ["Truck", "Car"])
-    assert r.notes[:2] == ("vehicles are numbered: POV is 1, SV is 2", "frame 0 is time 7.3 s")
+    assert (r.rate, r.kind.tolist()) == (30, ["Car", "Truck"])
+    assert r.notes[:2] == ("vehicles are numbered: SV is 1, POV is 2", "frame 0 is time 7.3 s")
 
 
 def cell(row: int, column: str, value: str) -> Callable[[list[list[str]]], None]:

@@ -9,6 +9,9 @@ from roadproof.judge.algebraic import Point, Root, bounds
 from roadproof.judge.truth import START, Cut, Span, TruthSet
 from roadproof.kernel.derivation import Fixed, Later, Moment, Step, split
 
+MOST_PARTS = 300
+"""Parts that follow each other towards an irrational instant never reach it."""
+
 
 class NoDerivationError(RoadproofError):
     """None was found, for this reason; there may be one."""
@@ -44,7 +47,7 @@ def covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int | 
     A root in place of a set: at it one set ends and another begins.
     """
     cut = part.begin
-    while True:
+    for _ in range(MOST_PARTS):
         reaching = [(span, k) for k, x in enumerate(sets) if (span := _span_at(x, cut)) is not None]
         if not reaching:
             raise NoDerivationError("what holds changes exactly at an irrational instant")
@@ -75,6 +78,7 @@ def covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int | 
             end = Cut(between(max(first, cut).point, end.point), False)
         yield Part(cut, end), place
         cut = end
+    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
 
 
 def _by_end(span: Span) -> tuple[bool, Cut]:
@@ -131,7 +135,7 @@ def moments(
     """For parts that follow each other, when within its window ``right`` holds, and ``left`` until then."""
     low, high = window
     cut = part.begin
-    while True:
+    for _ in range(MOST_PARTS):
         first = _moved(cut, low)
         here = _span_at(right, first)
         if here is not None:
@@ -145,6 +149,7 @@ def moments(
         if end is None or end <= cut:
             raise NoDerivationError("no rational instant was found at which it comes")
         cut = end
+    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
 
 
 def _before(limit: Cut | None, low: Fraction, wanted: Cut | None, cut: Cut) -> Cut | None:
@@ -212,7 +217,7 @@ def breaks(
     """
     low, high = window
     cut = part.begin
-    while True:
+    for _ in range(MOST_PARTS):
         first = _moved(cut, low)
         free = _span_at(never, first)
         if free is None:
@@ -231,7 +236,7 @@ def breaks(
             spans = [
                 x for x in failing.spans() if first < x.begin and (free.end is None or x.begin < free.end)
             ]
-            times = (_instant(x, None if free.end is None else free.end.point, wanted) for x in spans)
+            times = (_instant(x, _first_end(x, free), wanted) for x in spans)
             found = [x for x in times if x is not None and failing.at(x) and never.at(x)]
             if not found:
                 raise NoDerivationError("both sides of an until change exactly at an irrational instant")
@@ -244,6 +249,12 @@ def breaks(
         if end is None or end <= cut:
             raise NoDerivationError("both sides of an until change exactly at an irrational instant")
         cut = end
+    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
+
+
+def _first_end(one: Span, other: Span) -> Point | None:
+    """When the first of two intervals ends, None where neither does."""
+    return min((x.end.point for x in (one, other) if x.end is not None), default=None)
 
 
 def _apart(low: Point, high: Point) -> tuple[Fraction, Fraction]:

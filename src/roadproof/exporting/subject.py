@@ -11,7 +11,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.exporting.layout import Layout, lay_out, span_of
 from roadproof.signals import Kind
-from roadproof.spec.scenarios import SUBJECT
+from roadproof.spec.scenarios import vehicle_order
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, advance, starts_of
 
@@ -37,8 +37,7 @@ class Subject:
     @cached_property
     def vehicles(self) -> dict[str, Motion]:
         """The motions by name, SV first."""
-        names = sorted(self.file.drive.vehicles, key=lambda name: (name != SUBJECT, name))
-        return {name: self.file.drive.vehicles[name] for name in names}
+        return {name: self.file.drive.vehicles[name] for name in vehicle_order(self.file.drive.vehicles)}
 
     @cached_property
     def ids(self) -> dict[str, int]:

@@ -208,15 +208,19 @@ def _read_obstacles(
         if number in seen:
             raise InputError(f"{path}: dynamicObstacle {number} occurs twice; ids must differ")
         seen.add(number)
-        if node.find("shape/rectangle") is None or node.find("trajectory") is None:
+        shape = node.find("shape")
+        if shape is None or [x.tag for x in shape] != ["rectangle"] or node.find("trajectory") is None:
             left_out.append(number)
         else:
             obstacles.append(_read_obstacle(path, node, number, truck_length))
     if not obstacles:
         raise InputError(f"{path}: the file has no dynamicObstacle with a rectangle and a trajectory")
     shown = ", ".join(map(str, left_out))
-    notes = (f"obstacles left out (no rectangle or no trajectory): {shown}",) if left_out else ()
-    return sorted(obstacles, key=lambda o: o.id), notes
+    notes = [f"obstacles left out (not one rectangle, or no trajectory): {shown}"] if left_out else []
+    static = len(root.findall("staticObstacle"))
+    if static:
+        notes.append(f"{static} static obstacles left out: they are no traffic")
+    return sorted(obstacles, key=lambda o: o.id), tuple(notes)
 
 
 def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) -> _Obstacle:
@@ -236,6 +240,7 @@ def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) 
         for x in (*node.findall("initialState"), *node.findall("trajectory/state"))
     ]
     states = np.array(rows)
+    states[:, 1:3] += _middle(path, node, states[:, 3], where)
     if (np.diff(states[:, 0]) != 1).any():
         k = int(np.argmax(np.diff(states[:, 0]) != 1))
         steps = f"{states[k, 0]:g} is followed by {states[k + 1, 0]:g}"
@@ -244,6 +249,23 @@ def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) 
     kind = "Truck" if label in ("truck", "bus") or length > truck_length else "Car"
     told = kind if label == "car" else label
     return _Obstacle(number, kind, told, length, width, int(states[0, 0]), states[:, 1:])
+
+
+def _middle(path: Path, node: Element, heading: Floats, where: str) -> Floats:
+    """How far (m) the middle of the box is from the position, whose frame is turned by ``heading`` (rad)."""
+    box = "shape/rectangle"
+    turned = node.find(f"{box}/orientation")
+    if turned is not None and number_in(path, turned.text, f"orientation of the rectangle of {where}") != 0:
+        told = f"orientation={turned.text} of the rectangle of {where}"
+        raise InputError(f"{path}: {told}: 0 is needed; boxes lie along their obstacle")
+    if node.find(f"{box}/center") is None:
+        return np.zeros((len(heading), 2))
+    ahead, left = (
+        number_in(path, node.findtext(f"{box}/center/{x}"), f"center {x} of the rectangle of {where}")
+        for x in "xy"
+    )
+    cos, sin = np.cos(heading), np.sin(heading)
+    return np.stack((ahead * cos - left * sin, ahead * sin + left * cos), axis=1)
 
 
 def _read_state(path: Path, node: Element, where: str) -> list[float]:

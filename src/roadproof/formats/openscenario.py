@@ -36,7 +36,6 @@ _KINDS = {
     "bus": "Truck",
     "motorbike": "Motorcycle",
 }
-_ACTION = "Story/Act/ManeuverGroup"
 _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 
@@ -135,23 +134,59 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
 def _vertices(path: Path, root: Element, boxes: dict[str, Box]) -> Iterator[tuple[str, Floats]]:
     """By vehicle, rows of time, x, y and heading."""
     seen: set[str] = set()
-    for group in root.findall(f"Storyboard/{_ACTION}"):
+    acts = root.findall("Storyboard/Story/Act")
+    for act, group in ((x, y) for x in acts for y in x.findall("ManeuverGroup")):
         actors = [_text(path, x, "entityRef", "an EntityRef") for x in group.findall("Actors/EntityRef")]
-        for action in group.findall("Maneuver/Event/Action"):
+        for event, action in ((x, y) for x in group.findall("Maneuver/Event") for y in x.findall("Action")):
             told = f"Action {action.get('name')} of {', '.join(actors)}"
             follow = action.find(_PLACES)
             if follow is None:
                 raise InputError(f"{path}: {told} is no FollowTrajectoryAction; only these are read")
+            found = _polyline(path, follow, told)
+            for begun in (act, event):
+                _check_begin(path, begun, found[0, 0], told)
             for name in actors:
                 if name not in boxes:
                     raise InputError(f"{path}: {told}: there is no ScenarioObject {name}")
                 if name in seen:
                     raise InputError(f"{path}: {name} follows two trajectories; one is needed")
                 seen.add(name)
-                yield name, _polyline(path, follow, told)
+                yield name, found
+
+
+def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
+    """Raise ``InputError`` where an act or event may begin after ``first`` (s), when the first vertex is."""
+
+    def in_time(condition: Element) -> bool:
+        clock = condition.find("ByValueCondition/SimulationTimeCondition")
+        if clock is None or clock.get("rule") not in ("greaterThan", "greaterOrEqual"):
+            return False
+        begin = _number(path, clock, "value", f"a StartTrigger of {told}")
+        delay = (
+            _number(path, condition, "delay", f"a StartTrigger of {told}") if condition.get("delay") else 0.0
+        )
+        return begin + delay <= first
+
+    groups = node.findall("StartTrigger/ConditionGroup")
+    if groups and not any(all(map(in_time, group.findall("Condition"))) for group in groups):
+        rule = f"a SimulationTimeCondition that is met at time {first:g} is needed, that of the first Vertex"
+        raise InputError(f"{path}: {told}: StartTrigger of the {node.tag}: {rule}")
+
+
+def _check_exact(path: Path, follow: Element, told: str) -> None:
+    """Raise ``InputError`` where vehicles need not be on the vertices at their times."""
+    mode = follow.find("TrajectoryFollowingMode")
+    if mode is not None and mode.get("followingMode") != "position":
+        raise InputError(f"{path}: {told}: followingMode={mode.get('followingMode')}: position is needed")
+    offset = "initialDistanceOffset"
+    if follow.get(offset) and _number(path, follow, offset, told) != 0:
+        raise InputError(f"{path}: {told}: {offset}={follow.get(offset)}: begin at the first Vertex")
+    if any(x.get("closed") in ("true", "1") for x in follow.iter("Trajectory")):
+        raise InputError(f"{path}: {told}: closed=true: write out the way back as vertices with times")
 
 
 def _polyline(path: Path, follow: Element, told: str) -> Floats:
+    _check_exact(path, follow, told)
     timing = follow.find("TimeReference/Timing")
     if timing is None or timing.get("domainAbsoluteRelative") != "absolute":
         raise InputError(f"{path}: {told}: a Timing with domainAbsoluteRelative=absolute is needed")

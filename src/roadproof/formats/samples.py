@@ -28,6 +28,7 @@ from roadproof.formats.straight import StraightRoad, of_road, place
 from roadproof.formats.table import Kind, Table, count_lines, read_pieces, read_table
 from roadproof.formats.windows import Divided
 from roadproof.signals import RECORDED, SIGNALS, SIZES
+from roadproof.spec.scenarios import vehicle_order
 from roadproof.world.models import load_recorded_road
 
 HEADER = ("time", "vehicle", *RECORDED, *SIZES)
@@ -148,11 +149,12 @@ def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad,
 
 
 def number_vehicles(names: npt.NDArray[np.str_]) -> tuple[Integers, tuple[str, ...]]:
-    """The numbers of vehicles, whose names come in order, and a note where these are no numbers."""
+    """The number of each vehicle, and a note where names are no numbers: then SV is 1, as in all exports."""
     if all(name.isdecimal() and name[0] != "0" and len(name) < 10 for name in names):
         return names.astype(np.int64), ()
-    number = np.arange(1, len(names) + 1)
-    shown = ", ".join(f"{name} is {k}" for name, k in zip(names[:12], number, strict=False))
+    known = {name: k for k, name in enumerate(vehicle_order(names.tolist()), 1)}
+    number = np.array([known[name] for name in names.tolist()])
+    shown = ", ".join(f"{name} is {k}" for name, k in [*known.items()][:12])
     return number, (f"vehicles are numbered: {shown}{', …' if len(names) > 12 else ''}",)
 
 

@@ -1,0 +1,46 @@
+"""Drive files put to Coq: what is refused, and what is only unknown."""
+
+from dataclasses import replace
+
+import pytest
+
+from exporting.kept import kept
+from roadproof.deriving import prepare as module
+from roadproof.deriving.parts import NoDerivationError
+from roadproof.deriving.prepare import prepare
+from roadproof.errors import InputError, RoadproofError
+from roadproof.kernel.accept import Prepared, Ruling, Word
+from roadproof.spec.library import bundled_library
+
+FILE = kept()["scenario-04-base"]
+
+
+def test_a_drive_with_a_derivation_is_a_module_without_premises() -> None:
+    made = prepare("one", FILE, bundled_library())
+    assert made.module is not None
+    assert (made.module.name, made.assumed, made.refusal) == ("one", 0, None)
+
+
+def test_a_formula_that_cannot_be_read_is_refused() -> None:
+    made = prepare("one", replace(FILE, formula="nobody_knows(SV)"), bundled_library())
+    assert (made.module, made.assumed) == (None, 0)
+    assert made.refusal is not None
+    assert made.refusal.word is Word.REFUSED
+    assert made.refusal.reason.startswith("it cannot be put to Coq: ")
+
+
+@pytest.mark.parametrize(
+    ("error", "reason"),
+    [
+        (NoDerivationError("too hard"), "no derivation was found: too hard"),
+        (InputError("too long"), "it is not printed for Coq: too long"),
+    ],
+)
+def test_a_drive_without_a_derivation_is_unknown(
+    error: RoadproofError, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(module, "derive", fail)
+    assert prepare("one", FILE, bundled_library()) == Prepared(None, 0, Ruling(Word.UNKNOWN, reason))
