@@ -196,6 +196,7 @@ class Catalogued(Studied[Meanings, Kept]):
             "shown": shown,
             "begins": dict(answer.begins),
             "fault": answer.fault,
+            "why": _why(answer),
         }
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
@@ -308,6 +309,13 @@ def _target(target: Target) -> dict[str, Any]:
         "possible": list(target.possible),
         "covered": {name: list(bounds) for name, bounds in target.covered.items()},
     }
+
+
+def _why(answer: ConcreteAnswer) -> dict[str, Any] | None:
+    if answer.why is None:
+        return None
+    sets = {name: [*held] for name, held in answer.why.sets.items()}
+    return {**vars(answer.why), "vehicles": [*answer.why.vehicles], "sets": sets}
 
 
 def _remarks(remarks: Iterable[Remark]) -> list[dict[str, Any]]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from roadproof.analysis.catalogue.asked import Asked, Endangered, Key
 from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
 from roadproof.evidence.drive_file import DriveFile, load_drive
@@ -17,12 +18,13 @@ from roadproof.formats.recording import Recording
 from roadproof.formats.sources import find_source
 from roadproof.judge.algebraic import approximate
 from roadproof.judge.exact import judge
+from roadproof.judge.signals import DriveSignals
 from roadproof.judge.truth import START, Cut, TruthSet
 from roadproof.logic import formula as f
 from roadproof.monitoring.compiled import compile
 from roadproof.preventing.restriction import restriction_of
 from roadproof.signals import SignalName
-from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of
+from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of, number_in
 
 MOST_VEHICLES = 8
 """In a scenario of CommonRoad of which no vehicles are named."""
@@ -60,7 +62,7 @@ class ConcreteAnswer:
     """What a test shows. ``begins``: how it begins, numbers by name; ``claims``: with those of its file.
 
     ``dense``: whether it was judged in dense time; ``others``: parameters that its file gives other values
-    than are asked for. ``fault``: why it could not be read.
+    than are asked for. ``fault``: why it could not be read. ``why``: why it shows none.
     """
 
     entry: Concrete
@@ -70,6 +72,7 @@ class ConcreteAnswer:
     dense: bool = False
     others: tuple[str, ...] = ()
     fault: str = ""
+    why: Why | None = None
 
     @property
     def names(self) -> frozenset[str]:
@@ -95,7 +98,13 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
     others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
-    return ConcreteAnswer(entry, claims, all_shown_by(file, asked, freedom), begins_of(file), True, others)
+    shown = all_shown_by(file, asked, freedom)
+    why = None
+    if not _has_scenario(shown):
+        roles = tuple(_choices(asked, tuple(file.drive.vehicles), freedom.roles))
+        lanes = _lanes(file, freedom.lanes)
+        why = why_none(Course(DriveSignals(file.drive), file.road, file.horizon, roles, lanes), asked)
+    return ConcreteAnswer(entry, claims, shown, begins_of(file), True, others, why=why)
 
 
 def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
@@ -173,7 +182,9 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
     begins: dict[str, float] = {}
     endangered_in: dict[Shown, OneTrace] = {}
+    first: OneTrace | None = None
     for trace, told in _traces(entry, freedom):
+        first = first or trace
         names = tuple(trace.lanes)
         free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
         for roles, vehicles in _choices(asked, names, free):
@@ -191,7 +202,23 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
         if {x.what for x in shown.values()} == {ENDANGERED}
         for gap in _gap_in_samples(trace, asked, danger)
     ]
-    return ConcreteAnswer(entry, entry.claims, (*_sorted(shown.values()), *gaps), begins)
+    why = None if first is None or _has_scenario(shown.values()) else _why(first, asked, freedom)
+    return ConcreteAnswer(entry, entry.claims, (*_sorted(shown.values()), *gaps), begins, why=why)
+
+
+def _has_scenario(shown: Iterable[Shown]) -> bool:
+    return any(number_in(x.what) is not None for x in shown)
+
+
+def _why(trace: OneTrace, asked: Asked, freedom: Freedom) -> Why | None:
+    """Why no scenario holds from the first sample on; None on measured roads, whose lanes are not known."""
+    if trace.batch.given:
+        return None
+    names = tuple(trace.lanes)
+    free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
+    end = (int(trace.batch.lengths[0]) - 1) * trace.batch.dt
+    roles = tuple(_choices(asked, names, free))
+    return why_none(Course(signals_of(trace.batch), trace.road, end, roles, trace.road.lanes), asked)
 
 
 def _monitored(

@@ -220,7 +220,7 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], known: Collection[str], gap
         if not any(gaps or not name.startswith(PREFIX) for name in shown) and not (
             x.claims or x.entry.copy_of
         ):
-            yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}")
+            yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}{_why(x)}")
 
 
 def _of_danger(answer: ConcreteAnswer) -> str:
@@ -229,6 +229,10 @@ def _of_danger(answer: ConcreteAnswer) -> str:
         told = ", though danger comes: a gap, which no scenario covers for any lane and in any roles"
         return f"{told} ({', '.join(kinds)})" if kinds else told
     return ", though danger comes" if ENDANGERED in answer.names else ""
+
+
+def _why(answer: ConcreteAnswer) -> str:
+    return "" if answer.why is None else f"; {answer.why}"
 
 
 def _with_other_values(answer: ConcreteAnswer) -> str:

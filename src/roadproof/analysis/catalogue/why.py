@@ -1,0 +1,123 @@
+"""Why a test shows no scenario: the nearest one and what it lacks, and the spec sets in which one holds."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.analysis.catalogue.asked import Asked, Happens
+from roadproof.analysis.catalogue.nearest import FalsePart, first_false_part, told
+from roadproof.errors import RoadproofError
+from roadproof.judge.exact import judge
+from roadproof.judge.signals import AbstractSignals, Signals
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.monitoring.batch import Batch
+from roadproof.signals import SIGNALS
+from roadproof.spec.scenarios import name_of, numbers_of
+from roadproof.world.road import Road
+
+_Roles = tuple[tuple[str, ...], tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Course:
+    """How vehicles move on a road, up to ``horizon`` (s), and the roles and lanes to look at."""
+
+    signals: Signals
+    road: Road
+    horizon: Fraction
+    roles: tuple[_Roles, ...]
+    lanes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Why:
+    """The ``nearest`` scenario with its ``vehicles`` and ``lane``.
+
+    ``lacks``: its first false part, at the instant ``at`` (s); ``told``: that in words. ``sets``: the
+    scenarios that hold in other spec sets.
+    """
+
+    nearest: str
+    vehicles: tuple[str, ...]
+    lane: str
+    at: float
+    lacks: str
+    told: str
+    sets: Mapping[str, tuple[str, ...]]
+
+    def __str__(self) -> str:
+        where = f"nearest is {self.nearest}({', '.join((*self.vehicles, self.lane))}): {self.told}"
+        others = "; ".join(f"set {name} counts it as {', '.join(x)}" for name, x in self.sets.items())
+        return f"{where}{'; ' if others else ''}{others}"
+
+
+def why_none(course: Course, asked: Asked) -> Why | None:
+    """Why no scenario holds from time 0 on; None where one does, or where no comparison is to blame."""
+    if any(judge(formula, course.signals).holds for *_, formula in _applied(course, asked)):
+        return None
+    found = [
+        (part, name_of(key.number), vehicles, lane)
+        for key, vehicles, lane, formula in _applied(course, asked)
+        if (part := first_false_part(formula, course.signals, course.horizon)) is not None
+    ]
+    if not found:
+        return None
+    part, nearest, vehicles, lane = max(found, key=lambda x: x[0].score)
+    sets = {name: held for name in _others(asked) if (held := _held_in(course, asked, name))}
+    return Why(
+        nearest,
+        vehicles,
+        lane,
+        float(part.at),
+        _lacks(part),
+        told(part, asked.specification.definitions),
+        sets,
+    )
+
+
+def _lacks(part: FalsePart) -> str:
+    return (
+        "" if part.part is None else f"{part.part.name.partition('@')[0]}({', '.join(part.part.arguments)})"
+    )
+
+
+def _applied(course: Course, asked: Asked) -> Iterator[tuple[Happens, tuple[str, ...], str, Formula]]:
+    for roles, vehicles in course.roles:
+        for lane in course.lanes:
+            for key, formula in asked.on(course.road, roles, vehicles, lane).items():
+                if isinstance(key, Happens):
+                    yield key, vehicles, lane, formula
+
+
+def _others(asked: Asked) -> Iterable[str]:
+    return (x for x in asked.specification.library.sets if x != asked.specification.set_name)
+
+
+def _held_in(course: Course, asked: Asked, set_name: str) -> tuple[str, ...]:
+    """The scenarios of another spec set that hold; none of a set that cannot be asked about."""
+    try:
+        there = asked.specification.in_set(set_name)
+        numbers = tuple(x for x in asked.numbers if x in numbers_of(there))
+        other = Asked(there, numbers, None, asked.values)
+        names = {
+            name_of(key.number)
+            for key, *_, formula in _applied(course, other)
+            if judge(formula, course.signals).holds
+        }
+    except RoadproofError:
+        return ()
+    return tuple(x for x in map(name_of, numbers) if x in names)
+
+
+def signals_of(batch: Batch) -> AbstractSignals:
+    """The signals of a trace of samples, each held until the next one and the last for ever."""
+    count = int(batch.lengths[0])
+    vehicles = dict.fromkeys(vehicle for _, vehicle in batch.signals)
+    signals: dict[t.Signal | t.Own, tuple[tuple[Fraction, Fraction], ...]] = {}
+    for signal in (t.Signal(name, vehicle) for name in SIGNALS for vehicle in vehicles):
+        values = batch.signals.get((signal.name, signal.vehicle))
+        if values is not None:
+            signals[signal] = tuple((k * batch.dt, Fraction(float(values[k, 0]))) for k in range(count))
+    sizes = {t.Size(name, vehicle): Fraction(float(x[0])) for (name, vehicle), x in batch.sizes.items()}
+    return AbstractSignals(signals, sizes)
