@@ -60,7 +60,8 @@ class ConcreteAnswer:
     """What a test shows. ``begins``: how it begins, numbers by name; ``claims``: with those of its file.
 
     ``dense``: whether it was judged in dense time; ``others``: parameters that its file gives other values
-    than are asked for. ``fault``: why it could not be read.
+    than are asked for. ``notes``: in what its samples contradict themselves. ``fault``: why it could not be
+    read.
     """
 
     entry: Concrete
@@ -69,6 +70,7 @@ class ConcreteAnswer:
     begins: Mapping[str, float] = field(default_factory=dict)
     dense: bool = False
     others: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     fault: str = ""
 
     @property
@@ -173,7 +175,9 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
     begins: dict[str, float] = {}
     endangered_in: dict[Shown, OneTrace] = {}
+    notes: dict[str, None] = {}
     for trace, told in _traces(entry, freedom):
+        notes |= dict.fromkeys(trace.notes)
         names = tuple(trace.lanes)
         free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
         for roles, vehicles in _choices(asked, names, free):
@@ -191,7 +195,7 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
         if {x.what for x in shown.values()} == {ENDANGERED}
         for gap in _gap_in_samples(trace, asked, danger)
     ]
-    return ConcreteAnswer(entry, entry.claims, (*_sorted(shown.values()), *gaps), begins)
+    return ConcreteAnswer(entry, entry.claims, (*_sorted(shown.values()), *gaps), begins, notes=tuple(notes))
 
 
 def _monitored(
