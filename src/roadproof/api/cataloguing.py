@@ -203,9 +203,17 @@ class Catalogued(Studied[Meanings, Kept]):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """On files that are no tests, and on tests whose samples contradict themselves."""
+        """On files that are no tests, samples that contradict themselves, drives made with other values."""
         doubted = (f"{x.entry.id}: {note}" for x in self.concrete for note in x.notes)
-        return (*self.catalogue.notes, *doubted)
+        made: dict[tuple[str, ...], list[str]] = {}
+        for x in self.concrete:
+            if x.made_with:
+                made.setdefault(x.made_with, []).append(x.entry.id)
+        others = (
+            f"made with {', '.join(those)}, and judged with what is asked for: {', '.join(tests)}"
+            for those, tests in made.items()
+        )
+        return (*self.catalogue.notes, *doubted, *others)
 
     @property
     def in_force(self) -> tuple[str, ...]:

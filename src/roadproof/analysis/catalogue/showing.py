@@ -13,6 +13,7 @@ from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
 from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.formats.recording import Recording
 from roadproof.formats.sources import find_source
 from roadproof.judge.algebraic import approximate
@@ -60,8 +61,9 @@ class ConcreteAnswer:
     """What a test shows. ``begins``: how it begins, numbers by name; ``claims``: with those of its file.
 
     ``dense``: whether it was judged in dense time; ``others``: parameters that its file gives other values
-    than are asked for. ``notes``: in what its samples contradict themselves. ``fault``: why it could not be
-    read.
+    than are asked for. ``notes``: in what its samples contradict themselves. ``made_with``: parameters,
+    readings and spec set of its file that are not those asked for; ``rejected``: why the judge rejects its
+    file, with the file's own values. ``fault``: why it could not be read.
     """
 
     entry: Concrete
@@ -71,6 +73,8 @@ class ConcreteAnswer:
     dense: bool = False
     others: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    made_with: tuple[str, ...] = ()
+    rejected: str = ""
     fault: str = ""
 
     @property
@@ -97,7 +101,27 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
     others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
-    return ConcreteAnswer(entry, claims, all_shown_by(file, asked, freedom), begins_of(file), True, others)
+    ruling = judge_file(file, asked.specification.library)
+    return ConcreteAnswer(
+        entry,
+        claims,
+        all_shown_by(file, asked, freedom),
+        begins_of(file),
+        True,
+        others,
+        notes=() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",),
+        made_with=tuple(_made_with(file, asked)),
+        rejected=ruling.reason if ruling.readable else "",
+    )
+
+
+def _made_with(file: DriveFile, asked: Asked) -> Iterator[str]:
+    """What the file was made with, and is not asked with."""
+    home = asked.specification
+    if file.set_name != home.set_name:
+        yield f"set {file.set_name}"
+    yield from (f"{k} = {v}" for k, v in file.options.items() if home.options.get(k, v) != v)
+    yield from (f"{k} = {v} (SI)" for k, v in file.values.items() if asked.values.get(k) != v)
 
 
 def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
