@@ -204,16 +204,19 @@ class Catalogued(Studied[Meanings, Kept]):
     @property
     def notes(self) -> tuple[str, ...]:
         """On files that are no tests, samples that contradict themselves, drives made with other values."""
-        doubted = (f"{x.entry.id}: {note}" for x in self.concrete for note in x.notes)
+        doubted: dict[str, list[str]] = {}
         made: dict[tuple[str, ...], list[str]] = {}
         for x in self.concrete:
+            for note in x.notes:
+                doubted.setdefault(note, []).append(x.entry.id)
             if x.made_with:
                 made.setdefault(x.made_with, []).append(x.entry.id)
         others = (
             f"made with {', '.join(those)}, and judged with what is asked for: {', '.join(tests)}"
             for those, tests in made.items()
         )
-        return (*self.catalogue.notes, *doubted, *others)
+        told = (f"{', '.join(tests)}: {note}" for note, tests in doubted.items())
+        return (*self.catalogue.notes, *told, *others)
 
     @property
     def in_force(self) -> tuple[str, ...]:
