@@ -8,10 +8,12 @@ from typing import Literal, TypeAlias, get_args
 import pytest
 
 import roadproof as rp
+from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.api.restricting import restricted
 from roadproof.cli.main import main
 from roadproof.effort import Effort
 from roadproof.errors import InputError, UsageError
+from roadproof.evidence.drive_file import load_drive
 from roadproof.judge.exact import judge
 from roadproof.judge.truth import complement, intersection
 from roadproof.logic.begin import conjuncts
@@ -31,6 +33,7 @@ from roadproof.spec.scenarios import Scenario, initial_condition, vehicles_of
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 
+EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 Heard: TypeAlias = pytest.CaptureFixture[str]
 WITH_FORMULA = [x.name for x in MODELS.values() if not x.is_stepped]
 
@@ -228,3 +231,37 @@ def test_what_tests_claim_is_of_scenarios_as_they_are() -> None:
         assert not found.tested.faults
     plain = rp.catalogue(drive, among="1", classes=False, jobs=1)
     assert [x.tested for x in plain.tested.targets] == [("cut-in",)]
+
+
+@pytest.mark.parametrize("side", ["preventable", "unpreventable"])
+def test_a_driver_model_does_not_change_what_a_formula_test_means(side: str, tmp_path: Path) -> None:
+    """Under either side the test shows the scenario by some of its drives, and by no proof."""
+    tests = tmp_path / "catalogue.toml"
+    tests.write_text(
+        '[[test]]\nid = "range"\nformula = "scenario_1(SV,POV,L)"\nclaims = [1]\n'
+        'at_start = { "v_lon(SV)" = "20 m/s .. 30 m/s" }\n'
+    )
+    found = rp.catalogue(tests, among="1", classes=False, jobs=1, **{side: "careful"})  # type: ignore[arg-type]
+    [target] = found.tested.targets
+    assert (target.tested, target.possible) == ((), ("range",))
+    assert found.exit_code == 10
+    [entry] = found.study.entries
+    assert isinstance(entry, Abstract)
+    file = load_drive(EXAMPLE / "drives" / "cut-in.json")
+    claims = {
+        "as it is": (rp.load().specification, "scenario_1(SV,POV,L)"),
+        "of the test": (found.study.basis.specification, entry.query.text.partition(" and (20 m/s")[0]),
+    }
+    holds = {
+        name: judge(
+            bind(read_claim(home, text).formula, file.road, file.lanes, rp.load().all_values()), file.drive
+        ).holds
+        for name, (home, text) in claims.items()
+    }
+    assert holds == {"as it is": True, "of the test": True}
+    assert "scenario_1" not in entry.query.text
+    [in_force] = found.in_force
+    assert in_force.startswith(side)
+    assert in_force in found.to_csv().splitlines()[0]
+    assert found.to_junit().count(f'value="{in_force}"') == 2
+    assert not rp.catalogue(tests, among="1", classes=False, jobs=1).in_force

@@ -32,9 +32,12 @@ from roadproof.api.studied import Studied, drawn
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.hands import Jobs
+from roadproof.preventing.restriction import restriction_of, said_in, unrestricted
 from roadproof.report import catalogue as report
 from roadproof.report.catalogue_drives import Drawn, draw_tests
 from roadproof.searching.question import Objective
+from roadproof.spec.bind import values_with
+from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import number_in, numbers_of
 from roadproof.study import pool
 from roadproof.study.pool import Progress, Say
@@ -164,7 +167,7 @@ class Catalogued(Studied[Meanings, Kept]):
             "doubts": _remarks(found.doubts),
             "alike": _remarks(found.alike),
             "contradictions": _remarks(found.contradictions),
-            "notes": list(self.catalogue.notes),
+            "notes": list(self.notes),
             "seconds": round(self.seconds, 1),
         }
 
@@ -199,9 +202,40 @@ class Catalogued(Studied[Meanings, Kept]):
             "why": _why(answer),
         }
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """On files that are no tests, samples that contradict themselves, drives made with other values."""
+        doubted: dict[str, list[str]] = {}
+        made: dict[tuple[str, ...], list[str]] = {}
+        for x in self.concrete:
+            for note in x.notes:
+                doubted.setdefault(note, []).append(x.entry.id)
+            if x.made_with:
+                made.setdefault(x.made_with, []).append(x.entry.id)
+        others = (
+            f"made with {', '.join(those)}, and judged with what is asked for: {', '.join(tests)}"
+            for those, tests in made.items()
+        )
+        told = (f"{', '.join(tests)}: {note}" for note, tests in doubted.items())
+        return (*self.catalogue.notes, *told, *others)
+
+    @property
+    def in_force(self) -> tuple[str, ...]:
+        """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
+        basis = self.study.basis
+        home = basis.specification
+        driver = restriction_of(home.options)
+        said = [] if home.set_name == "base" else [f"set {home.set_name}"]
+        known = {} if driver is None else driver.options
+        readings = {k: v for k, v in home.options.items() if k not in known}
+        said += [f"{k} = {v}" for k, v in readings.items() if v != home.library.options[k].values[0]]
+        declared = values_with(home.library, {})
+        said += [f"{k} = {v} (SI)" for k, v in basis.values.items() if v != declared[k]]
+        return (*said, *(() if driver is None else (str(driver),)))
+
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Which test shows which scenario and gap, how many tests each class has; then all tests, small."""
-        yield "matrix", picture(report.draw_matrix(self.tests, self.tested))
+        yield "matrix", picture(report.draw_matrix(self.tests, self.tested, self.in_force))
         for k, page in enumerate(draw_tests(self._drawn()), 1):
             yield f"tests-{k}", picture(page)
 
@@ -237,14 +271,14 @@ class Catalogued(Studied[Meanings, Kept]):
 
     def to_csv(self) -> str:
         """A row a test, a column a scenario, class, gap: x shown or implied, o by some drives of the test."""
-        return report.as_csv(self.tests, self.tested)
+        return report.as_csv(self.tests, self.tested, self.in_force)
 
     def to_junit(self) -> str:
         """Tests that fail where they are not what they claim, and what is to be tested, as JUnit's XML."""
-        return report.as_junit(self.tests, self.tested)
+        return report.as_junit(self.tests, self.tested, self.in_force)
 
     def __str__(self) -> str:
-        told = report.as_text(len(self.tests), self.tested, self.catalogue.notes, self.figures)
+        told = report.as_text(len(self.tests), self.tested, self.notes, self.figures)
         return "\n".join([*report.range_lines(self.spans, self.study.basis.horizon), told])
 
     def complete(
@@ -355,13 +389,14 @@ def catalogue(
     and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     begun = time.monotonic()
-    wanted = restricted(using or load(), preventable, unpreventable, among)
+    plain = using or load()
+    wanted = restricted(plain, preventable, unpreventable, among)
     home = replace(wanted, sets=wanted.sets[:1])
     for name, choice in (("roles", roles), ("lanes", lanes), ("start", start)):
         one_of(name, choice, _Look)
     if not near >= 0:
         raise UsageError(f"near={near}: write a number, 0 or more")
-    tests = read_catalogue(paths, home.specification)
+    tests = _read(paths, unrestricted(plain.specification), home.specification)
     numbers = home.among(among) or numbers_of(home.specification)
     basis = basis_of(home, effort, timeout, vehicles)
     kinds = gap_kinds(basis, numbers) if gaps else None
@@ -382,6 +417,18 @@ def catalogue(
     reaches = tuple(_reaches(asked, answers)) if explore else ()
     study = Meanings(basis, abstract, asked, tuple(others), kinds, shown, reaches)
     return Catalogued.asked(study, out, jobs, progress, say, more=lambda: more, begun=begun)
+
+
+def _read(paths: Sequence[str | Path], plain: Specification, asked: Specification) -> Catalogue:
+    """The tests as the library says them, whatever the scenarios are that are ``asked`` about."""
+    tests = read_catalogue(paths, plain)
+    if plain is asked:
+        return tests
+    entries = tuple(
+        replace(x, query=said_in(x.query, plain, asked)) if isinstance(x, Abstract) else x
+        for x in tests.entries
+    )
+    return replace(tests, entries=entries)
 
 
 def _reaches(asked: Asked, concrete: Sequence[ConcreteAnswer]) -> Iterator[Reach]:

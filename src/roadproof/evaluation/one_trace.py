@@ -6,8 +6,9 @@ Where a file is one trace, it has for every time one row a vehicle, in equal ste
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence, Sized
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -17,16 +18,24 @@ from roadproof.evaluation.traces import KIND, by_vehicle, gather, refuse_missing
 from roadproof.formats import openscenario
 from roadproof.formats.pairs import row_of
 from roadproof.formats.recording import Bools, Integers, Recording, kind_called, own_numbers
-from roadproof.formats.samples import HEADER, LABEL, ROAD_ENDING, own_columns, read_columns
+from roadproof.formats.samples import (
+    DIRECTION,
+    HEADER,
+    LABEL,
+    ROAD_ENDING,
+    doubts_in,
+    own_columns,
+    read_columns,
+)
 from roadproof.formats.source import beside
 from roadproof.formats.sources import find_source
-from roadproof.formats.straight import whole
+from roadproof.formats.straight import of_road, whole
 from roadproof.formats.table import Table
 from roadproof.logic.formula import Formula
 from roadproof.logic.own import code_of, own_of
 from roadproof.logic.rewrite import signals_of, with_values
 from roadproof.monitoring.batch import Array, Batch
-from roadproof.signals import FIXED, RECORDED, SIGNALS, SIZES, Kind, SizeName
+from roadproof.signals import FIXED, RECORDED, SIGNALS, SIZES, Kind, SignalName, SizeName
 from roadproof.spec.bind import occupies
 from roadproof.spec.scenarios import roles
 from roadproof.world.drive import Drive, value_at
@@ -80,7 +89,23 @@ def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -
     if low > high or not low <= wanted[0] <= wanted[1] <= high:
         have = f"they share the frames {low} to {high}" if low <= high else "they share no frame"
         raise InputError(f"{text}, frames {wanted[0]} to {wanted[1]}: {have}")
-    return cut_trace(recording, text, dict(zip(roles(len(ids)), index, strict=True)), wanted)
+    made = cut_trace(recording, text, dict(zip(roles(len(ids)), index, strict=True)), wanted)
+    return replace(made, notes=(*made.notes, *_overlaps(made)))
+
+
+def _overlaps(trace: OneTrace) -> Iterator[str]:
+    """A line for each two vehicles whose boxes overlap with positive area, as evaluations have one."""
+    signals, sizes, count = trace.batch.signals, trace.batch.sizes, int(trace.batch.lengths[0])
+    axes: tuple[tuple[SignalName, SizeName], ...] = (("s", "length"), ("d", "width"))
+    for one, other in combinations(trace.lanes, 2):
+        depth = np.full(count, np.inf)
+        for place, size in axes:
+            first, second = signals[place, one][:count, 0], signals[place, other][:count, 0]
+            rear = np.maximum(first - sizes[size, one][0], second - sizes[size, other][0])
+            depth = np.minimum(depth, np.round(np.minimum(first, second) - rear, 6))
+        frames = int(np.count_nonzero(depth > 0))
+        if frames:
+            yield f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth.max():.2f} m"
 
 
 def _find(recording: Recording, number: int, text: str) -> int:
@@ -178,17 +203,21 @@ def refuse_unmeasured(trace: OneTrace, formula: Formula) -> None:
 def read_samples(path: Path, road: Road | None = None) -> OneTrace:
     """The trace of a file in which every vehicle is seen all the time: CSV, Parquet, OpenSCENARIO.
 
-    ``road``: by default that which the file names or that beside it, or else main-2. Raises ``InputError``
-    with file, row, column, value and rule.
+    ``road``: by default that which the file names or that beside it, or else main-2. ``notes`` of the
+    trace say in what the file contradicts itself. Raises ``InputError`` with file, row, column, value and
+    rule, also where it contradicts itself too much.
     """
     if path.suffix == ".xosc":
         table, named, _ = openscenario.read_columns(path)
-        return of_columns(_lists(table), road or named, str(path))
-    table = read_columns(path)
+        road = road or named
+    else:
+        table = read_columns(path)
     if road is None:
         known = beside(path, ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
-    return of_columns(_lists(table), road, str(path))
+    made = of_columns(_lists(table), road, str(path))
+    doubts = doubts_in(table, of_road(road, DIRECTION, path))
+    return replace(made, notes=(*doubts, *_overlaps(made)))
 
 
 def _is_column(values: object, rows: int) -> bool:

@@ -108,6 +108,17 @@ def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str
     return with_notes(told, _check_plausible(table, recording))
 
 
+def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
+    """Notes on what samples contradict themselves in, as a recording of them has.
+
+    Raises ``InputError`` where that is too much.
+    """
+    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
+    table, ids = by_vehicle(columns, number_vehicles(names)[0][index])
+    recording = vehicles_of(table, ids, _read_clock(table, ids), road, columns.path.stem)
+    return tuple(_check_plausible(table, recording))
+
+
 def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad, name: str) -> Recording:
     """The recording of rows by vehicle, whose numbers are ``ids``, without notes. Raises ``InputError``."""
     first = np.flatnonzero(np.diff(ids, prepend=-1) != 0)

@@ -5,13 +5,17 @@ options are told with every answer: so evidence is about the question that was a
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
 from roadproof.errors import InputError, UsageError
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.parse import parse_library
-from roadproof.logic.syntax import Definition
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.rewrite import without_names
+from roadproof.logic.syntax import Claim, Definition
 from roadproof.preventing.models import (
     BEGINS,
     DRIVEN_BY,
@@ -21,7 +25,9 @@ from roadproof.preventing.models import (
     SCENARIOS,
     courses_of,
 )
+from roadproof.spec.elaborate import elaborate
 from roadproof.spec.library import Library, Source, Specification, bundled_library, on_request
+from roadproof.spec.query import Query
 from roadproof.spec.scenarios import initial_condition_name
 
 Side: TypeAlias = Literal["preventable", "unpreventable"]
@@ -103,6 +109,58 @@ def left_open(specification: Specification) -> Specification | None:
     found = {x.name: x for x in parse_library(_OPEN, PREVENTION) if isinstance(x, Definition)}
     definitions = {**specification.definitions, **found}
     return Specification(specification.library, specification.set_name, specification.options, definitions)
+
+
+def unrestricted(specification: Specification) -> Specification:
+    """The same definitions, but scenarios begin as the library says."""
+    options = specification.options
+    if restriction_of(options) is None:
+        return specification
+    return specification.library.select(specification.set_name, {**options, BEGINS: "drives"})
+
+
+def said_in(query: Query, home: Specification, there: Specification) -> Query:
+    """``query``, read in ``home``, so that its text says the same in ``there``.
+
+    Definitions that say something else there are written out. Raises ``InputError`` where that cannot be.
+    """
+    mine, others = home.definitions, there.definitions
+    changed = {name for name in mine if others.get(name) != mine[name]}
+    called = {
+        (x.name, x.arguments)
+        for x in subformulas(query.formula)
+        if isinstance(x, f.Named)
+        and any(isinstance(y, f.Named) and y.name.partition("@")[0] in changed for y in subformulas(x))
+    }
+    if not called:
+        return query
+
+    def written_out(part: Formula) -> Formula:
+        return part.body if isinstance(part, f.Named) and (part.name, part.arguments) in called else part
+
+    formula = f.transform(query.formula, written_out)
+    again = elaborate(there, Claim(query.claim.given, as_syntax(formula)))
+    if _bare(again.formula) != _bare(query.formula):
+        raise InputError(
+            f"{query.text[:60]}: a driver model changes what its names mean, and it cannot be written out "
+            "without them; write the formula without names of scenarios"
+        )
+    return replace(again, vehicles=query.vehicles, lanes=query.lanes)
+
+
+def _bare(formula: Formula) -> Formula:
+    """Without names, and without parts that are always true, as a text that is read has none."""
+
+    def change(part: Formula) -> Formula:
+        match part:
+            case f.And(parts):
+                return f.conjunction(*parts)
+            case f.Or(parts):
+                return f.disjunction(*parts)
+            case _:
+                return part
+
+    return f.transform(without_names(formula), change)
 
 
 def check_drives(options: Mapping[str, str]) -> None:

@@ -111,11 +111,14 @@ def _summary(found: Tested) -> str:
     return ", ".join(wrong) or "complete"
 
 
-def as_csv(tests: Sequence[str], found: Tested) -> str:
-    """A row a test, a column a scenario, class or gap: ``x`` shown or implied, ``o`` by some drives of it."""
+def as_csv(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> str:
+    """A row a test, a column a scenario, class or gap: ``x`` shown or implied, ``o`` by some drives of it.
+
+    ``in_force``: what was asked otherwise than by default, which the first cell says.
+    """
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["test", *(x.name for x in found.all_targets)])
+    writer.writerow(["; ".join(["test", *in_force]), *(x.name for x in found.all_targets)])
     for test in tests:
         writer.writerow([test, *(_mark(test, x) for x in found.all_targets)])
     return out.getvalue()
@@ -125,29 +128,36 @@ def _mark(test: str, target: Target) -> str:
     return "x" if test in target.tested else "o" if test in target.possible else ""
 
 
-def as_junit(tests: Sequence[str], found: Tested) -> str:
-    """A suite of the tests, which fail where they are not what they claim, and one of all targets."""
+def as_junit(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> str:
+    """A suite of the tests, which fail where they are not what they claim, and one of all targets.
+
+    ``in_force``: what was asked otherwise than by default, a property of each suite.
+    """
     suites = xml.Element("testsuites", name="roadproof catalogue")
     wrong = {x.tests[0]: x.told for x in (*found.doubts, *found.faults, *found.contradictions)}
-    _suite(suites, "tests", {test: wrong.get(test, "") for test in tests})
+    _suite(suites, "tests", {test: wrong.get(test, "") for test in tests}, in_force)
     targets = (*found.targets, *(found.gaps.targets if found.gaps.asked else ()))
     missing = {x.name: f"no test shows {x.words}" for x in found.missing}
     in_doubt = {name: f"in doubt: {reason}" for name, reason in found.gaps.open.items()}
-    _suite(suites, "tested", {x.name: (missing | in_doubt).get(x.name, "") for x in targets})
+    _suite(suites, "tested", {x.name: (missing | in_doubt).get(x.name, "") for x in targets}, in_force)
     xml.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + xml.tostring(suites, "unicode") + "\n"
 
 
-def _suite(suites: xml.Element, name: str, cases: dict[str, str]) -> None:
+def _suite(suites: xml.Element, name: str, cases: dict[str, str], in_force: Sequence[str]) -> None:
     failures = sum(bool(told) for told in cases.values())
     suite = xml.SubElement(suites, "testsuite", name=name, tests=str(len(cases)), failures=str(failures))
+    if in_force:
+        properties = xml.SubElement(suite, "properties")
+        for told in in_force:
+            xml.SubElement(properties, "property", name="asked with", value=told)
     for case, told in cases.items():
         element = xml.SubElement(suite, "testcase", classname=name, name=case)
         if told:
             xml.SubElement(element, "failure", message=told)
 
 
-def draw_matrix(tests: Sequence[str], found: Tested) -> dict[str, bytes]:
+def draw_matrix(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> dict[str, bytes]:
     """Tests over scenarios and gaps, how many tests each class has, and each class of gaps, if that is asked:
     ``{"png": …, "svg": …}``.
     """
@@ -183,10 +193,8 @@ def draw_matrix(tests: Sequence[str], found: Tested) -> dict[str, bytes]:
     above.set_axisbelow(True)
     above.set_ylim(len(tests) - 0.5, -0.5)
     above.set_xlim(-0.6, len(columns) - 0.4)
-    above.set_title(
-        "scenarios, gaps and tests; red: not tested, not what it claims; light: by some drives of it only",
-        fontsize=8,
-    )
+    title = "scenarios, gaps and tests; red: not tested, not what it claims; light: by some drives of it only"
+    above.set_title("\n".join([title, *in_force]), fontsize=8)
     for below, (title, those) in zip(axes[1:], bars.items(), strict=True):
         _draw_bars(below, title, those)
     return as_bytes(figure)

@@ -14,6 +14,7 @@ from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
 from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.evidence.judged import judge_file
 from roadproof.formats.recording import Recording
 from roadproof.formats.sources import find_source
 from roadproof.judge.algebraic import approximate
@@ -62,7 +63,9 @@ class ConcreteAnswer:
     """What a test shows. ``begins``: how it begins, numbers by name; ``claims``: with those of its file.
 
     ``dense``: whether it was judged in dense time; ``others``: parameters that its file gives other values
-    than are asked for. ``fault``: why it could not be read. ``why``: why it shows none.
+    than are asked for. ``notes``: in what its samples contradict themselves. ``made_with``: parameters,
+    readings and spec set of its file that are not those asked for; ``rejected``: why the judge rejects its
+    file, with the file's own values. ``fault``: why it could not be read. ``why``: why it shows none.
     """
 
     entry: Concrete
@@ -71,6 +74,9 @@ class ConcreteAnswer:
     begins: Mapping[str, float] = field(default_factory=dict)
     dense: bool = False
     others: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    made_with: tuple[str, ...] = ()
+    rejected: str = ""
     fault: str = ""
     why: Why | None = None
 
@@ -104,7 +110,28 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
         roles = tuple(_choices(asked, tuple(file.drive.vehicles), freedom.roles))
         lanes = _lanes(file, freedom.lanes)
         why = why_none(Course(DriveSignals(file.drive), file.road, file.horizon, roles, lanes), asked)
-    return ConcreteAnswer(entry, claims, shown, begins_of(file), True, others, why=why)
+    ruling = judge_file(file, asked.specification.library)
+    return ConcreteAnswer(
+        entry,
+        claims,
+        shown,
+        begins_of(file),
+        True,
+        others,
+        notes=() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",),
+        made_with=tuple(_made_with(file, asked)),
+        rejected=ruling.reason if ruling.readable else "",
+        why=why,
+    )
+
+
+def _made_with(file: DriveFile, asked: Asked) -> Iterator[str]:
+    """What the file was made with, and is not asked with."""
+    home = asked.specification
+    if file.set_name != home.set_name:
+        yield f"set {file.set_name}"
+    yield from (f"{k} = {v}" for k, v in file.options.items() if home.options.get(k, v) != v)
+    yield from (f"{k} = {v} (SI)" for k, v in file.values.items() if asked.values.get(k) != v)
 
 
 def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
@@ -183,8 +210,10 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
     begins: dict[str, float] = {}
     endangered_in: dict[Shown, OneTrace] = {}
     first: OneTrace | None = None
+    notes: dict[str, None] = {}
     for trace, told in _traces(entry, freedom):
         first = first or trace
+        notes |= dict.fromkeys(trace.notes)
         names = tuple(trace.lanes)
         free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
         for roles, vehicles in _choices(asked, names, free):
@@ -203,7 +232,8 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
         for gap in _gap_in_samples(trace, asked, danger)
     ]
     why = None if first is None or _has_scenario(shown.values()) else _why(first, asked, freedom)
-    return ConcreteAnswer(entry, entry.claims, (*_sorted(shown.values()), *gaps), begins, why=why)
+    found = (*_sorted(shown.values()), *gaps)
+    return ConcreteAnswer(entry, entry.claims, found, begins, notes=tuple(notes), why=why)
 
 
 def _has_scenario(shown: Iterable[Shown]) -> bool:

@@ -109,7 +109,7 @@ def tested(
     return Tested(
         tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
         gaps,
-        (*_unreadable(concrete), *claimed),
+        (*_unreadable(concrete), *_rejected(concrete), *claimed),
         (*_doubts(abstract, facts), *_open_gaps(gaps)),
         (*_same(concrete, near), *_implied(abstract, facts)),
         (*_contradictions(concrete, facts), *_shown_though_empty(gaps)),
@@ -200,6 +200,13 @@ def _target(
 
 def _unreadable(concrete: Sequence[ConcreteAnswer]) -> Iterator[Remark]:
     yield from (Remark((x.entry.id,), f"cannot be read: {x.fault}") for x in concrete if x.fault)
+
+
+def _rejected(concrete: Sequence[ConcreteAnswer]) -> Iterator[Remark]:
+    """Drive files that are not what they say, judged with their own values."""
+    for x in concrete:
+        if x.rejected:
+            yield Remark((x.entry.id,), f"its file is rejected: {x.rejected}")
 
 
 def _of_concrete(concrete: Sequence[ConcreteAnswer], known: Collection[str], gaps: bool) -> Iterator[Remark]:

@@ -137,4 +137,9 @@ READER = Reader(
     read_index=_read_index,
     record=("name", "facts", "gaps"),
     read_record=_read_record,
+    unchecked=(
+        *("seconds", "tests", "targets", "not_tested", "faults", "doubts", "alike", "contradictions"),
+        *("notes", "figures", "ranges", "facts[].reason", "facts[].also"),
+        *(f"gaps.{x}" for x in ("asked", "classes_in_all", "targets", "empty", "open")),
+    ),
 )

@@ -30,6 +30,12 @@ def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     told = f"{_counted(len(tests), 'test')}; {lacking} of {len(asked)} situations are tested by none."
     some = any(x.get("possible") for x in targets)
     head = ("", "what", "in words", "tests that show it", *("some of whose drives do",) * some)
+    driver = data.get("prevention")
+    if isinstance(driver, Mapping):
+        begin = f"{driver.get('side')} for the driver model {driver.get('driver')}"
+        begun = ", ".join(map(str, driver.get("scenarios") or ())) or "no scenario"
+        told += f" Asked of what begins {begin}: scenarios {begun}."
+        told += " Formulas of tests mean what the library says."
     parts: list[Content] = [tag("p", told), table(head, [row[: len(head)] for row in rows])]
     names = [str(x.get("name")) for x in targets]
     columns = [tag("th", tag("span", name), scope="col", class_="turned") for name in names]
