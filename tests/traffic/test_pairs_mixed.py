@@ -87,6 +87,8 @@ def test_pairs_in_sight_are_those_of_a_brute_force(seed: int) -> None:
         tracks.append(Track(2, int(rng.integers(0, 6)), rows, float(rng.uniform(3, 16))))
     r = make_recording(tracks)
     sight = Sight(*rng.uniform([0.1, 0.1, 1], [4, 2, 60]).tolist())
+    if seed % 2:  # the time to collision decides alone
+        sight = Sight(sight.ttc * 5, 0.01, 0.5)
     pairs, lanes = pairs_in_sight(r, common_pairs(r, np.ones(r.vehicles, bool)), sight)
     found = zip(pairs.first.tolist(), pairs.second.tolist(), lanes.tolist(), strict=True)
     assert {(a, b): mask for a, b, mask in found} == in_sight(r, sight)
