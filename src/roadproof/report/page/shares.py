@@ -15,14 +15,17 @@ from roadproof.report.page.results import Result
 def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """Classes that exclude each other: the share of each, a drive for each, and what is proved of them."""
     entries = result.data.get("classes", ())
-    total = sum(x.get("situations") or 0 for x in entries)
+    totals: Counter[int] = Counter()  # situations by how many vehicles they have
+    for x in entries:
+        totals[len(x.get("vehicles", ()))] += x.get("situations") or 0
+    counted_at_all = totals.total() > 0
     rows = []
     for x in entries:
-        count = x.get("situations")
+        count, total = x.get("situations"), totals[len(x.get("vehicles", ()))]
         share = (
             "" if count is None or not total else bar(count / total, f"{count}, {100 * count / total:.1f} %")
         )
-        shares = (x.get("traces"), share) if total else ()
+        shares = (x.get("traces"), share) if counted_at_all else ()
         rows.append((verdict(x.get("verdict")), tag("b", x["name"]), x.get("description"), *shares))
     counted = Counter((str(x.get("kind")), str(x.get("verdict"))) for x in result.data.get("claims", ()))
     told = joined([joined([f"{kind}: {n} ", verdict(word)]) for (kind, word), n in counted.items()], "; ")
@@ -32,10 +35,11 @@ def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     for x in entries:
         inside = (tag("p", tag("code", x.get("formula"))), *behind(x, result, book))
         drives.append(folded((verdict(x.get("verdict")), " ", tag("b", x["name"])), *inside))
-    head = ("verdict", "class", "what happens", *(("traces", "share of situations") if total else ()))
+    head = ("verdict", "class", "what happens", *_SHARES[: 2 * counted_at_all])
     return joined([tag("p", told), table(head, rows), file, *drives])
 
 
+_SHARES = ("traces", "share of situations with as many vehicles")
 _FACTS = {
     "recordings": "recordings",
     "vehicles": "vehicles",
