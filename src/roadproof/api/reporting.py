@@ -7,7 +7,7 @@ from pathlib import Path
 from roadproof.api.checking import Checked, Solver, check
 from roadproof.api.settings import one_of
 from roadproof.errors import RoadproofError, UsageError
-from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.finding import Acceptance, Finding, summary
 from roadproof.evidence.heading import version
 from roadproof.files import whole_file
 from roadproof.report.page.book import Book
@@ -34,7 +34,8 @@ class Page:
     @property
     def exit_code(self) -> ExitCode:
         """That of the evidence: a page shows what is not accepted, and says so."""
-        return ExitCode.AS_EXPECTED if self.checked is None else self.checked.exit_code
+        findings = () if self.checked is None else self.checked.findings
+        return max((x.outcome.exit_code for x in findings), default=ExitCode.AS_EXPECTED)
 
     def __repr__(self) -> str:
         return f"<Page: {self.path}>"
@@ -86,13 +87,19 @@ def page(
     if alone and checked is not None:
         sections.append(evidence_section(alone, book, solver))
     said = title or f"roadproof: {', '.join(x.name or str(x) for x in paths)[:120]}"
-    made = f"Made by roadproof {version('roadproof')}; {solver} and the exact judge checked the evidence."
-    text = page_of(
-        said, sections, book.documents, made if checked else f"Made by roadproof {version('roadproof')}."
-    )
+    text = page_of(said, sections, book.documents, _made(checked))
     with whole_file(target) as file:
         file.write(text.encode("utf-8"))
     return Page(target, text, len(book.documents), len(given.results) + bool(alone), checked)
+
+
+def _made(checked: Checked | None) -> str:
+    """Which version made a page, how much evidence was accepted, and what nothing was compared with."""
+    made = f"Made by roadproof {version('roadproof')}"
+    if checked is None:
+        return f"{made}."
+    left = (f"not checked in {folder}: {', '.join(x)}" for folder, x in checked.not_checked.items())
+    return "; ".join([made, summary(checked.findings, checked.solver), *left]) + "."
 
 
 def _by_file(checked: Checked | None) -> dict[Path, Finding]:
