@@ -18,6 +18,7 @@ from roadproof.evidence.answers.read import (
     said_of,
     stands_alone,
     unchecked_fields,
+    unchecked_of_record,
 )
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.checking import without_place
@@ -41,7 +42,8 @@ class Told:
 
     ``specs`` are the specification files beside them; ``problems`` are found before any file is checked;
     ``unchecked`` is said of every entry; ``alone``: files that none names stand for themselves. ``others``
-    are files that are no evidence, such as tables and pictures.
+    are files that are no evidence, such as tables and pictures; ``kept_unchecked``: fields of kept answers
+    without an index that nothing is compared with.
     """
 
     folder: Path
@@ -54,12 +56,15 @@ class Told:
     unchecked: tuple[str, ...] = ()
     alone: bool = False
     others: list[str] = field(default_factory=list)
+    kept_unchecked: tuple[str, ...] = ()
 
     @property
     def not_checked(self) -> tuple[str, ...]:
         """The fields of the index, and the files beside it, that nothing is compared with."""
         has_drives = any(x.shows in ("drive", "counterexample") for x in self.entries)
-        fields = () if self.index is None else unchecked_fields(self.index, has_drives)
+        fields = self.kept_unchecked
+        if self.index is not None:
+            fields = unchecked_fields(self.index, has_drives)
         return (*fields, *sorted(self.others))
 
 
@@ -144,6 +149,8 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> To
     except RoadproofError as error:
         told.problems.append(_unreadable(home / INDEX, error))
         told.index = None
+    if journal is not None and told.index is None:
+        told.kept_unchecked = unchecked_of_record(journal.head)
     if journal is not None and told.library is not None:
         _add_journal(told, journal, told.library, find_label)
     return told

@@ -47,4 +47,7 @@ READER = Reader(
     record=("name", "outcome", "asked"),
     read_record=_read,
     alone=True,
+    unchecked=tuple(
+        f"outcome.{x}" for x in ("reason", "road", "natural", "core", "minimal", "seconds", "sizes")
+    ),
 )

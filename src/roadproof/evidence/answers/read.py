@@ -74,6 +74,11 @@ def unchecked_fields(data: Fields, has_drives: bool) -> tuple[str, ...]:
     return tuple(x for x in every if any(path == x or path.startswith((f"{x}.", f"{x}[")) for path in there))
 
 
+def unchecked_of_record(head: Fields) -> tuple[str, ...]:
+    """The fields of kept answers that nothing is compared with, where there is no index beside them."""
+    return _keeping(head.text("of"), head.where).unchecked
+
+
 def leaves_of(content: object, path: str = "") -> Iterator[tuple[str, object]]:
     """Every value of plain data that holds no others, with its path; entries of lists have one path."""
     match content:
