@@ -63,6 +63,7 @@ MAPS = {
     *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered"),
     "open",
     *("fixed", "at"),
+    *("not_checked", "sets"),
 }
 Place = tuple[str | int, ...]
 Run = Callable[..., Any]

@@ -361,13 +361,14 @@ EXPLORE = {
             "scenario": None,
             "set": "base",
             "formula": FILE.formula,
-            "vary": [{"name": "minSafe"}],
+            "vary": [{"name": "minSafe", "unit": "s", "low": "3/5", "high": "1"}],
             "values": [finding("3/5"), finding("1", verdict="IMPOSSIBLE", file="certificate")],
             "boundaries": [
                 {"held": finding("3/5"), "missed": finding("1", verdict="UNKNOWN", file="reason")}
             ],
             "extremes": [
                 {"sense": "greatest", "measure": "v_lon(SV)", "when": "", "point": ["1/2"]}
+                | {"unit": "m/s"}
                 | {"best": {**finding("20"), "formula": f"{FILE.formula} and v_lon(SV) >= 20 m/s"}}
                 | {"missed": None, "surely": None}
             ],
@@ -386,7 +387,7 @@ def test_values_with_and_without_a_drive() -> None:
     short = {**EXPLORE, "explored": [{**one, "values": [finding()]}]}
     with pytest.raises(InputError, match="0 values of 1"):
         entries(short)
-    with pytest.raises(InputError, match="minSafe"):
+    with pytest.raises(InputError, match="'x' is no rational"):
         entries({**EXPLORE, "explored": [{**one, "values": [finding("x")]}]})
 
 
@@ -418,7 +419,7 @@ def test_limits_of_vehicles_are_in_the_formula_of_each_value() -> None:
         value: {**finding(value), "formula": f"{FILE.formula} and G a_lon(POV) >= {value} m/s^2"}
         for value in ("-6", "-1")
     }
-    vary = [{"name": "POV.a_lon.min"}]
+    vary = [{"name": "POV.a_lon.min", "unit": "m/s^2", "low": "-6", "high": "-1"}]
     right = {**one, "vary": vary, "values": [*limited.values()], "boundaries": [], "extremes": []}
     assert [x.fault for x in entries({**EXPLORE, "explored": [right]})] == ["", ""]
     swapped = [{**limited["-6"], "at": ["-1"]}, {**limited["-1"], "at": ["-6"]}]

@@ -84,7 +84,8 @@ def test_no_field_is_changed_in_silence(kind: str, tmp_path: Path) -> None:
         place[at[-1]] = another(place[at[-1]])
         write(folder / "index.json", changed)
         tried += 1
-        if all(x.outcome is Acceptance.ACCEPTED for x in check(folder)):
+        now_said = survey([folder], (), find_label).told[0].not_checked
+        if path not in now_said and all(x.outcome is Acceptance.ACCEPTED for x in check(folder)):
             accepted.append(path)
     assert tried > 10
     assert [x for x in accepted if (kind, x) not in EQUIVALENT] == []

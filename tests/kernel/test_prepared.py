@@ -9,7 +9,7 @@ from roadproof.deriving import prepare as module
 from roadproof.deriving.parts import NoDerivationError
 from roadproof.deriving.prepare import prepare
 from roadproof.errors import InputError, RoadproofError
-from roadproof.kernel.accept import Prepared, Ruling, Word
+from roadproof.kernel.accept import NO_PREMISES, Prepared, Ruling, Word
 from roadproof.spec.library import bundled_library
 
 FILE = kept()["scenario-04-base"]
@@ -18,12 +18,12 @@ FILE = kept()["scenario-04-base"]
 def test_a_drive_with_a_derivation_is_a_module_without_premises() -> None:
     made = prepare("one", FILE, bundled_library())
     assert made.module is not None
-    assert (made.module.name, made.assumed, made.refusal) == ("one", 0, None)
+    assert (made.module.name, made.premises, made.refusal) == ("one", NO_PREMISES, None)
 
 
 def test_a_formula_that_cannot_be_read_is_refused() -> None:
     made = prepare("one", replace(FILE, formula="nobody_knows(SV)"), bundled_library())
-    assert (made.module, made.assumed) == (None, 0)
+    assert (made.module, made.premises) == (None, NO_PREMISES)
     assert made.refusal is not None
     assert made.refusal.word is Word.REFUSED
     assert made.refusal.reason.startswith("it cannot be put to Coq: ")
@@ -43,4 +43,4 @@ def test_a_drive_without_a_derivation_is_unknown(
         raise error
 
     monkeypatch.setattr(module, "derive", fail)
-    assert prepare("one", FILE, bundled_library()) == Prepared(None, 0, Ruling(Word.UNKNOWN, reason))
+    assert prepare("one", FILE, bundled_library()) == Prepared(None, refusal=Ruling(Word.UNKNOWN, reason))

@@ -48,8 +48,10 @@ def test_does_not_prove_the_negation_of_what_is_valid(claim):
 
 
 @pytest.mark.parametrize("claim", NEEDS_INFINITELY_MANY_SWITCHES)
-def test_claims_nothing_where_no_finite_trace_decides(claim):
-    assert settle(claim, units=1).verdict is Verdict.UNKNOWN
+def test_refutes_by_a_trace_that_repeats_where_no_finite_one_decides(claim):
+    result = settle(claim, units=1)
+    assert result.verdict is Verdict.REFUTED
+    assert result.countermodel.loop is not None
 
 
 @pytest.mark.parametrize("claim", BEYOND)

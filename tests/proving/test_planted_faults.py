@@ -171,6 +171,8 @@ def verdict_or_crash(claim: str) -> Verdict | str:
 @pytest.mark.parametrize("fault", FINDER_FAULTS, ids=lambda fault: fault.__name__)
 def test_a_fault_in_the_finder_proves_nothing_false(fault, monkeypatch):
     assert set(TEMPTING) <= set(INVALID)
+    # Traces that repeat would refute some claims in spite of the fault.
+    monkeypatch.setattr(prover, "find_lasso", lambda *_: None)
     fault(monkeypatch)
     verdicts = [verdict_or_crash(claim) for claim in TEMPTING]
     assert not PROVED & set(verdicts)

@@ -129,7 +129,7 @@ DAMAGES: dict[str, tuple[Callable[[Files], None], str]] = {
     "infinite": (change(TRACKS, 7, "xVelocity", "-inf"), r"row 8, column xVelocity=.*inf.*finite"),
     "overflow": (change(TRACKS, 7, "x", "1e999"), r"row 8, column x=.*finite"),
     "half a frame": (change(TRACKS, 7, "frame", "4.5"), r"row 8, column frame='4.5': a whole number"),
-    "quote": (change(TRACKS, 3, "x", '"297.4'), "row 4, column x="),
+    "quote": (change(TRACKS, 3, "x", '"297.4'), "row 4: a quote does not end in its cell"),
     "negative size": (change(META, 2, "height", "-2.00"), r"row 3, column height=-2.0: the size"),
     "negative size in tracks": (change(TRACKS, 5, "width", "-4.00"), r"row 6, column width=-4.0: the size"),
     "another size": (

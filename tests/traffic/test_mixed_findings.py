@@ -39,7 +39,9 @@ def random_findings(rng: random.Random, name: str) -> Findings:
                 begun = rng.randrange(50) if any(x in LABELS[:2] for x in labels) else None
                 told = labels if any(labels) else ()
                 matches.append(Match(sv, *named, "2", 0, 50, k, set_name, scenario, begun=begun, labels=told))
-    return Findings(name, 9, 900, 3, 1, 100, 2, 1, tuple(traces), tuple(matches), (), (), ("main",))
+    return Findings(
+        name, 9, 900, ((1, 2), (1, 3), (2, 3)), 1, 100, 2, 1, tuple(traces), tuple(matches), (), (), ("main",)
+    )
 
 
 @pytest.mark.parametrize("seed", range(6))

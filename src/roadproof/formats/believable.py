@@ -17,6 +17,7 @@ from roadproof.formats.plausible import (
 )
 from roadproof.formats.recording import ZONES, Bools, Floats, Integers, Lane, Recording, beside_by_order
 from roadproof.formats.straight import Placed, StraightRoad, place
+from roadproof.signals import STARTING
 
 LARGEST_RATE = 1000
 LARGEST_PLACE = 1_000_000.0
@@ -79,18 +80,17 @@ class Believing:
 def _check_cells(head: Path, recording: Recording) -> None:
     """No cell says what no vehicle does, and none is of a lane or zone that is not there."""
     turned = 1.0 if recording.slack is None else _TURNED
-    limits = {
-        "s": LARGEST_PLACE if recording.slack is None else np.inf,
-        "d": LARGEST_PLACE if recording.slack is None else np.inf,
-        "v_lon": LARGEST_SPEED * turned,
-        "v_lat": LARGEST_SPEED * turned,
-        "a_lon": LARGEST_ACCELERATION * turned,
-        "a_lat": LARGEST_ACCELERATION if recording.slack is None else np.inf,
-    }
-    for name, most in limits.items():
-        values: Floats = getattr(recording, name)
+    straight = recording.slack is None
+    place = LARGEST_PLACE if straight else np.inf
+    limits: dict[str, float] = dict(
+        zip(STARTING, (place, place, LARGEST_SPEED * turned, LARGEST_SPEED * turned), strict=True)
+    )
+    limits["a_lon"] = LARGEST_ACCELERATION * turned
+    limits["a_lat"] = LARGEST_ACCELERATION if straight else np.inf
+    for column, most in limits.items():
+        values: Floats = getattr(recording, column)
         fine = np.isfinite(values) & (np.abs(values) <= most)
-        _require(head, recording, fine, name, f"must be finite and lie between {-most:g} and {most:g}")
+        _require(head, recording, fine, column, f"must be finite and lie between {-most:g} and {most:g}")
     for name in ("length", "width"):
         size: Floats = getattr(recording, name)
         if not (np.isfinite(size) & (size > 0) & (size <= LARGEST_SIZE)).all():

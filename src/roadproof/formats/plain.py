@@ -13,8 +13,8 @@ def plain_text(path: Path, content: bytes) -> bytes:
     """
     if b"\n" not in content:
         content = content.replace(b"\r", b"\n")
-    if b'"' not in content:
-        return content
+    if b'"' not in content or content.lstrip()[:1] in (b"<", b"{", b"["):
+        return content  # no table: who reads it says what it is
     lines = []
     for number, line in enumerate(content.decode("latin-1").split("\n")[:-1], start=1):
         try:

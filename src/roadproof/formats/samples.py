@@ -41,6 +41,7 @@ DIRECTION = 1
 """The only driving direction of such a file."""
 LARGEST_PLACE = 1_000_000.0
 LARGEST_RATE = 1000
+_UNEVEN = 0.01  # by so much a step may differ from a whole number of samples a second
 _ROUNDING = 0.00101
 """s: two times with three decimals are this far from what they stand for, together."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
@@ -111,11 +112,18 @@ def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str
 def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
     """Notes on what samples contradict themselves in, as a recording of them has.
 
-    Raises ``InputError`` where that is too much.
+    Samples that are not a whole number a second have one note: that nothing was compared. Raises
+    ``InputError`` where the contradictions are too large or too many.
     """
     names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
     table, ids = by_vehicle(columns, number_vehicles(names)[0][index])
-    recording = vehicles_of(table, ids, _read_clock(table, ids), road, columns.path.stem)
+    clock = _read_clock(table, ids)
+    if abs(clock.rate * clock.step - 1) > _UNEVEN:
+        return (
+            f"samples are {clock.step:g} s apart, not a whole number a second: places, speeds and "
+            "accelerations were not compared with each other",
+        )
+    recording = vehicles_of(table, ids, clock, road, columns.path.stem)
     return tuple(_check_plausible(table, recording))
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from roadproof.logic.own import code_of
 from roadproof.monitoring.batch import Batch
+from roadproof.signals import STARTING
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -129,8 +130,8 @@ def _samples(menu: Menu, durations: Shares, rows: Shares, times: Shares) -> dict
     across.append(np.zeros(len(rows)))
     s, v_lon, a_lon = _course(_floats(menu.places, rows[:, 1]), begun, along, durations, times)
     d, v_lat, a_lat = _course(_floats(menu.sides, rows[:, 2]), np.zeros(len(rows)), across, durations, times)
-    named = {"s": s, "v_lon": v_lon, "a_lon": a_lon, "d": d, "v_lat": v_lat, "a_lat": a_lat}
-    return named | {"j_lon": np.zeros_like(s)}
+    named = dict(zip(STARTING, (s, d, v_lon, v_lat), strict=True))
+    return named | {"a_lon": a_lon, "a_lat": a_lat, "j_lon": np.zeros_like(s)}
 
 
 def _course(

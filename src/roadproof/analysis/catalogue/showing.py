@@ -23,8 +23,9 @@ from roadproof.judge.signals import DriveSignals
 from roadproof.judge.truth import START, Cut, TruthSet
 from roadproof.logic import formula as f
 from roadproof.monitoring.compiled import compile
-from roadproof.preventing.restriction import restriction_of
+from roadproof.preventing.restriction import restriction_of, unrestricted
 from roadproof.signals import SignalName
+from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of, number_in
 
 MOST_VEHICLES = 8
@@ -110,7 +111,7 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
         roles = tuple(_choices(asked, tuple(file.drive.vehicles), freedom.roles))
         lanes = _lanes(file, freedom.lanes)
         why = why_none(Course(DriveSignals(file.drive), file.road, file.horizon, roles, lanes), asked)
-    ruling = judge_file(file, asked.specification.library)
+    ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
     return ConcreteAnswer(
         entry,
         claims,
@@ -123,6 +124,13 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
         rejected=ruling.reason if ruling.readable else "",
         why=why,
     )
+
+
+def _as_written(file: DriveFile, specification: Specification) -> DriveFile:
+    """The file with scenarios that begin as the library says, where a driver model is asked about."""
+    options = unrestricted(specification).options
+    changed = {name: x for name, x in options.items() if specification.options[name] != x}
+    return replace(file, options={**changed, **file.options})
 
 
 def _made_with(file: DriveFile, asked: Asked) -> Iterator[str]:

@@ -12,12 +12,10 @@ from roadproof.errors import InputError
 from roadproof.evidence import answers
 from roadproof.evidence.answers.entry import Entry
 from roadproof.evidence.answers.reader import Background, FindLabel, Reader, without_labels
-from roadproof.evidence.heading import HEADING, library_of
+from roadproof.evidence.heading import HEADING, library_of, version
 from roadproof.evidence.strict import Fields
 from roadproof.preventing import restriction
 from roadproof.spec.library import Library
-
-_HEADING_UNCHECKED = ("roadproof",)
 
 
 @cache
@@ -68,7 +66,9 @@ def unchecked_fields(data: Fields, has_drives: bool) -> tuple[str, ...]:
     ``has_drives``: whether there are drives among its evidence.
     """
     there = {path for path, _ in leaves_of(data.content)}
-    every = (*_HEADING_UNCHECKED, *readers()[data.text("schema")].unchecked)
+    every = readers()[data.text("schema")].unchecked
+    if data.content.get("roadproof") != version("roadproof"):
+        every = ("roadproof", *every)  # made by another version, whichever it is
     if not has_drives:
         every = (*every, "parameters")  # proofs are about all values
     return tuple(x for x in every if any(path == x or path.startswith((f"{x}.", f"{x}[")) for path in there))
