@@ -29,6 +29,7 @@ READERS_OF_NODES = {
     *("proving/grounding.py", "evidence/derivation.py", "evidence/state.py", "evidence/refutation.py"),
     *("logic/formula.py", "logic/fragment.py", "logic/motion.py", "logic/restore.py"),
     *("deriving/derive.py", "kernel/printer.py"),
+    *("analysis/catalogue/nearest.py", "evidence/periodic.py"),
 }
 
 

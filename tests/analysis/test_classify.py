@@ -174,12 +174,13 @@ def test_the_command_writes_what_is_checked_again(written: Path, capsys: pytest.
     said = capsys.readouterr().out.splitlines()
     assert said[0] == f"read with {written / 'classes.spec'}"
     assert said[-1] == "8 of 8 accepted by z3 and the exact judge"
-    assert said[-4:-1] == [
+    assert said[-2].startswith(f"not checked in {written}: seconds, shares, classes[].happens, ")
+    assert said[-5:-2] == [
         "  4: deceleration ahead, lane keep",
         "  8: deceleration ahead, lane change",
         "  4, 8: main road",
     ]
-    assert [line.split()[0] for line in said[1:-4]] == ["WITNESSED"] * 3 + ["PROVED"] * 5
+    assert [line.split()[0] for line in said[1:-5]] == ["WITNESSED"] * 3 + ["PROVED"] * 5
 
 
 def test_the_text_is_read_by_the_other_commands(written: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,5 +1,7 @@
 """Faults planted in the finder never lead to a wrong answer; faults in refuting are caught."""
 
+from dataclasses import replace
+
 import pytest
 
 from proving.claims import (
@@ -27,7 +29,7 @@ from roadproof.world.road import Lanelet, Road
 UNITS = 0.4
 true_smt, true_inside, true_shrink = Window.smt, Window.inside, InstanceSearch._shrink
 true_unfold, true_atom, true_name = Grounding._unfold, Grounding.atom, Grounding._name_time
-true_spread, true_holds_part = refutation._spread, refutation._holds
+true_after, true_holds_part = refutation._after, refutation._holds
 
 
 def phi_at_the_end(monkeypatch):
@@ -241,7 +243,9 @@ def wrong_side_held(monkeypatch):
     """What lies between instants is the state of the other side than is said."""
     turned = {"before": "after", "after": "before"}
     monkeypatch.setattr(
-        refutation, "_spread", lambda times, values, held: true_spread(times, values, turned[held])
+        refutation,
+        "_after",
+        lambda part, truths, trace: true_after(part, truths, replace(trace, held=turned[trace.held])),
     )
 
 
