@@ -1,65 +1,62 @@
 """What a catalogue of tests shows, what it misses, and drives for what is missing."""
 
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Literal, TypeAlias
+from typing import Any, ClassVar
 
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.completing import Known, complete
 from roadproof.analysis.catalogue.courses import Courses, courses_of, of_drive
+from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_formula
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
-from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, Figure, figures, figures_beside, kind_of
-from roadproof.analysis.catalogue.gaps import PREFIX, gap_kinds
+from roadproof.analysis.catalogue.examination import Examination, examine
+from roadproof.analysis.catalogue.figures import SCENARIOS, Figure, figures, figures_beside, kind_of
 from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
-from roadproof.analysis.catalogue.ranges import Reach, Span, reaches_of, spans_of
-from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
+from roadproof.analysis.catalogue.ranges import Span, spans_of
+from roadproof.analysis.catalogue.request import NEAR, Look, Request
+from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, all_shown_by, decisions_on
 from roadproof.analysis.catalogue.tested import Remark, Target, Tested, all_facts, targets_of, tested
-from roadproof.analysis.classify.classes import Classes, plan_of
-from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.claims import Covered
 from roadproof.api.answer import Picture, Row, picture
 from roadproof.api.completing import Completed, write_completions
 from roadproof.api.definitions import Among, Definitions, load
-from roadproof.api.restricting import restricted
+from roadproof.api.restricting import drivers_of, restricted
 from roadproof.api.settings import Vehicles, basis_of, one_of
 from roadproof.api.studied import Studied, drawn
-from roadproof.errors import RoadproofError, UsageError
+from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.hands import Jobs
-from roadproof.preventing.restriction import restriction_of, said_in, unrestricted
+from roadproof.preventing.models import MODELS
+from roadproof.preventing.restriction import restriction_of
 from roadproof.report import catalogue as report
+from roadproof.report import catalogue_drivers as decisions
 from roadproof.report.catalogue_drives import Drawn, draw_tests
 from roadproof.searching.question import Objective
 from roadproof.spec.bind import values_with
-from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import number_in, numbers_of
-from roadproof.study import pool
 from roadproof.study.pool import Progress, Say
 from roadproof.verdict import ExitCode, Verdict
-
-_Look: TypeAlias = Literal["fixed", "any"]
-NEAR = 0.5
-BATCH = 20
 
 
 @dataclass(frozen=True, repr=False)
 class Catalogued(Studied[Meanings, Kept]):
-    """What tests show and mean. ``near``: how far apart tests that say the same may begin (m, m/s).
+    """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
 
-    ``beside``: what concrete tests show in further spec sets, in the order of ``study.beside``.
-    """
-
-    concrete: tuple[ConcreteAnswer, ...] = ()
-    catalogue: Catalogue = field(default_factory=lambda: Catalogue(()))
-    near: float = NEAR
-    beside: tuple[tuple[ConcreteAnswer, ...], ...] = ()
+    examination: Examination = field(kw_only=True)
     pieces: ClassVar[str] = "questions about abstract tests"
+
+    @property
+    def concrete(self) -> tuple[ConcreteAnswer, ...]:
+        """What concrete tests show, in order."""
+        return self.examination.concrete
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """The tests."""
+        return self.examination.tests
 
     @cached_property
     def tested(self) -> Tested:
@@ -67,7 +64,15 @@ class Catalogued(Studied[Meanings, Kept]):
         facts = all_facts(self.found.answers)
         words = targets_of(self.study.asked)
         gaps = None if self.study.gaps is None else self.gap_answers
-        return tested(self.study.asked, self.concrete, self.study.entries, facts, words, self.near, gaps)
+        return tested(
+            self.study.asked,
+            self.concrete,
+            self.study.entries,
+            facts,
+            words,
+            self.examination.request.near,
+            gaps,
+        )
 
     @cached_property
     def gap_answers(self) -> dict[str, ClassAnswer | None]:
@@ -82,7 +87,7 @@ class Catalogued(Studied[Meanings, Kept]):
         """How much is tested: by spec set, kind and road sector."""
         facts, set_name = all_facts(self.found.answers), self.study.basis.specification.set_name
         found = figures(set_name, self.tested.targets, self.tested.gaps)
-        pairs = zip(self.study.beside, self.beside, strict=True)
+        pairs = zip(self.study.beside, self.examination.beside, strict=True)
         return (*found, *(x for asked, answers in pairs for x in figures_beside(asked, answers, facts)))
 
     @cached_property
@@ -92,6 +97,32 @@ class Catalogued(Studied[Meanings, Kept]):
             return ()
         covered = {x.name: x.covered for x in self.tested.targets}
         return tuple(spans_of(covered, all_facts(self.found.answers)))
+
+    @cached_property
+    def decisions(self) -> tuple[tuple[str, Decision], ...]:
+        """What becomes of each test, by id, under each driver model, in the order of tests."""
+        drivers = self.examination.drivers
+        concrete = {x.entry.id: x.decisions for x in self.concrete}
+        if drivers is None:
+            return ()
+        found: list[tuple[str, Decision]] = []
+        for entry in self.catalogue.entries:
+            made: Iterable[Decision] = concrete.get(entry.id, ())
+            if isinstance(entry, Abstract):
+                made = decide_formula([*self._of_drives(entry, drivers)])
+            found += [(entry.id, x) for x in made]
+        return tuple(found)
+
+    def _of_drives(self, entry: Abstract, drivers: Drivers) -> Iterator[Decision]:
+        """What becomes of the drives of an abstract test that were found, each once."""
+        facts = [x for x in all_facts(self.found.answers) if x.test == entry.id and x.drive is not None]
+        seen = set()
+        for fact in facts:
+            assert fact.drive is not None
+            file = fact.drive.file
+            if repr(file.drive) not in seen:
+                seen.add(repr(file.drive))
+                yield from decisions_on(file, all_shown_by(file, self.study.asked, Freedom()), drivers)
 
     @property
     def tests(self) -> tuple[str, ...]:
@@ -156,11 +187,13 @@ class Catalogued(Studied[Meanings, Kept]):
         return {
             **self.study.question.heading,
             "view": "dense",
+            "request": self.examination.request.as_data(),
             "tests": [self._test(x) for x in self.catalogue.entries],
             "targets": [_target(x) for x in found.targets],
             "gaps": self._gaps(records),
             "not_tested": list(self.missing),
             "figures": [vars(x) for x in self.figures],
+            "decisions": [_decision(test, x) for test, x in self.decisions],
             "ranges": [_range(x) for x in self.spans],
             "facts": [fact for record in records.values() for fact in record["facts"]],
             "faults": _remarks(found.faults),
@@ -193,6 +226,7 @@ class Catalogued(Studied[Meanings, Kept]):
         shown = [{**vars(x), "vehicles": list(x.vehicles)} for x in answer.shown]
         return data | {
             "file": entry.place,
+            "sha256": answer.sha256,
             "copy_of": entry.copy_of,
             "claims": list(answer.claims),
             "dense": answer.dense,
@@ -265,6 +299,7 @@ class Catalogued(Studied[Meanings, Kept]):
         written = {
             "matrix.csv": self.to_csv().encode(),
             "figures.csv": report.figures_csv(self.figures).encode(),
+            "drivers.csv": decisions.as_csv(self.decisions).encode(),
             "junit.xml": self.to_junit().encode(),
         }
         return written | drawn(self.pictures() if pictures else {})
@@ -279,7 +314,8 @@ class Catalogued(Studied[Meanings, Kept]):
 
     def __str__(self) -> str:
         told = report.as_text(len(self.tests), self.tested, self.notes, self.figures)
-        return "\n".join([*report.range_lines(self.spans, self.study.basis.horizon), told])
+        ranges = report.range_lines(self.spans, self.study.basis.horizon)
+        return "\n".join([*ranges, *decisions.as_lines(self.decisions), told])
 
     def complete(
         self,
@@ -320,6 +356,15 @@ class Catalogued(Studied[Meanings, Kept]):
         tests = {x.name: len({*x.tested} - copies) for x in self.tested.targets}
         gaps = {name: x for name, x in self.gap_answers.items() if x is not None and x.gaps}
         return Known(begins, tests, gaps)
+
+
+def _decision(test: str, decision: Decision) -> dict[str, Any]:
+    return {
+        "test": test,
+        **vars(decision),
+        "vehicles": list(decision.vehicles),
+        "start": dict(decision.start),
+    }
 
 
 def _range(span: Span) -> dict[str, Any]:
@@ -363,12 +408,13 @@ def catalogue(
     classes: bool = True,
     gaps: bool = False,
     explore: bool = False,
-    roles: _Look = "fixed",
-    lanes: _Look = "fixed",
-    start: _Look = "fixed",
+    roles: Look = "fixed",
+    lanes: Look = "fixed",
+    start: Look = "fixed",
     near: float = NEAR,
     preventable: str | None = None,
     unpreventable: str | None = None,
+    drivers: Iterable[str] | None = None,
     vehicles: Vehicles = None,
     effort: float = 60.0,
     timeout: float | None = None,
@@ -385,79 +431,21 @@ def catalogue(
     how far drives of each class that is tested can go, and which part of that nobody tests. ``roles``,
     ``lanes``, ``start``: whether those are looked at that a test fixes, or "any". ``near``: how far apart
     tests that say the same may begin, in m and m/s. ``preventable``, ``unpreventable``: as for ``witness``;
-    gaps are then a question for ``coverage``. ``out``: a folder for evidence on abstract tests, gaps
+    gaps are then a question for ``coverage``. ``drivers``: the driver models that are asked what becomes of
+    the scenarios that tests show, all where None. ``out``: a folder for evidence on abstract tests, gaps
     and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     begun = time.monotonic()
     plain = using or load()
     wanted = restricted(plain, preventable, unpreventable, among)
-    home = replace(wanted, sets=wanted.sets[:1])
-    for name, choice in (("roles", roles), ("lanes", lanes), ("start", start)):
-        one_of(name, choice, _Look)
-    if not near >= 0:
-        raise UsageError(f"near={near}: write a number, 0 or more")
-    tests = _read(paths, unrestricted(plain.specification), home.specification)
-    numbers = home.among(among) or numbers_of(home.specification)
-    basis = basis_of(home, effort, timeout, vehicles)
-    kinds = gap_kinds(basis, numbers) if gaps else None
-
-    def ask(set_name: str) -> Asked:
-        here = replace(basis, specification=home.specification.in_set(set_name), sets=())
-        made = _divided(here, numbers, jobs, progress) if classes else None
-        return Asked(here.specification, numbers, made, home.all_values())
-
-    asked, *others = (ask(name) for name in wanted.sets)
-    abstract = tuple(x for x in tests.entries if isinstance(x, Abstract))
-    concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
-    freedom = Freedom(roles == "any", lanes == "any", start == "any")
-    answers = _shown(concrete, asked, freedom, jobs, progress)
-    beside = tuple(_shown(concrete, other, freedom, jobs, progress) for other in others)
-    more = {"concrete": answers, "catalogue": tests, "near": near, "beside": beside}
-    shown = frozenset(x for answer in answers for x in answer.names if x.startswith(PREFIX))
-    reaches = tuple(_reaches(asked, answers)) if explore else ()
-    study = Meanings(basis, abstract, asked, tuple(others), kinds, shown, reaches)
-    return Catalogued.asked(study, out, jobs, progress, say, more=lambda: more, begun=begun)
-
-
-def _read(paths: Sequence[str | Path], plain: Specification, asked: Specification) -> Catalogue:
-    """The tests as the library says them, whatever the scenarios are that are ``asked`` about."""
-    tests = read_catalogue(paths, plain)
-    if plain is asked:
-        return tests
-    entries = tuple(
-        replace(x, query=said_in(x.query, plain, asked)) if isinstance(x, Abstract) else x
-        for x in tests.entries
+    models = tuple(MODELS if drivers is None else drivers)
+    request = Request(
+        tuple(map(str, paths)), wanted.sets, classes, gaps, explore, roles, lanes, start, float(near), models
     )
-    return replace(tests, entries=entries)
-
-
-def _reaches(asked: Asked, concrete: Sequence[ConcreteAnswer]) -> Iterator[Reach]:
-    """How far drives can go of the classes that concrete tests show; of scenarios, where there are none."""
-    found = tested(asked, concrete, (), (), targets_of(asked), 0.0, None).targets
-    kind = SCENARIOS if asked.classes is None else CLASSES
-    return reaches_of(asked, {x.name: x.covered for x in found if kind_of(x.name) == kind}, concrete)
-
-
-def _divided(basis: Basis, numbers: tuple[int, ...], jobs: Jobs, progress: Progress | None) -> Classes | None:
-    """The classes of scenarios. Raises ``UsageError`` where it is in doubt which there are."""
-    try:
-        plan = plan_of(basis.specification, numbers)
-    except RoadproofError as error:
-        raise UsageError(f"{error}; or ask for scenarios without classes: --no-classes") from None
-    division = divide(basis, plan, jobs, progress, in_few_words=False)
-    if division.cut_off:
-        told = "; ".join(x.reason for x in division.doubts)
-        raise UsageError(f"which classes there are is in doubt ({told}): give more time, or --no-classes")
-    return division.classes
-
-
-def _shown(
-    entries: Sequence[Concrete], asked: Asked, freedom: Freedom, jobs: Jobs, progress: Progress | None
-) -> tuple[ConcreteAnswer, ...]:
-    batches = [entries[k : k + BATCH] for k in range(0, len(entries), BATCH)]
-    done = pool.work(partial(_batch, asked, freedom), batches, jobs, None, progress, "batches of tests")
-    return tuple(answer for answers in pool.in_order(done) for answer in answers)
-
-
-def _batch(asked: Asked, freedom: Freedom, entries: Sequence[Concrete]) -> list[ConcreteAnswer]:
-    return [show(entry, asked, freedom) for entry in entries]
+    basis = basis_of(replace(wanted, sets=wanted.sets[:1]), effort, timeout, vehicles)
+    numbers = wanted.among(among) or numbers_of(wanted.specification)
+    asked = drivers_of(wanted, models)
+    made = examine(request, basis, numbers, plain.specification, asked, jobs, progress)
+    return Catalogued.asked(
+        made.study, out, jobs, progress, say, more=lambda: {"examination": made}, begun=begun
+    )

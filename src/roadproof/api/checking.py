@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from roadproof.api import kernel as kernels
 from roadproof.api.answer import Row
+from roadproof.api.judging_again import compare
 from roadproof.api.settings import one_of, work_of
 from roadproof.effort import Effort
 from roadproof.evidence.checking import Checker
@@ -161,10 +162,15 @@ def check(
     answers = pool.in_order(pool.work(judge, work, jobs, _doubt, progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)
-    left = {str(told.folder): told.not_checked for told in surveyed.told if told.not_checked}
-    return Checked(
-        tuple(conclude(surveyed, found)), kernel or solver, library, beside, answered, left, strict
-    )
+    findings = [*conclude(surveyed, found)]
+    left: dict[str, tuple[str, ...]] = {}
+    for told in surveyed.told:
+        again = compare(told, jobs, progress)
+        findings += () if again is None else again.findings
+        files = () if again is None else again.files
+        if unchecked := tuple(x for x in told.not_checked if x not in files):
+            left[str(told.folder)] = unchecked
+    return Checked(tuple(findings), kernel or solver, library, beside, answered, left, strict)
 
 
 def write_sources(

@@ -3,13 +3,16 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from roadproof.analysis.catalogue.decisions import Drivers
 from roadproof.api.definitions import Among, Definitions, What
 from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
-from roadproof.preventing.models import check_courses, check_driver
+from roadproof.preventing.models import DRIVERS, check_courses, check_driver, require
 from roadproof.preventing.restriction import About, Restriction, check_library, files_for
+from roadproof.spec.bind import values_with
 from roadproof.spec.diagnose import checked_library
+from roadproof.spec.library import on_request
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import number_in, numbers_of
 
@@ -44,6 +47,23 @@ def restricted(
     if about == "scenarios":
         check_courses(wanted.model, [*dict.fromkeys(_asked(found, among, what))], said)
     return found
+
+
+def drivers_of(home: Definitions, names: tuple[str, ...]) -> Drivers | None:
+    """Driver models to be asked, in definitions on top of which ``driver.spec`` is read; None for no names.
+
+    Raises ``InputError``, ``UsageError``.
+    """
+    if not names:
+        return None
+    library = home.library
+    path = on_request()[DRIVERS]
+    if all(x.name != str(path) for x in library.files):
+        library = checked_library([path, *library.files])
+    specification = library.select(home.sets[0], home.specification.options)
+    values = values_with(library, home.values)
+    require(specification, values)
+    return Drivers(specification, values, names)
 
 
 def _restriction(preventable: str | None, unpreventable: str | None, about: About) -> Restriction:

@@ -98,6 +98,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="with --complete: write the drives as openscenario, commonroad, highd, csv or opendrive too",
     )
     add_prevention_options(parser)
+    parser.add_argument(
+        "--drivers",
+        metavar="MODELS",
+        help="driver models that are asked what becomes of tests: careful,r157, or none (default: all)",
+    )
     add_models_option(parser)
     add_effort_options(parser, 60.0, "a drive")
     add_working_options(parser)
@@ -126,6 +131,7 @@ def run(args: argparse.Namespace) -> int:
         lanes=args.lanes,
         start=args.start,
         near=args.near,
+        drivers=_drivers(args.drivers),
         **restricting(args),
         **asking(args, evidence_folder(args.out, args.json)),
     )
@@ -143,3 +149,13 @@ def run(args: argparse.Namespace) -> int:
         if args.json != "-":
             print(completed)
     return code
+
+
+def _drivers(text: str | None) -> list[str] | None:
+    """The driver models; None for all. Raises ``UsageError``."""
+    if text is None or text == "none":
+        return None if text is None else []
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise UsageError(f"--drivers {text}: write names separated by commas, such as careful,r157, or none")
+    return names

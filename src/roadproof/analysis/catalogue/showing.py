@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.analysis.catalogue.asked import Asked, Endangered, Key
+from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
+from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
 from roadproof.errors import InputError
@@ -67,6 +69,8 @@ class ConcreteAnswer:
     than are asked for. ``notes``: in what its samples contradict themselves. ``made_with``: parameters,
     readings and spec set of its file that are not those asked for; ``rejected``: why the judge rejects its
     file, with the file's own values. ``fault``: why it could not be read. ``why``: why it shows none.
+    ``sha256``: the digest of its files when it was judged (``digest_of``). ``decisions``: what becomes of its
+    scenarios under driver models.
     """
 
     entry: Concrete
@@ -80,6 +84,8 @@ class ConcreteAnswer:
     rejected: str = ""
     fault: str = ""
     why: Why | None = None
+    sha256: str = ""
+    decisions: tuple[Decision, ...] = ()
 
     @property
     def names(self) -> frozenset[str]:
@@ -87,20 +93,28 @@ class ConcreteAnswer:
         return frozenset(x.what for x in self.shown)
 
 
-def show(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswer:
-    """Look at one test. A test that cannot be read is answered with a fault."""
+def show(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers | None = None) -> ConcreteAnswer:
+    """Look at one test. A test that cannot be read is answered with a fault.
+
+    ``drivers``: the models that are asked what becomes of the scenarios that it shows.
+    """
+    digest = digest_of(entry.place)
     try:
         if entry.place.endswith(".json") and not is_pair(entry.place):
-            return _of_drive(entry, load_drive(Path(entry.place)), asked, freedom)
-        return _of_traces(entry, asked, freedom)
+            found = _of_drive(entry, load_drive(Path(entry.place)), asked, freedom, drivers)
+        else:
+            found = _of_traces(entry, asked, freedom, drivers)
     except InputError as error:
-        return ConcreteAnswer(entry, entry.claims, fault=str(error))
+        found = ConcreteAnswer(entry, entry.claims, fault=str(error))
+    return replace(found, sha256=digest)
 
 
 # --- drives --------------------------------------------------------------------------------------
 
 
-def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) -> ConcreteAnswer:
+def _of_drive(
+    entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom, drivers: Drivers | None
+) -> ConcreteAnswer:
     claims = entry.claims
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
@@ -123,6 +137,17 @@ def _of_drive(entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom) 
         made_with=tuple(_made_with(file, asked)),
         rejected=ruling.reason if ruling.readable else "",
         why=why,
+        decisions=() if drivers is None else decisions_on(file, shown, drivers),
+    )
+
+
+def decisions_on(file: DriveFile, shown: Iterable[Shown], drivers: Drivers) -> tuple[Decision, ...]:
+    """What becomes of each scenario that a drive shows, whichever lane it is for."""
+    first: dict[tuple[str, tuple[str, ...]], Shown] = {}
+    for x in shown:
+        first.setdefault((x.what, x.vehicles), x)
+    return tuple(
+        decision for x in first.values() for decision in decide_drive(file, drivers, x.what, x.vehicles, x.at)
     )
 
 
@@ -213,7 +238,8 @@ def _what(asked: Asked, roles: tuple[str, ...], true: frozenset[Key]) -> Iterato
 # --- samples -------------------------------------------------------------------------------------
 
 
-def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswer:
+def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers | None) -> ConcreteAnswer:
+    decisions: dict[tuple[str, tuple[str, ...]], tuple[Decision, ...]] = {}
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
     begins: dict[str, float] = {}
     endangered_in: dict[Shown, OneTrace] = {}
@@ -229,6 +255,9 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
                 for what, at in _monitored(trace, asked, roles, vehicles, lane):
                     called = tuple(told.get(name, name) for name in vehicles)
                     shown.setdefault((what, called, lane), Shown(what, called, lane, at))
+                    if drivers is not None and (what, called) not in decisions:
+                        made = decide_trace(trace, drivers, what, vehicles, at, called)
+                        decisions[what, called] = tuple(made)
         dangers = [x for x in shown.values() if x.what == ENDANGERED]
         if dangers and tuple(trace.lanes) == PAIR:
             endangered_in.setdefault(min(dangers, key=lambda x: x.at), trace)
@@ -241,7 +270,8 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom) -> ConcreteAnswe
     ]
     why = None if first is None or _has_scenario(shown.values()) else _why(first, asked, freedom)
     found = (*_sorted(shown.values()), *gaps)
-    return ConcreteAnswer(entry, entry.claims, found, begins, notes=tuple(notes), why=why)
+    decided = tuple(x for made in decisions.values() for x in made)
+    return ConcreteAnswer(entry, entry.claims, found, begins, notes=tuple(notes), why=why, decisions=decided)
 
 
 def _has_scenario(shown: Iterable[Shown]) -> bool:

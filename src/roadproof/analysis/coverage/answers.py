@@ -71,7 +71,7 @@ def record_of(group: GapGroup, answers: Answers, shelf: Shelf) -> dict[str, Any]
 
 def _class_data(answer: ClassAnswer, stem: str, shelf: Shelf) -> dict[str, Any]:
     return {
-        **_names(answer.part),
+        **names_of(answer.part),
         "verdict": str(answer.verdict),
         "gaps": [_gap_data(gap, f"gap-{stem}-{n}", shelf) for n, gap in enumerate(answer.gaps, 1)],
         "claim": "" if answer.claim is None else answer.claim.text,
@@ -81,7 +81,8 @@ def _class_data(answer: ClassAnswer, stem: str, shelf: Shelf) -> dict[str, Any]:
     }
 
 
-def _names(part: Part | None) -> dict[str, Any]:
+def names_of(part: Part | None) -> dict[str, Any]:
+    """What a class is called: the scenario, component and condition to blame."""
     return {
         "scenario": None if part is None else part.scenario,
         "component": "" if part is None else part.component,
@@ -110,7 +111,7 @@ def answers_in(
 ) -> Answers:
     """The inverse of ``record_of``, with every drive judged again. Raises ``InputError``."""
     classes: Sequence[Mapping[str, Any]] = record["classes"]
-    if [{name: x[name] for name in _names(None)} for x in classes] != [_names(x) for x in group.parts]:
+    if [{name: x[name] for name in names_of(None)} for x in classes] != [names_of(x) for x in group.parts]:
         raise InputError(f"the classes that are kept of {group.title} are not its own")
     found = zip(group.parts, classes, strict=True)
     return tuple(_read_class(part, said, specification, shelf) for part, said in found)

@@ -1,7 +1,7 @@
 """The index and the kept answers of ``roadproof catalogue``: what abstract tests imply, exclude and show.
 
 What concrete tests show is told there too, but the tests themselves are the evidence, and are not in the
-folder: the question has to be asked again to know it.
+folder: ``api.judging_again`` judges them again, and derives all other fields.
 """
 
 from collections.abc import Iterator, Sequence
@@ -71,9 +71,7 @@ def _bounds(line: Fields, common: Common, conclusion: Formula) -> bool:
 
 
 def _unchecked(relation: str) -> tuple[str, ...]:
-    if relation == "reaches":
-        return ("that the premise is the formula of a class", "that no drive goes farther")
-    return ("that the premise is the formula of the test",)
+    return ("that no drive goes farther",) if relation == "reaches" else ()
 
 
 def _fault(line: Fields, common: Common, relation: str, other: str, claim: str) -> str:
@@ -131,15 +129,22 @@ READER = Reader(
     schema=SCHEMA,
     said=("set", "options", "parameters", "scenarios", "specs"),
     index=(
-        *("view", "seconds", "facts", "tests", "targets", "not_tested", "faults", "doubts", "alike"),
-        *("contradictions", "notes", "gaps", "figures", "ranges"),
+        *(
+            "view",
+            "request",
+            "seconds",
+            "facts",
+            "tests",
+            "targets",
+            "not_tested",
+            "faults",
+            "doubts",
+            "alike",
+        ),
+        *("contradictions", "notes", "gaps", "figures", "decisions", "ranges"),
     ),
     read_index=_read_index,
     record=("name", "facts", "gaps"),
     read_record=_read_record,
-    unchecked=(
-        *("seconds", "tests", "targets", "not_tested", "faults", "doubts", "alike", "contradictions"),
-        *("notes", "figures", "ranges", "facts[].reason", "facts[].also"),
-        *(f"gaps.{x}" for x in ("asked", "classes_in_all", "targets", "empty", "open")),
-    ),
+    unchecked=("seconds", "facts[].reason"),
 )

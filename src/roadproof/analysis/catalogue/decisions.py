@@ -1,0 +1,259 @@
+"""Whether a driver who does what a model says would have prevented what a test shows, and by how much.
+
+As in evaluations of recordings, models are asked about the state in which the manoeuvre of a scenario begins,
+at danger at the latest, and POV is supposed to go on as it moves there.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from roadproof.errors import InputError
+from roadproof.evaluation.courses import BEGINS
+from roadproof.evaluation.one_trace import OneTrace
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.judge.algebraic import approximate
+from roadproof.judge.exact import judge
+from roadproof.judge.truth import Cut, TruthSet
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import with_values
+from roadproof.monitoring.compiled import compile
+from roadproof.preventing.margins import State, controller_hits, controller_margin, margin
+from roadproof.preventing.models import MODELS, course_in, foreseen, unpreventable
+from roadproof.signals import SIGNALS
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import Specification
+from roadproof.spec.scenarios import danger, endangered, number_in
+from roadproof.world.motion import state_at
+
+Side: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
+DANGER = "danger"
+_JUST_AFTER = Fraction(1, 1000)  # s after an instant that is not one of the manoeuvre itself
+_PLACES = 6  # decimals of a state
+_LEAST = (("Vy", 0.1, "moves across", "m/s"), ("Gx", 0.5, "brakes", "m/s^2"))
+"""Below these values a manoeuvre has hardly begun."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What becomes of a scenario under a model.
+
+    ``at``: when the manoeuvre begins (s), None where it never does before danger. ``metres``, ``seconds``:
+    how far the gap, and the time that the model takes to respond, are from the nearest value with the other
+    answer; None where there is none within 200 m and 10 s (controllers: 64 m, and no time). ``start``: the
+    state, as the sheets of UN R157 name it (SI).
+    """
+
+    scenario: str
+    vehicles: tuple[str, ...]
+    driver: str
+    side: Side
+    at: float | None = None
+    metres: float | None = None
+    seconds: float | None = None
+    start: Mapping[str, float] = field(default_factory=dict)
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Drivers:
+    """The driver ``models`` that are asked, in definitions that have them; ``values``: parameters (SI)."""
+
+    specification: Specification
+    values: Mapping[str, Fraction]
+    models: tuple[str, ...]
+    _read: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
+
+    def of(self, manoeuvre: str) -> tuple[str, ...]:
+        """The models that speak of a manoeuvre."""
+        return tuple(x for x in self.models if manoeuvre in MODELS[x].manoeuvres)
+
+    def formula(self, text: str) -> Formula:
+        """A formula as text, with parameters left as they are."""
+        if text not in self._read:
+            self._read[text] = read_claim(self.specification, text).formula
+        return self._read[text]
+
+    def asked(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, Formula]:
+        """What is asked of a drive: that the manoeuvre begins, that danger is there, and of each model."""
+        first, last = endangered(vehicles)
+        found = {
+            BEGINS: self.formula(foreseen(manoeuvre, vehicles)),
+            DANGER: danger(self.specification, first, last).formula,
+        }
+        found |= {x: self.boundary(manoeuvre, x, vehicles) for x in self._with_formula(manoeuvre)}
+        return {key: with_values(x, self.values) for key, x in found.items()}
+
+    def boundary(self, manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> Formula:
+        """That a collision is unpreventable for a model, with parameters left as they are."""
+        return self.formula(unpreventable(manoeuvre, model, vehicles))
+
+    def _with_formula(self, manoeuvre: str) -> Iterator[str]:
+        return (x for x in self.of(manoeuvre) if not MODELS[x].is_stepped)
+
+
+def course_of(scenario: str) -> str | None:
+    """The manoeuvre of a scenario by name; None for classes, and for scenarios that no model speaks of."""
+    number = number_in(scenario)
+    return None if number is None else course_in(number)
+
+
+# --- drives --------------------------------------------------------------------------------------
+
+
+def decide_drive(
+    file: DriveFile, drivers: Drivers, scenario: str, vehicles: tuple[str, ...], since: float
+) -> Iterator[Decision]:
+    """A decision for each model that speaks of the scenario, which holds from ``since`` (s) on."""
+    manoeuvre = course_of(scenario)
+    if manoeuvre is None or not drivers.of(manoeuvre):
+        return
+    asked = drivers.asked(manoeuvre, vehicles)
+    judgement = judge(f.And(tuple(asked.values())), file.drive)
+    truths = {key: judgement.truth(x) for key, x in asked.items()}
+    start = Cut(Fraction(since), False)
+    begins, threat = (_first(truths[key], start) for key in (BEGINS, DANGER))
+    if begins is None or (threat is not None and threat < begins):
+        yield from _not_foreseen(drivers, manoeuvre, scenario, vehicles)
+        return
+    time = Fraction(approximate(begins.point)) + (_JUST_AFTER if begins.after else 0)
+    states = {name: state_at(motion, time) for name, motion in file.drive.vehicles.items()}
+    state = State(
+        {(x, name): Fraction(getattr(at, x)) for name, at in states.items() for x in SIGNALS},
+        {(x, n): getattr(m, x) for n, m in file.drive.vehicles.items() for x in ("length", "width")},
+    )
+    hit = {x: bisect_right(truths[x].cuts, begins) % 2 == 1 for x in asked if x in MODELS}
+    yield from _decided(drivers, manoeuvre, scenario, vehicles, approximate(begins.point), state, hit)
+
+
+def _first(truth: TruthSet, start: Cut) -> Cut | None:
+    """The first cut from ``start`` on from which something is true."""
+    place = bisect_right(truth.cuts, start)
+    if place % 2:
+        return start
+    return truth.cuts[place] if place < len(truth.cuts) else None
+
+
+# --- samples -------------------------------------------------------------------------------------
+
+
+def decide_trace(
+    trace: OneTrace,
+    drivers: Drivers,
+    scenario: str,
+    vehicles: tuple[str, ...],
+    since: float,
+    called: tuple[str, ...],
+) -> Iterator[Decision]:
+    """As ``decide_drive``, of samples; ``called``: what the test calls the vehicles."""
+    manoeuvre = course_of(scenario)
+    if manoeuvre is None or not drivers.of(manoeuvre):
+        return
+    batch = trace.batch
+    answers = compile(drivers.asked(manoeuvre, vehicles)).evaluate(batch, "truncated", at="all").answers
+    true = {key: answer.true[:, 0] for key, answer in answers.items()}
+    first = round(since / float(batch.dt))
+    for k in range(first, int(batch.lengths[0])):
+        if true[BEGINS][k]:
+            state = State(
+                {
+                    (x, name): _rounded(batch.signals[x, name][k, 0])
+                    for name in vehicles
+                    for x in SIGNALS
+                    if (x, name) in batch.signals
+                },
+                {(x, n): _rounded(batch.sizes[x, n][0]) for n in vehicles for x in ("length", "width")},
+            )
+            hit = {x: bool(true[x][k]) for x in true if x in MODELS}
+            at = float(k * batch.dt)
+            yield from _decided(drivers, manoeuvre, scenario, vehicles, at, state, hit, called)
+            return
+        if true[DANGER][k]:
+            break
+    yield from _not_foreseen(drivers, manoeuvre, scenario, called)
+
+
+# --- tests with a formula -------------------------------------------------------------------------
+
+
+def decide_formula(found: Sequence[Decision]) -> Iterator[Decision]:
+    """What becomes of a test with a formula, of some drives of which there are decisions.
+
+    Drives on both sides show that it is partly preventable; one side alone decides nothing of other drives.
+    """
+    groups: dict[tuple[str, str], list[Decision]] = {}
+    for x in found:
+        groups.setdefault((x.scenario, x.driver), []).append(x)
+    for those in groups.values():
+        sides = list(dict.fromkeys(x.side for x in those))
+        if {"preventable", "unpreventable"} <= {*sides}:
+            told = "some of its drives are preventable, others are not: drives were found of both"
+            yield replace(those[0], side="partly", metres=None, seconds=None, start={}, reason=told)
+        else:
+            count = (
+                "its drive that was found is"
+                if len(those) == 1
+                else f"its {len(those)} drives that were found are"
+            )
+            told = f"{count} {' or '.join(sides)}; nothing is known of its other drives"
+            yield replace(those[0], side="undecided", metres=None, seconds=None, start={}, reason=told)
+
+
+# --- both ----------------------------------------------------------------------------------------
+
+
+def _not_foreseen(
+    drivers: Drivers, manoeuvre: str, scenario: str, vehicles: tuple[str, ...]
+) -> Iterator[Decision]:
+    reason = f"no {manoeuvre} begins before danger does"
+    for model in drivers.of(manoeuvre):
+        yield Decision(scenario, vehicles, model, "not foreseen", reason=reason)
+
+
+def _decided(
+    drivers: Drivers,
+    manoeuvre: str,
+    scenario: str,
+    vehicles: tuple[str, ...],
+    at: float,
+    state: State,
+    hit: Mapping[str, bool],
+    called: tuple[str, ...] | None = None,
+) -> Iterator[Decision]:
+    """``hit``: whether each model with a formula collides; the state is rounded for margins only."""
+    near = State({k: _rounded(x) for k, x in state.signals.items()}, state.sizes)
+    begun = near.start(manoeuvre, vehicles)
+    when = round(at, _PLACES)
+    made = Decision(scenario, called or vehicles, "", "undecided", when, start=begun, reason=_slight(begun))
+    for model in drivers.of(manoeuvre):
+        if MODELS[model].is_stepped:
+            yield _of_controller(replace(made, driver=model), near, manoeuvre, vehicles)
+            continue
+        boundary = drivers.boundary(manoeuvre, model, vehicles)
+        found = margin(near, boundary, model, vehicles, drivers.values)
+        side: Side = "unpreventable" if hit[model] else "preventable"
+        yield replace(made, driver=model, side=side, metres=found.metres, seconds=found.seconds)
+
+
+def _slight(start: Mapping[str, float]) -> str:
+    """What is to be known where a manoeuvre has hardly begun: models suppose that POV goes on so."""
+    for name, least, told, unit in _LEAST:
+        if start.get(name, least) < least:
+            return f"POV {told} at {start[name]:.2g} {unit} when it begins, and is supposed to go on so"
+    return ""
+
+
+def _of_controller(made: Decision, state: State, manoeuvre: str, vehicles: tuple[str, ...]) -> Decision:
+    try:
+        hit = controller_hits(state, manoeuvre, vehicles)
+        metres = controller_margin(state, manoeuvre, vehicles, hit)
+    except InputError as error:
+        return replace(made, reason=str(error))
+    return replace(made, side="unpreventable" if hit else "preventable", metres=metres)
+
+
+def _rounded(value: float | Fraction) -> Fraction:
+    return Fraction(round(Fraction(value) * 10**_PLACES), 10**_PLACES)

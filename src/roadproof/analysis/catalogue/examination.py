@@ -1,0 +1,130 @@
+"""The tests of a request, read and judged: what concrete ones show, and what is to be asked of the others."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.decisions import Drivers
+from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
+from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, kind_of
+from roadproof.analysis.catalogue.gaps import PREFIX, gap_kinds
+from roadproof.analysis.catalogue.meaning import Meanings
+from roadproof.analysis.catalogue.ranges import Reach, reaches_of
+from roadproof.analysis.catalogue.reading import read_catalogue
+from roadproof.analysis.catalogue.request import Request
+from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
+from roadproof.analysis.catalogue.tested import targets_of, tested
+from roadproof.analysis.classify.classes import Classes, plan_of
+from roadproof.analysis.classify.divide import divide
+from roadproof.errors import RoadproofError, UsageError
+from roadproof.hands import Jobs
+from roadproof.preventing.restriction import said_in, unrestricted
+from roadproof.spec.library import Specification
+from roadproof.study import pool
+from roadproof.study.pool import Progress
+
+BATCH = 20
+
+
+@dataclass(frozen=True)
+class Examination:
+    """The tests of a ``request``; ``study`` asks what abstract ones mean.
+
+    ``concrete``: what concrete ones show; ``beside``: that in further spec sets, as ``study.beside``.
+    ``drivers``: the models that are asked what becomes of them.
+    """
+
+    request: Request
+    tests: Catalogue
+    study: Meanings
+    concrete: tuple[ConcreteAnswer, ...]
+    beside: tuple[tuple[ConcreteAnswer, ...], ...]
+    drivers: Drivers | None = None
+
+
+def examine(
+    request: Request,
+    basis: Basis,
+    numbers: tuple[int, ...],
+    plain: Specification,
+    drivers: Drivers | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+) -> Examination:
+    """Read the tests and judge the concrete ones, of the scenarios of these ``numbers``.
+
+    ``plain``: the definitions in which formulas of tests are read, whatever ``basis`` says of how scenarios
+    begin; ``drivers``: those that are asked. Raises ``InputError``, ``TextError``, ``UsageError``.
+    """
+    home = basis.specification
+    tests = _read(request.paths, unrestricted(plain), home)
+    kinds = gap_kinds(basis, numbers) if request.gaps else None
+
+    def ask(set_name: str) -> Asked:
+        here = replace(basis, specification=home.in_set(set_name), sets=())
+        made = _divided(here, numbers, jobs, progress) if request.classes else None
+        return Asked(here.specification, numbers, made, basis.all_values())
+
+    asked, *others = (ask(name) for name in request.sets)
+    concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
+    answers = _shown(concrete, partial(_batch, asked, request.freedom, drivers), jobs, progress)
+    beside = tuple(
+        _shown(concrete, partial(_batch, other, request.freedom, None), jobs, progress) for other in others
+    )
+    abstract = tuple(x for x in tests.entries if isinstance(x, Abstract))
+    shown = frozenset(x for answer in answers for x in answer.names if x.startswith(PREFIX))
+    reaches = tuple(_reaches(asked, answers)) if request.explore else ()
+    study = Meanings(basis, abstract, asked, tuple(others), kinds, shown, reaches)
+    return Examination(request, tests, study, answers, beside, drivers)
+
+
+def _read(paths: Sequence[str | Path], plain: Specification, asked: Specification) -> Catalogue:
+    """The tests as the library says them, whatever the scenarios are that are ``asked`` about."""
+    tests = read_catalogue(paths, plain)
+    if plain is asked:
+        return tests
+    entries = tuple(
+        replace(x, query=said_in(x.query, plain, asked)) if isinstance(x, Abstract) else x
+        for x in tests.entries
+    )
+    return replace(tests, entries=entries)
+
+
+def _reaches(asked: Asked, concrete: Sequence[ConcreteAnswer]) -> Iterator[Reach]:
+    """How far drives can go of the classes that concrete tests show; of scenarios, where there are none."""
+    found = tested(asked, concrete, (), (), targets_of(asked), 0.0, None).targets
+    kind = SCENARIOS if asked.classes is None else CLASSES
+    return reaches_of(asked, {x.name: x.covered for x in found if kind_of(x.name) == kind}, concrete)
+
+
+def _divided(basis: Basis, numbers: tuple[int, ...], jobs: Jobs, progress: Progress | None) -> Classes | None:
+    """The classes of scenarios. Raises ``UsageError`` where it is in doubt which there are."""
+    try:
+        plan = plan_of(basis.specification, numbers)
+    except RoadproofError as error:
+        raise UsageError(f"{error}; or ask for scenarios without classes: --no-classes") from None
+    division = divide(basis, plan, jobs, progress, in_few_words=False)
+    if division.cut_off:
+        told = "; ".join(x.reason for x in division.doubts)
+        raise UsageError(f"which classes there are is in doubt ({told}): give more time, or --no-classes")
+    return division.classes
+
+
+def _shown(
+    entries: Sequence[Concrete],
+    judge_batch: Callable[[Sequence[Concrete]], list[ConcreteAnswer]],
+    jobs: Jobs,
+    progress: Progress | None,
+) -> tuple[ConcreteAnswer, ...]:
+    batches = [entries[k : k + BATCH] for k in range(0, len(entries), BATCH)]
+    done = pool.work(judge_batch, batches, jobs, None, progress, "batches of tests")
+    return tuple(answer for answers in pool.in_order(done) for answer in answers)
+
+
+def _batch(
+    asked: Asked, freedom: Freedom, drivers: Drivers | None, entries: Sequence[Concrete]
+) -> list[ConcreteAnswer]:
+    return [show(entry, asked, freedom, drivers) for entry in entries]

@@ -1,0 +1,107 @@
+"""What is asked of a catalogue: which tests, and what of them is looked at."""
+
+import shlex
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+from roadproof.analysis.catalogue.showing import Freedom
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.strict import Fields
+from roadproof.preventing.models import MODELS
+from roadproof.spec.library import unknown
+
+Look: TypeAlias = Literal["fixed", "any"]
+NEAR = 0.5
+_CHOICES = ("roles", "lanes", "start")
+
+
+@dataclass(frozen=True)
+class Request:
+    """``paths``: folders of tests, and tests. ``sets``: spec sets, of which the first is asked about.
+
+    ``classes``, ``gaps``, ``explore``: whether classes of scenarios, classes of gaps and ranges are asked
+    about too. ``roles``, ``lanes``, ``start``: whether those are looked at that a test fixes, or "any".
+    ``near``: how far apart tests that say the same may begin, in m and m/s. ``drivers``: the models that are
+    asked what becomes of tests. Raises ``UsageError``.
+    """
+
+    paths: tuple[str, ...]
+    sets: tuple[str, ...] = ("base",)
+    classes: bool = True
+    gaps: bool = False
+    explore: bool = False
+    roles: Look = "fixed"
+    lanes: Look = "fixed"
+    start: Look = "fixed"
+    near: float = NEAR
+    drivers: tuple[str, ...] = tuple(MODELS)
+
+    def __post_init__(self) -> None:
+        for name in _CHOICES:
+            if getattr(self, name) not in ("fixed", "any"):
+                raise UsageError(f"{name}={getattr(self, name)!r}: write 'fixed' or 'any'")
+        for name in self.drivers:
+            if name not in MODELS:
+                raise UsageError(f"drivers={','.join(self.drivers)}: {unknown('driver model', name, MODELS)}")
+        if not self.near >= 0:
+            raise UsageError(f"near={self.near}: write a number, 0 or more")
+
+    @property
+    def freedom(self) -> Freedom:
+        """What is looked at beside what a test fixes."""
+        return Freedom(self.roles == "any", self.lanes == "any", self.start == "any")
+
+    def as_data(self) -> dict[str, Any]:
+        """As plain data."""
+        return {
+            **vars(self),
+            "paths": list(self.paths),
+            "sets": list(self.sets),
+            "drivers": list(self.drivers),
+        }
+
+    def command(self, more: tuple[str, ...] = ()) -> str:
+        """The command that asks the same; ``more``: further options of it."""
+        said = [*self.paths]
+        said += ["--set", ",".join(self.sets)] if self.sets != ("base",) else []
+        said += ["--no-classes"] * (not self.classes)
+        said += ["--gaps"] * self.gaps + ["--explore"] * self.explore
+        for name in _CHOICES:
+            said += [f"--{name}", "any"] if getattr(self, name) == "any" else []
+        said += ["--near", f"{self.near:g}"] if self.near != NEAR else []
+        said += [] if self.drivers == (*MODELS,) else ["--drivers", ",".join(self.drivers) or "none"]
+        return shlex.join(["roadproof", "catalogue", *said, *more])
+
+
+def read_request(content: object, where: str) -> Request:
+    """The inverse of ``as_data``. Raises ``InputError``."""
+    data = Fields(content, where, tuple(Request.__dataclass_fields__))
+    try:
+        return Request(
+            data.texts("paths"),
+            data.texts("sets"),
+            data.flag("classes"),
+            data.flag("gaps"),
+            data.flag("explore"),
+            _look(data.text("roles"), where),
+            _look(data.text("lanes"), where),
+            _look(data.text("start"), where),
+            _near(data.get("near"), where),
+            data.texts("drivers"),
+        )
+    except UsageError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _look(text: str, where: str) -> Look:
+    match text:
+        case "fixed" | "any":
+            return text
+        case _:
+            raise InputError(f"{where}: {text[:60]!r} is neither 'fixed' nor 'any'")
+
+
+def _near(value: object, where: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"{where}: near={value!r} is no number")
+    return value

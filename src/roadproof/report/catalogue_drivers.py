@@ -1,0 +1,55 @@
+"""What becomes of tests under driver models, as lines and as a table for a spreadsheet."""
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from roadproof.analysis.catalogue.decisions import Decision
+from roadproof.preventing.models import MODELS
+
+MOST_TOLD = 40
+_STARTS = ("Ve0", "dV0", "Vf0", "Vy", "Gx", "headway", "dx0", "dx0_f", "dy0")
+
+
+def as_lines(decisions: Sequence[tuple[str, Decision]]) -> Iterator[str]:
+    """A line for each test and scenario, and how often each model comes to which side."""
+    if not decisions:
+        return
+    yield "driver models, asked when the manoeuvre begins (margin of the gap in m, of the response in s):"
+    groups = groupby(decisions, lambda x: (x[0], x[1].scenario))
+    lines = [_line(test, scenario, [x for _, x in those]) for (test, scenario), those in groups]
+    yield from lines[:MOST_TOLD]
+    if len(lines) > MOST_TOLD:
+        yield f"  … {len(lines) - MOST_TOLD} more in drivers.csv (--out)"
+    for model in MODELS:
+        sides = [x.side for _, x in decisions if x.driver == model]
+        if sides:
+            told = ", ".join(f"{sides.count(side)} {side}" for side in dict.fromkeys(sides))
+            yield f"  {model} ({MODELS[model].title}): {told}"
+
+
+def _line(test: str, scenario: str, those: Sequence[Decision]) -> str:
+    reasons = "; ".join(dict.fromkeys(x.reason for x in those if x.reason))
+    sides = ", ".join(f"{x.driver} {said(x)}" for x in those)
+    return f"  {test} {scenario}: {sides}" + (f" [{reasons}]" if reasons else "")
+
+
+def said(decision: Decision) -> str:
+    """The side, and the margin where there is one: ``preventable (3.2 m, 0.41 s)``."""
+    margins = [f"{decision.metres:g} m"] if decision.metres is not None else []
+    margins += [f"{decision.seconds:g} s"] if decision.seconds is not None else []
+    return decision.side + (f" ({', '.join(margins)})" if margins else "")
+
+
+def as_csv(decisions: Sequence[tuple[str, Decision]]) -> str:
+    """A row for each test, scenario and model; of the state when the manoeuvre begins in SI units."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    head = ["test", "scenario", "vehicles", "driver", "side", "at", "margin_m", "margin_s"]
+    writer.writerow([*head, *_STARTS, "reason"])
+    for test, x in decisions:
+        row = [test, x.scenario, " ".join(x.vehicles), x.driver, x.side, x.at, x.metres, x.seconds]
+        values = [*row, *(x.start.get(name) for name in _STARTS), x.reason]
+        writer.writerow(["" if value is None else value for value in values])
+    return out.getvalue()
