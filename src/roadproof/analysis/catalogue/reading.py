@@ -14,7 +14,10 @@ from typing import Any
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Entry
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import is_pair
+from roadproof.evidence.answers.catalogue import SCHEMA
 from roadproof.evidence.drive_file import SCHEMAS_READ
+from roadproof.evidence.folder import INDEX
+from roadproof.evidence.journal import HEAD
 from roadproof.formats.samples import HEADER
 from roadproof.formats.source import TRACK_FILES, first_line
 from roadproof.spec.compose import always, both
@@ -36,7 +39,8 @@ def read_catalogue(paths: Iterable[Path | str], specification: Specification) ->
     """The tests of folders and files, in order. Raises ``InputError``, ``TextError``.
 
     A folder's tests are those of each ``catalogue.toml`` in it, and every drive file, file of samples and
-    scenario of CommonRoad or OpenSCENARIO that none of these names.
+    scenario of CommonRoad or OpenSCENARIO that none of these names; but not the drives of answers about
+    catalogues, which may lie in it.
     """
     entries: list[Entry] = []
     notes: list[str] = []
@@ -78,12 +82,15 @@ def _file(path: Path, specification: Specification) -> list[Entry]:
 def _folder(folder: Path, specification: Specification, taken: Collection[str]) -> Catalogue:
     """The tests of a folder; files that nobody names are called as in it, or by path if that is taken."""
     entries: list[Entry] = []
+    answers = {x.parent for name in (INDEX, HEAD) for x in folder.rglob(name) if is_answer(x)}
     for path in sorted(folder.rglob(FILE_NAME)):
         entries += _listed(path, specification)
     named = {Path(x.place.rpartition(":")[0] or x.place) for x in entries if isinstance(x, Concrete)}
     named |= {Path(x.place) for x in entries if isinstance(x, Concrete)}
     others = 0
     for path in sorted(x for x in folder.rglob("*") if x.is_file() and x not in named):
+        if answers & {*path.parents}:
+            continue
         if is_test(path):
             name = path.relative_to(folder).with_suffix("").as_posix()
             known = {*taken, *(x.id for x in entries)}
@@ -92,6 +99,11 @@ def _folder(folder: Path, specification: Specification, taken: Collection[str]) 
             others += 1
     told = f"{folder}: {others} more files of data are no tests, such as indices, certificates and recordings"
     return Catalogue(tuple(entries), (told,) if others else ())
+
+
+def is_answer(path: Path) -> bool:
+    """Whether an index, or the head of kept answers, is one of ``catalogue``, whose drives are no tests."""
+    return f'"{SCHEMA}"' in _beginning(path)
 
 
 def is_test(path: Path) -> bool:
