@@ -118,7 +118,7 @@ def _of_drive(
     claims = entry.claims
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
-    others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
+    others = tuple(name for name, value in file.values.items() if asked.values.get(name, value) != value)
     shown = all_shown_by(file, asked, freedom)
     why = None
     if not _has_scenario(shown):
@@ -134,7 +134,7 @@ def _of_drive(
         True,
         others,
         notes=() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",),
-        made_with=tuple(_made_with(file, asked)),
+        made_with=tuple(_made_with(file, asked, drivers)),
         rejected=ruling.reason if ruling.readable else "",
         why=why,
         decisions=() if drivers is None else decisions_on(file, shown, drivers),
@@ -158,13 +158,16 @@ def _as_written(file: DriveFile, specification: Specification) -> DriveFile:
     return replace(file, options={**changed, **file.options})
 
 
-def _made_with(file: DriveFile, asked: Asked) -> Iterator[str]:
-    """What the file was made with, and is not asked with."""
+def _made_with(file: DriveFile, asked: Asked, drivers: Drivers | None) -> Iterator[str]:
+    """What the file was made with, and is not asked with; nothing of what the definitions do not speak of."""
     home = asked.specification
+    options, values = dict(home.options), dict(asked.values)
+    if drivers is not None:
+        options, values = {**drivers.specification.options, **options}, {**drivers.values, **values}
     if file.set_name != home.set_name:
         yield f"set {file.set_name}"
-    yield from (f"{k} = {v}" for k, v in file.options.items() if home.options.get(k, v) != v)
-    yield from (f"{k} = {v} (SI)" for k, v in file.values.items() if asked.values.get(k) != v)
+    yield from (f"{k} = {v}" for k, v in file.options.items() if options.get(k, v) != v)
+    yield from (f"{k} = {v} (SI)" for k, v in file.values.items() if values.get(k, v) != v)
 
 
 def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
