@@ -49,12 +49,12 @@ _EFFORT = 60.0  # units of work, as catalogue asks by default
 
 @dataclass(frozen=True)
 class Comparison:
-    """``findings`` on the tests and on what is derived from them; ``files``: those beside the index that are
-    as they are derived.
+    """``findings`` on the tests and on what is derived from them; ``compared``: what was compared with what
+    is derived, of the files beside the index and of the fields that other answers do not have compared.
     """
 
     findings: tuple[Finding, ...]
-    files: tuple[str, ...] = ()
+    compared: tuple[str, ...] = ()
 
 
 def compare(told: Told, jobs: Jobs = None, progress: Progress | None = None) -> Comparison | None:
@@ -79,14 +79,13 @@ def compare(told: Told, jobs: Jobs = None, progress: Progress | None = None) -> 
     again = Catalogued(made.study, Conducted(known, {}), 0.0, None, examination=made)
     now = inside(again.as_data(), told.folder)
     findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
-    files: list[str] = []
+    compared = ["parameters"]
     for name, content in again.files(False).items():
         path = told.folder / name
-        if path.is_file() and path.read_bytes() == content:
-            files.append(name)
-        elif path.is_file():
+        compared.append(name)
+        if path.is_file() and path.read_bytes() != content:
             findings.append(_rejected(str(path), "it is not the table of these tests"))
-    return Comparison(tuple(findings), tuple(files))
+    return Comparison(tuple(findings), tuple(compared))
 
 
 def _definitions(index: Fields, library: Library, request: Request) -> Definitions:

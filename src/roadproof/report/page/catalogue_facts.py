@@ -11,6 +11,7 @@ from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, joined, table, tag
 from roadproof.report.page.pieces import folded, short
 
+_SIZES = ("length", "width")
 _KINDS = {"preventable": "proof", "unpreventable": "against"}
 
 
@@ -36,7 +37,8 @@ def decisions(found: Sequence[Mapping[str, Any]]) -> list[Content]:
         f"the response time (s) are from the nearest value with the other answer. {words}."
     )
     quantities = {name: x for kind in MANOEUVRES.values() for name, x in kind.quantities.items()}
-    symbols = [name for name in quantities if any(name in (x.get("start") or ()) for x in found)]
+    said = {name for x in found for name in x.get("start") or () if name not in _SIZES}
+    symbols = [name for name in quantities if name in said]
     legend = "; ".join(f"{name}: {quantities[name].doc}" for name in symbols)
     parts: list[Content] = [tag("h3", "Each test and driver model"), tag("p", told), table(head, lines)]
     return [*parts, tag("p", f"In SI units: {legend}.", class_="faint")] if legend else parts
@@ -53,7 +55,8 @@ def _decision(x: Mapping[str, Any] | None) -> Content:
 
 
 def _start(x: Mapping[str, Any]) -> str:
-    return ", ".join(f"{name} {value:.3g}" for name, value in (x.get("start") or {}).items())
+    said = (x.get("start") or {}).items()
+    return ", ".join(f"{name} {value:.3g}" for name, value in said if name not in _SIZES)
 
 
 def provenance(data: Mapping[str, Any], book: Book) -> list[Content]:
@@ -77,4 +80,4 @@ def provenance(data: Mapping[str, Any], book: Book) -> list[Content]:
     digests = [(x.get("id"), x.get("file"), x["sha256"]) for x in data.get("tests", ()) if x.get("sha256")]
     inside: list[Content] = [table(("", ""), rows)]
     inside += [table(("test", "file", "SHA-256"), digests)] if digests else []
-    return [folded(tag("b", "How this answer was made"), *inside)]
+    return [folded((tag("b", "How this answer was made"),), *inside)]
