@@ -33,6 +33,7 @@ from roadproof.preventing.models import MODELS, SCENARIOS
 from roadproof.world.drive import Drive, Piece
 from traffic.test_drivers import EACH, drives, questions_with
 
+DELAYS = {"careful": "cc_delay", "r157": "r157_delay", "eu1426": "eu1426_delay", "rss": "rho"}
 _NEAR = Fraction("0.02")  # m, s
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 ALL = tuple(MODELS)
@@ -97,7 +98,7 @@ def test_beyond_a_margin_the_answer_is_another_one(name: str, model: str) -> Non
     """On random states: within the margin it is the same, and 2 cm or 20 ms beyond it is not, on one side."""
     random, kind = Random(f"{name} {model}"), MANOEUVRES[name]
     boundary = DRIVERS.boundary(name, model, kind.vehicles)
-    delay, known = margins._DELAYS[model], dict(DRIVERS.values)
+    delay, known = DELAYS[model], dict(DRIVERS.values)
     seen = 0
     for _ in range(12):
         at = kind.values(random_values(name, random))
