@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -21,7 +22,7 @@ from roadproof.analysis.catalogue.decisions import (
 )
 from roadproof.evaluation.evaluate import evaluate_recording
 from roadproof.evaluation.one_trace import cut_trace, sample_drive
-from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.judge.exact import judge
 from roadproof.logic.rewrite import with_values
 from roadproof.preventing import margins
@@ -161,6 +162,25 @@ def test_a_drive_is_decided_when_its_manoeuvre_begins(model: str, gap: int, side
     assert (found.side, found.at, found.start["dx0"], found.reason) == (side, 0.0, gap, "")
     late = decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 5.0)
     assert {x.side for x in late} == {"not foreseen"}
+
+
+@pytest.mark.parametrize("said", ["", "not "])
+def test_a_formula_about_drivers_is_judged_too(said: str, tmp_path: Path) -> None:
+    """A drive file of ``preventable`` is read with the definitions of drivers; a false one is a fault."""
+    kind = MANOEUVRES["cut-in"]
+    at = kind.values({"Ve0": 90 * KMH, "dV0": 30 * KMH, "dx0": Fraction(8)})
+    home = specification()
+    drive = drive_of(kind, "r157", at, Reading(values(), home.options))
+    formula = f"{said}unpreventable_cutIn_careful(SV, POV)"
+    reading = values(), dict(home.options)
+    file = DriveFile(None, "base", formula, Fraction(6), {"L": OWN_LANE}, *reading, road_of(at), drive, True)
+    path = tmp_path / "hit.json"
+    path.write_text(json.dumps(drive_data(file, {})), "utf-8")
+    made = rp.catalogue(path, among="1", classes=False, drivers=["careful"], jobs=1)
+    assert [x.told.partition(":")[0] for x in made.tested.faults if "rejected" in x.told] == (
+        ["its file is rejected"] if said else []
+    )
+    assert not made.notes
 
 
 def braking(gap: int, *pieces: tuple[int, int]) -> DriveFile:

@@ -126,6 +126,8 @@ def _of_drive(
         lanes = _lanes(file, freedom.lanes)
         why = why_none(Course(DriveSignals(file.drive), file.road, file.horizon, roles, lanes), asked)
     ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
+    if not ruling.readable and drivers is not None:
+        ruling = judge_file(file, drivers.specification.library)
     return ConcreteAnswer(
         entry,
         claims,
