@@ -124,6 +124,17 @@ def test_an_entry_that_is_left_out_or_added_is_rejected(home: Path, field: str) 
             assert reasons(home / "report")
 
 
+def test_no_fact_can_be_left_out(home: Path) -> None:
+    """Not even one from which nothing follows, such as that a test excludes a scenario."""
+    whole = read(home / "report" / "index.json")
+    for k in range(len(whole["facts"])):
+        left = [*whole["facts"][:k], *whole["facts"][k + 1 :]]
+        write(home / "report" / "index.json", {**whole, "facts": left})
+        found = judging_again.compare(survey([home / "report"], (), find_label).told[0])
+        assert found is not None
+        assert any(x.outcome is Acceptance.REJECTED for x in found.findings)
+
+
 @pytest.mark.parametrize("name", ["matrix.csv", "figures.csv", "drivers.csv", "junit.xml"])
 def test_tables_are_compared(home: Path, name: str) -> None:
     path = home / "report" / name

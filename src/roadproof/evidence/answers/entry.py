@@ -158,7 +158,8 @@ def _other_values(entry: Entry, said: DriveFile) -> str:
 def _other_claim(entry: Entry, said: Certificate | DriveFile) -> str:
     written = said.claim if isinstance(said, Certificate) else said.formula
     if entry.claim is None:
-        return f"{entry.where}: {fault}" if entry.fault_of and (fault := entry.fault_of(written)) else ""
+        fault = entry.fault_of(written) if entry.fault_of else "it does not say what its file is to show"
+        return f"{entry.where}: {fault}" if fault else ""
     if written.strip() == entry.claim.strip() and entry.shows in ("proof", "drive"):
         return ""
     wanted = entry.common.formula(entry.claim)

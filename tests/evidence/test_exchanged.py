@@ -1,0 +1,103 @@
+"""Evidence of one entry put under another one, of every kind of index: ``check`` rejects the folder."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from copy import deepcopy
+from itertools import combinations
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+
+import roadproof as rp
+from evidence.folders import Place, check, read, some_proofs, write
+from evidence.test_every_field import MAKE
+from roadproof.evidence.finding import Acceptance
+
+MOST = 24  # pairs of entries of one kind
+EVIDENCE = ("certificate", "drive", "evidence", "trace")
+SAID = ("claim", "formula", "verdict", "premise", "conclusion", "gaps", "core")
+"""What an entry says of its evidence, which an attacker exchanges with it."""
+KINDS: dict[str, Callable[[Path], Any]] = {
+    **MAKE,
+    "overlap": lambda out: rp.overlap(among=[1, 3, 4], out=out, jobs=1),
+    "proofs": some_proofs,
+    "order": lambda out: rp.order(among=[4], using=rp.load("base", "ext"), out=out, jobs=1),
+    "catalogue": lambda out: rp.catalogue(
+        _formulas(out), among="1,3,4", classes=False, drivers=[], out=out, jobs=1
+    ),
+}
+
+
+def _formulas(out: Path) -> Path:
+    """Three tests with formulas."""
+    path = out.parent / "formulas.toml"
+    path.write_text(
+        "".join(f'[[test]]\nid = "T{n}"\nformula = "scenario_{n}(SV,POV,L)"\n' for n in (1, 3, 4)), "utf-8"
+    )
+    return path
+
+
+def holders(content: Any, at: Place = ()) -> Iterator[Place]:
+    """The places of all objects that name evidence."""
+    if isinstance(content, dict):
+        if any(content.get(key) for key in EVIDENCE):
+            yield at
+        for key, value in content.items():
+            yield from holders(value, (*at, key))
+    elif isinstance(content, list):
+        for k, value in enumerate(content):
+            yield from holders(value, (*at, k))
+
+
+def at_place(content: Any, place: Place) -> Any:
+    for key in place:
+        content = content[key]
+    return content
+
+
+def exchanged(whole: Any, one: Place, other: Place, keys: tuple[str, ...]) -> Any | None:
+    """The index with these fields of two entries exchanged; None where that changes nothing."""
+    changed = deepcopy(whole)
+    first, second = at_place(changed, one), at_place(changed, other)
+    for key in keys:
+        values = first.pop(key, None), second.pop(key, None)
+        for entry, value in zip((second, first), values, strict=True):
+            if value is not None or key in at_place(whole, one):
+                entry[key] = value
+    return None if changed == whole else changed
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_evidence_of_another_entry_is_rejected(kind: str, tmp_path: Path) -> None:
+    folder = tmp_path / kind
+    KINDS[kind](folder)
+    shutil.rmtree(
+        folder / "answers", ignore_errors=True
+    )  # kept answers would tell that the index was changed
+    (folder / "question.json").unlink(missing_ok=True)
+    whole = read(folder / "index.json")
+    assert {x.outcome for x in check(folder)} == {Acceptance.ACCEPTED}
+    places = [*holders(whole)]
+    pairs = [(a, b) for a, b in combinations(places, 2) if a[: len(b)] != b and b[: len(a)] != a]
+    Random(kind).shuffle(pairs)
+    tried, accepted = 0, []
+    for one, other in pairs[: MOST if kind != "catalogue" else MOST // 4]:
+        for keys in (EVIDENCE, (*EVIDENCE, *SAID)):
+            changed = exchanged(whole, one, other, keys)
+            if changed is None or _alike(at_place(whole, one), at_place(whole, other)):
+                continue
+            write(folder / "index.json", changed)
+            tried += 1
+            found = check(folder) if kind != "catalogue" else rp.check(folder, jobs=1).findings
+            if all(x.outcome is Acceptance.ACCEPTED for x in found):
+                accepted.append((one, other, keys == EVIDENCE))
+    assert tried >= 1
+    assert accepted == []
+
+
+def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
+    """Whether two entries say the same, so that the evidence of each is that of the other."""
+    said = [{x: entry.get(x) for x in ("claim", "formula")} for entry in (one, other)]
+    return said[0] == said[1] and any(said[0].values())
