@@ -1,9 +1,8 @@
 """What a concrete test shows: judged exactly where it is a drive, monitored where it is samples."""
 
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,16 @@ from roadproof.analysis.catalogue.asked import Asked, Endangered, Key
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
 from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.playing import (
+    cast_samples,
+    checked,
+    choices,
+    chosen_vehicles,
+    no_role,
+    play_drive,
+    play_samples,
+    roles_of,
+)
 from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
@@ -29,6 +38,7 @@ from roadproof.preventing.restriction import restriction_of, unrestricted
 from roadproof.signals import SignalName
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of, number_in
+from roadproof.spec.scenarios import roles as scenario_roles
 
 MOST_VEHICLES = 8
 """In a scenario of CommonRoad of which no vehicles are named."""
@@ -70,7 +80,8 @@ class ConcreteAnswer:
     readings and spec set of its file that are not those asked for; ``rejected``: why the judge rejects its
     file, with the file's own values. ``fault``: why it could not be read. ``why``: why it shows none.
     ``sha256``: the digest of its files when it was judged (``digest_of``). ``decisions``: what becomes of its
-    scenarios under driver models.
+    scenarios under driver models. ``roles``: what the test calls the vehicle of each role, where that is not
+    the role.
     """
 
     entry: Concrete
@@ -86,6 +97,7 @@ class ConcreteAnswer:
     why: Why | None = None
     sha256: str = ""
     decisions: tuple[Decision, ...] = ()
+    roles: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def names(self) -> frozenset[str]:
@@ -100,6 +112,8 @@ def show(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers | Non
     """
     digest = digest_of(entry.place)
     try:
+        if entry.fault:
+            raise InputError(entry.fault)
         if entry.place.endswith(".json") and not is_pair(entry.place):
             found = _of_drive(entry, load_drive(Path(entry.place)), asked, freedom, drivers)
         else:
@@ -119,25 +133,35 @@ def _of_drive(
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
     others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
-    shown = all_shown_by(file, asked, freedom)
+    ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
+    roles = roles_of(entry, tuple(file.drive.vehicles), asked.role_names)
+    played = play_drive(file, roles)
+    shown = all_shown_by(played, asked, freedom)
+    chosen = tuple(choices(asked.roles, tuple(played.drive.vehicles), freedom.roles))
     why = None
     if not _has_scenario(shown):
-        roles = tuple(_choices(asked, tuple(file.drive.vehicles), freedom.roles))
         lanes = _lanes(file, freedom.lanes)
-        why = why_none(Course(DriveSignals(file.drive), file.road, file.horizon, roles, lanes), asked)
-    ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
+        named = tuple(x for x in chosen if asked.role_names >= {*x[1]})
+        why = why_none(Course(DriveSignals(played.drive), file.road, file.horizon, named, lanes), asked)
+    decided = () if drivers is None else decisions_on(played, shown, drivers)
+    notes = (
+        *(() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",)),
+        *((roles.note,) if roles.note else ()),
+        *(() if chosen else (no_role(played.drive.vehicles),)),
+    )
     return ConcreteAnswer(
         entry,
         claims,
-        shown,
-        begins_of(file),
+        tuple(replace(x, vehicles=roles.own(x.vehicles)) for x in shown),
+        begins_of(played),
         True,
         others,
-        notes=() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",),
+        notes=notes,
         made_with=tuple(_made_with(file, asked)),
         rejected=ruling.reason if ruling.readable else "",
         why=why,
-        decisions=() if drivers is None else decisions_on(file, shown, drivers),
+        decisions=tuple(replace(x, vehicles=roles.own(x.vehicles)) for x in decided),
+        roles=roles.played(asked.role_names),
     )
 
 
@@ -146,9 +170,15 @@ def decisions_on(file: DriveFile, shown: Iterable[Shown], drivers: Drivers) -> t
     first: dict[tuple[str, tuple[str, ...]], Shown] = {}
     for x in shown:
         first.setdefault((x.what, x.vehicles), x)
-    return tuple(
-        decision for x in first.values() for decision in decide_drive(file, drivers, x.what, x.vehicles, x.at)
-    )
+    return tuple(y for x in first.values() for y in _decided(file, x, drivers))
+
+
+def _decided(file: DriveFile, shown: Shown, drivers: Drivers) -> Iterator[Decision]:
+    """As ``decide_drive``, with the vehicles called as the roles that they play."""
+    names = scenario_roles(len(shown.vehicles))
+    played = replace(file, drive=file.drive.cast(dict(zip(names, shown.vehicles, strict=True))))
+    for x in decide_drive(played, drivers, shown.what, names, shown.at):
+        yield replace(x, vehicles=shown.vehicles)
 
 
 def _as_written(file: DriveFile, specification: Specification) -> DriveFile:
@@ -191,27 +221,17 @@ def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Sh
 def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
     """What a drive shows, judged in dense time: all formulas at once, since they share their parts."""
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
-    for roles, vehicles in _choices(asked, tuple(file.drive.vehicles), freedom.roles):
+    for roles, vehicles in choices(asked.roles, tuple(file.drive.vehicles), freedom.roles):
+        drive = file.drive.cast(dict(zip(roles, vehicles, strict=True)))
         for lane in _lanes(file, freedom.lanes):
-            formulas = asked.on(file.road, roles, vehicles, lane)
-            judgement = judge(f.And(tuple(formulas.values())), file.drive)
+            formulas = asked.on(file.road, roles, roles, lane)
+            judgement = judge(f.And(tuple(formulas.values())), drive)
             truths = {key: judgement.truth(formula) for key, formula in formulas.items()}
             for cut, true in _instants(truths, file, freedom.start):
                 for what in _what(asked, roles, true):
                     at = approximate(cut.point)
                     shown.setdefault((what, vehicles, lane), Shown(what, vehicles, lane, at))
     return _sorted(shown.values())
-
-
-def _choices(
-    asked: Asked, names: tuple[str, ...], free: bool
-) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
-    """Roles of scenarios with vehicles for them: those of the same names, or any."""
-    for roles in asked.roles:
-        if free:
-            yield from ((roles, chosen) for chosen in permutations(names, len(roles)))
-        elif set(roles) <= set(names):
-            yield roles, roles
 
 
 def _lanes(file: DriveFile, free: bool) -> tuple[str, ...]:
@@ -245,21 +265,23 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers
     endangered_in: dict[Shown, OneTrace] = {}
     first: OneTrace | None = None
     notes: dict[str, None] = {}
-    for trace, told in _traces(entry, freedom):
+    played = dict(entry.roles)
+    for trace, told in _traces(entry, asked.role_names):
         first = first or trace
+        if _is_samples(entry):
+            played = {role: name for role, name in told.items() if role in asked.role_names}
         notes |= dict.fromkeys(trace.notes)
-        names = tuple(trace.lanes)
-        free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
-        for roles, vehicles in _choices(asked, names, free):
+        for roles, vehicles in choices(asked.roles, tuple(trace.lanes), freedom.roles, any_way=True):
+            called = tuple(told.get(name, name) for name in vehicles)
+            cast, names = cast_samples(trace, roles, vehicles)
             for lane in trace.road.lanes:
-                for what, at in _monitored(trace, asked, roles, vehicles, lane):
-                    called = tuple(told.get(name, name) for name in vehicles)
+                for what, at in _monitored(cast, asked, roles, names, lane):
                     shown.setdefault((what, called, lane), Shown(what, called, lane, at))
                     if drivers is not None and (what, called) not in decisions:
-                        made = decide_trace(trace, drivers, what, vehicles, at, called)
+                        made = decide_trace(cast, drivers, what, names, at, called)
                         decisions[what, called] = tuple(made)
         dangers = [x for x in shown.values() if x.what == ENDANGERED]
-        if dangers and tuple(trace.lanes) == PAIR:
+        if dangers and {*trace.lanes} == {*PAIR}:
             endangered_in.setdefault(min(dangers, key=lambda x: x.at), trace)
         begins = begins or _begins(_states(trace))
     gaps = [
@@ -271,7 +293,14 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers
     why = None if first is None or _has_scenario(shown.values()) else _why(first, asked, freedom)
     found = (*_sorted(shown.values()), *gaps)
     decided = tuple(x for made in decisions.values() for x in made)
-    return ConcreteAnswer(entry, entry.claims, found, begins, notes=tuple(notes), why=why, decisions=decided)
+    return ConcreteAnswer(
+        entry, entry.claims, found, begins, notes=tuple(notes), why=why, decisions=decided, roles=played
+    )
+
+
+def _is_samples(entry: Concrete) -> bool:
+    """Whether a test is a file of samples of a few vehicles, which are called by names."""
+    return not is_pair(entry.place) and Path(entry.place).suffix in (".csv", ".parquet", ".xosc")
 
 
 def _has_scenario(shown: Iterable[Shown]) -> bool:
@@ -282,10 +311,9 @@ def _why(trace: OneTrace, asked: Asked, freedom: Freedom) -> Why | None:
     """Why no scenario holds from the first sample on; None on measured roads, whose lanes are not known."""
     if trace.batch.given:
         return None
-    names = tuple(trace.lanes)
-    free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
     end = (int(trace.batch.lengths[0]) - 1) * trace.batch.dt
-    roles = tuple(_choices(asked, names, free))
+    found = choices(asked.roles, tuple(trace.lanes), freedom.roles, any_way=True)
+    roles = tuple(x for x in found if asked.role_names >= {*x[1]})
     return why_none(Course(signals_of(trace.batch), trace.road, end, roles, trace.road.lanes), asked)
 
 
@@ -304,9 +332,9 @@ def _monitored(
             yield what, float(sample * trace.batch.dt)
 
 
-def first_trace(entry: Concrete, freedom: Freedom) -> OneTrace | None:
+def first_trace(entry: Concrete) -> OneTrace | None:
     """The first trace of a test that is samples. Raises ``InputError``."""
-    return next((trace for trace, _ in _traces(entry, freedom)), None)
+    return next((trace for trace, _ in _traces(entry, {*PAIR, *TRIPLE, *entry.roles})), None)
 
 
 def _gap_in_samples(trace: OneTrace, asked: Asked, danger: Shown) -> Iterator[Shown]:
@@ -317,33 +345,50 @@ def _gap_in_samples(trace: OneTrace, asked: Asked, danger: Shown) -> Iterator[Sh
         yield from (replace(danger, what=what) for what in (GAP, *kinds))
 
 
-def _traces(entry: Concrete, freedom: Freedom) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
-    """The traces of a test, each with what the test calls the vehicles."""
+def _traces(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
+    """The traces of a test, each with what the test calls the vehicles; ``known``: the roles of scenarios."""
     path = Path(entry.place)
     if is_pair(entry.place):
+        if entry.roles:
+            raise InputError(
+                f"{entry.place}: roles: the order of the vehicles says their roles; leave roles out"
+            )
         ids = entry.place.rpartition(":")[2].split(",")
         trace = read_pair(entry.place)
         yield trace, dict(zip(trace.lanes, ids, strict=True))
-    elif path.suffix in (".csv", ".parquet", ".xosc"):
-        yield read_samples(path), {}
+    elif _is_samples(entry):
+        trace = read_samples(path)
+        roles = roles_of(entry, tuple(trace.lanes), known)
+        played = play_samples(trace, roles)
+        yield replace(played, notes=(*played.notes, *((roles.note,) * bool(roles.note)))), roles.own_names
     else:
-        yield from _all_of(find_source(path).read(), entry.place)
+        yield from _all_of(find_source(path).read(), entry, known)
 
 
-def _all_of(recording: Recording, place: str) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
-    """All pairs and triples of vehicles of one direction that are seen together, in all orders."""
-    if recording.vehicles > MOST_VEHICLES:
+def _all_of(
+    recording: Recording, entry: Concrete, known: Collection[str]
+) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
+    """All pairs and triples of vehicles of one direction that are seen together, in all orders.
+
+    Where the test says who plays all roles of a pair or triple, that alone; of further vehicles those that
+    it names play their role.
+    """
+    ids = [str(x) for x in recording.vehicle_id]
+    given = dict(checked(entry, ids, known))
+    complete = [x for x in (PAIR, TRIPLE) if set(x) <= set(given)]
+    if recording.vehicles > MOST_VEHICLES and not complete:
         raise InputError(
-            f"{place}: {recording.vehicles} vehicles, but of at most {MOST_VEHICLES} all choices are looked "
-            f"at; name some in a catalogue.toml, as file = '{Path(place).name}:12,15'"
+            f"{entry.place}: {recording.vehicles} vehicles, but of at most {MOST_VEHICLES} all choices are "
+            f"looked at; name some in a catalogue.toml, as file = '{Path(entry.place).name}:12,15'"
         )
-    for names in (PAIR, TRIPLE):
-        for chosen in permutations(range(recording.vehicles), len(names)):
+    for names in complete or (PAIR, TRIPLE):
+        for chosen in chosen_vehicles(ids, given, names):
             low = max(int(recording.first_frame[v]) for v in chosen)
             high = min(int(recording.last_frame[v]) for v in chosen)
             if high > low and len({int(recording.direction[v]) for v in chosen}) == 1:
-                trace = cut_trace(recording, place, dict(zip(names, chosen, strict=True)), (low, high))
-                yield trace, {n: str(recording.vehicle_id[v]) for n, v in zip(names, chosen, strict=True)}
+                vehicles = dict(zip(names, chosen, strict=True))
+                trace = cut_trace(recording, entry.place, vehicles, (low, high))
+                yield trace, {n: ids[v] for n, v in vehicles.items()}
 
 
 def _states(trace: OneTrace) -> dict[str, tuple[float, ...]]:
