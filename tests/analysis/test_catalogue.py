@@ -12,7 +12,7 @@ from xml.etree import ElementTree as xml
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue import meaning, showing, tested
+from roadproof.analysis.catalogue import examination, meaning, showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.figures import figures
@@ -22,7 +22,6 @@ from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import Division, divide
-from roadproof.api import cataloguing
 from roadproof.api.cataloguing import Catalogued, catalogue
 from roadproof.api.settings import basis_of
 from roadproof.cli.main import main
@@ -245,7 +244,7 @@ def ask(*paths: Path, **more: Any) -> Catalogued:
 def test_what_is_missing_is_made_and_then_nothing_is_missing(
     few: Path, tmp_path: Path, division: Division, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cataloguing, "divide", lambda *_, **__: division)
+    monkeypatch.setattr(examination, "divide", lambda *_, **__: division)
     missing = {"class_3_6", "class_6", "class_7", "scenario_7", "class_2", "scenario_2"}
     found = ask(few)
     assert {*found.missing} == missing

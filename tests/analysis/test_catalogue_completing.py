@@ -12,8 +12,9 @@ import pytest
 
 import roadproof as rp
 from cli.test_schemas import validator
-from roadproof.analysis.catalogue import far, gaps, ranges, tested
+from roadproof.analysis.catalogue import examination, far, gaps, ranges, tested
 from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import NO_SINGLE
@@ -22,7 +23,6 @@ from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
 from roadproof.analysis.coverage import claims, found, settling, study
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.classes import near_miss
-from roadproof.api import cataloguing
 from roadproof.api.cataloguing import Catalogued, catalogue
 from roadproof.cli.main import main
 from roadproof.errors import RoadproofError, UsageError
@@ -169,7 +169,7 @@ def test_figures_by_spec_set() -> None:
     counted = {x.set_name: (x.kind, x.tested, x.total) for x in made.figures}
     assert counted == {"base": ("scenarios", 1, 2), "ext": ("scenarios", 1, 2)}
     assert "set ext, scenarios: 1 of 2 are tested" in str(made)
-    for other, (answer,) in zip(made.study.beside, made.beside, strict=True):
+    for other, (answer,) in zip(made.study.beside, made.examination.beside, strict=True):
         assert answer.names == show(Concrete("braking", str(BRAKING)), other, Freedom()).names
 
 
@@ -216,12 +216,12 @@ def test_distance_is_that_of_the_number_that_differs_most() -> None:
 
 def test_the_part_of_a_range_that_nobody_tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ranges, "_PRECISION", {"s": Fraction(20)})
-    reaches = cataloguing.reaches_of
+    reaches = examination.reaches_of
 
     def along(*given: object) -> list[Reach]:
         return [x for x in reaches(*given) if x.term == "s(POV) - s(SV)"]  # type: ignore[arg-type]
 
-    monkeypatch.setattr(cataloguing, "reaches_of", along)
+    monkeypatch.setattr(examination, "reaches_of", along)
     report = tmp_path / "report"
     made = catalogue(BRAKING, among="4", classes=False, explore=True, jobs=1, out=report)
     (span,) = made.spans
@@ -258,9 +258,9 @@ def test_a_range_that_is_not_known_is_a_doubt() -> None:
 
 def test_all_tests_are_drawn_on_pages_and_titles_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(catalogue_drives, "MOST_ON_A_PAGE", 2)
-    courses = cataloguing.courses_of(Concrete("x", str(CUT_IN)))
+    courses = courses_of(Concrete("x", str(CUT_IN)))
     assert courses is not None
-    assert cataloguing.courses_of(Concrete("x", str(DRIVES / "torn.json"))) is None
+    assert courses_of(Concrete("x", str(DRIVES / "torn.json"))) is None
     pages = list(draw_tests([Drawn("W" * 60, "1 cut-in", courses)] * 3))
     assert [page["png"][:4] for page in pages] == [b"\x89PNG"] * 2
     text = make_page(4, 4).text(0, 0, "W" * 60, fontsize=6.5)

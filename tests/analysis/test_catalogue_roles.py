@@ -77,16 +77,20 @@ def test_names_and_roles(vehicles: list[str], given: dict[str, str], expected: d
 def test_choices_keep_who_is_named() -> None:
     """All roles named, some, none; and any where it is asked for."""
     both = (PAIRS, TRIPLES)
-    assert [*choices(both, ["SV", "POV", "x"], False)] == [(PAIRS, PAIRS)]
-    assert [*choices(both, ["a", "SV", "b"], False)] == [
+    assert [*choices(both, both, ["SV", "POV", "x"], False)] == [(PAIRS, PAIRS)]
+    assert [*choices(both, both, ["a", "SV", "b"], False)] == [
         (PAIRS, ("SV", "a")),
         (PAIRS, ("SV", "b")),
         (TRIPLES, ("SV", "a", "b")),
         (TRIPLES, ("SV", "b", "a")),
     ]
-    assert [*choices(both, ["a", "b"], False)] == []
-    assert [*choices((PAIRS,), ["a", "b"], False, any_way=True)] == [(PAIRS, ("a", "b")), (PAIRS, ("b", "a"))]
-    assert [*choices((PAIRS,), PAIRS, True)] == [(PAIRS, PAIRS), (PAIRS, PAIRS[::-1])]
+    assert [*choices(both, both, ["a", "b"], False)] == []
+    assert [*choices((PAIRS,), both, TRIPLES, False, any_way=True)] == []
+    assert [*choices((PAIRS,), both, ["a", "b"], False, any_way=True)] == [
+        (PAIRS, ("a", "b")),
+        (PAIRS, ("b", "a")),
+    ]
+    assert [*choices((PAIRS,), both, PAIRS, True)] == [(PAIRS, PAIRS), (PAIRS, PAIRS[::-1])]
 
 
 @pytest.mark.parametrize("drive", ["braking", "cut-in", "cut-out"])

@@ -60,7 +60,7 @@ OPTIONAL = {
 # Objects that hold something for each of some names.
 MAPS = {
     *("options", "parameters", "values", "vehicles", "lanes", "seconds", "sizes", "detectors", "scenarios"),
-    *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered"),
+    *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered", "start"),
     "open",
     *("fixed", "at"),
     *("not_checked", "sets"),

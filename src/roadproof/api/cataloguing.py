@@ -314,9 +314,10 @@ class Catalogued(Studied[Meanings, Kept]):
         return report.as_junit(self.tests, self.tested, self.in_force)
 
     def __str__(self) -> str:
-        told = report.as_text(len(self.tests), self.tested, self.notes, self.figures)
+        drivers = decisions.as_lines(self.decisions)
+        told = report.as_text(len(self.tests), self.tested, self.notes, self.figures, drivers)
         ranges = report.range_lines(self.spans, self.study.basis.horizon)
-        return "\n".join([*ranges, *decisions.as_lines(self.decisions), told])
+        return "\n".join([*ranges, told])
 
     def complete(
         self,

@@ -167,8 +167,8 @@ def check(
     for told in surveyed.told:
         again = compare(told, jobs, progress)
         findings += () if again is None else again.findings
-        files = () if again is None else again.files
-        if unchecked := tuple(x for x in told.not_checked if x not in files):
+        compared = () if again is None else again.compared
+        if unchecked := tuple(x for x in told.not_checked if x not in compared):
             left[str(told.folder)] = unchecked
     return Checked(tuple(findings), kernel or solver, library, beside, answered, left, strict)
 

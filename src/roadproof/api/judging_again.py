@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.examination import Examination, examine
@@ -13,6 +13,8 @@ from roadproof.analysis.catalogue.request import Request, read_request
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by
 from roadproof.analysis.coverage.answers import ClassAnswer, names_of
 from roadproof.analysis.coverage.claims import Covered
+from roadproof.analysis.coverage.pieces import name_of
+from roadproof.analysis.explore.measure import Sense
 from roadproof.api.cataloguing import Catalogued
 from roadproof.api.definitions import Definitions
 from roadproof.api.restricting import drivers_of
@@ -33,6 +35,7 @@ _DERIVED = (
     "targets",
     "not_tested",
     "figures",
+    "decisions",
     "ranges",
     "faults",
     "doubts",
@@ -46,12 +49,12 @@ _EFFORT = 60.0  # units of work, as catalogue asks by default
 
 @dataclass(frozen=True)
 class Comparison:
-    """``findings`` on the tests and on what is derived from them; ``files``: those beside the index that are
-    as they are derived.
+    """``findings`` on the tests and on what is derived from them; ``compared``: what was compared with what
+    is derived, of the files beside the index and of the fields that other answers do not have compared.
     """
 
     findings: tuple[Finding, ...]
-    files: tuple[str, ...] = ()
+    compared: tuple[str, ...] = ()
 
 
 def compare(told: Told, jobs: Jobs = None, progress: Progress | None = None) -> Comparison | None:
@@ -76,14 +79,13 @@ def compare(told: Told, jobs: Jobs = None, progress: Progress | None = None) -> 
     again = Catalogued(made.study, Conducted(known, {}), 0.0, None, examination=made)
     now = inside(again.as_data(), told.folder)
     findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
-    files: list[str] = []
+    compared = ["parameters"]
     for name, content in again.files(False).items():
         path = told.folder / name
-        if path.is_file() and path.read_bytes() == content:
-            files.append(name)
-        elif path.is_file():
+        compared.append(name)
+        if path.is_file() and path.read_bytes() != content:
             findings.append(_rejected(str(path), "it is not the table of these tests"))
-    return Comparison(tuple(findings), tuple(files))
+    return Comparison(tuple(findings), tuple(compared))
 
 
 def _definitions(index: Fields, library: Library, request: Request) -> Definitions:
@@ -114,15 +116,16 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
     if study.survey is None or study.gaps is None:
         return
     found = Fields(index.mapping("gaps"), f"{index.where}, gaps")
-    claims = {x.query.text: x.query for x in study.survey.claims}
+    claims = {x.query.text: x for x in study.survey.claims}
     if len(found.items("claims")) != len(claims):
         raise InputError(f"{found.where}: with gaps asked for there are {len(claims)} claims")
     for number, content in enumerate(found.items("claims"), 1):
         said = Fields(content, f"{found.where}, claim {number}")
         if said.text("claim") not in claims:
             raise InputError(f"{said.where}: coverage does not rest on this claim")
-        answer = Covered(claims[said.text("claim")], _verdict(said), None, said.text("reason"))
-        yield f"{GAPS}claim-{number}", AboutGaps(answer)
+        claim = claims[said.text("claim")]
+        answer = Covered(claim.query, _verdict(said), None, said.text("reason"))
+        yield GAPS + name_of(claim), AboutGaps(answer)
     parts = (
         {}
         if not found.items("classes")
@@ -215,6 +218,12 @@ def _wrong(fact: Fact, entries: Mapping[str, Abstract], made: Examination) -> st
         expected = entry.query
     else:
         expected = asked.query_of(fact.other)
+    if not fact.test and fact.relation in ("reaches", "open"):
+        known = {(x.target, x.term) for x in made.study.reaches}
+        if (fact.other, fact.term) not in known or fact.sense not in get_args(Sense):
+            return "that was not asked: which number is least or greatest"
+    elif fact.term or fact.sense or fact.at is not None:
+        return "it names a number, though no range was asked for"
     if fact.premise.formula != expected.formula:
         return f"its premise is not the formula of {fact.test or fact.other}"
     if fact.drive is None or fact.relation == "reaches":

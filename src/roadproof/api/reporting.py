@@ -8,6 +8,7 @@ from roadproof.api.checking import Checked, Solver, check
 from roadproof.api.settings import one_of
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding, summary
+from roadproof.evidence.folder import INDEX
 from roadproof.evidence.heading import version
 from roadproof.files import whole_file
 from roadproof.report.page.book import Book
@@ -81,7 +82,7 @@ def page(
     )
     library = load_library((*named, *(checked.specs if checked else ())))
     inside = {} if checked is None else {x.where: x for x in checked.findings if x.kind == "index"}
-    book = Book(library, _by_file(checked), inside)
+    book = Book(library, _by_file(checked), inside, _rejected(checked))
     sections = [section(x, book, _words(x, library)) for x in given.results]
     alone = _alone(given, checked)
     if alone and checked is not None:
@@ -100,6 +101,15 @@ def _made(checked: Checked | None) -> str:
         return f"{made}."
     left = (f"not checked in {folder}: {', '.join(x)}" for folder, x in checked.not_checked.items())
     return "; ".join([made, summary(checked.findings, checked.solver), *left]) + "."
+
+
+def _rejected(checked: Checked | None) -> dict[str, list[str]]:
+    """What is not accepted of each index itself, or not decided, in words."""
+    found: dict[str, list[str]] = {}
+    for x in () if checked is None else checked.findings:
+        if x.outcome is not Acceptance.ACCEPTED and Path(x.where).name == INDEX:
+            found.setdefault(x.where, []).append(f"{x.label}: {x.reason}" if x.label else x.reason)
+    return found
 
 
 def _by_file(checked: Checked | None) -> dict[Path, Finding]:

@@ -12,7 +12,7 @@ from roadproof.preventing.models import DRIVERS, check_courses, check_driver, re
 from roadproof.preventing.restriction import About, Restriction, check_library, files_for
 from roadproof.spec.bind import values_with
 from roadproof.spec.diagnose import checked_library
-from roadproof.spec.library import on_request
+from roadproof.spec.library import load_library, on_request
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import number_in, numbers_of
 
@@ -59,7 +59,7 @@ def drivers_of(home: Definitions, names: tuple[str, ...]) -> Drivers | None:
     library = home.library
     path = on_request()[DRIVERS]
     if all(x.name != str(path) for x in library.files):
-        library = checked_library([path, *library.files])
+        library = load_library([path, *library.files])
     specification = library.select(home.sets[0], home.specification.options)
     values = values_with(library, home.values)
     require(specification, values)

@@ -45,6 +45,8 @@ examples:
   roadproof catalogue tests --complete more --spread 3 --format openscenario,csv
   roadproof catalogue tests --complete more --objective severe
   roadproof catalogue tests --unpreventable careful    which tests begin with what nobody could prevent
+  roadproof catalogue tests --drivers careful,r157     what becomes of tests under these driver models only
+  roadproof check report                               judge all tests again; stale ones are named
   roadproof catalogue tests --set base,ext             base, and figures of how much of ext is tested
 
 A test that cannot be read is a fault of this test; all others are judged.

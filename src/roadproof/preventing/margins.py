@@ -114,20 +114,20 @@ def margin(
     ``values``: of all parameters (SI). Ends of what was looked at, such as a gap of 0, are no changes.
     """
     last = vehicles[-1]
-    gap = state.gap(vehicles[0], last)
-    shifted = _Varied(state, last, state.signals["s", last] - gap)
-    farthest = max(gap, Fraction(0)) + _FARTHEST
+    room = state.gap(vehicles[-2], last)  # less is no such manoeuvre
+    shifted = _Varied(state, last, state.signals["s", last] - room)
+    farthest = max(room, Fraction(0)) + _FARTHEST
     gaps = _inside(truth_within(with_values(boundary, values), shifted, Fraction(0), farthest), farthest)
     name = _DELAYS[model]
     late = with_values(_varying(boundary, name), {k: x for k, x in values.items() if k != name})
     latest = values[name] + _LATEST
     delays = _inside(truth_within(late, _Varied(state), Fraction(0), latest), latest)
-    return Margin(_distance(gaps, gap), _distance(delays, values[name]))
+    return Margin(_distance(gaps, room), _distance(delays, values[name]))
 
 
 def _inside(truth: TruthSet, last: Fraction) -> tuple[float, ...]:
     """Where it changes between 0 and ``last``, both without."""
-    return tuple(x for x in (approximate(cut.point) for cut in truth.cuts) if 0 < x < last)
+    return tuple(approximate(cut.point) for cut in truth.cuts if Fraction(0) < cut.point and cut.point < last)
 
 
 def _distance(ends: Sequence[float], here: Fraction) -> float | None:
@@ -190,10 +190,10 @@ def controller_hits(
 
 def controller_margin(state: State, manoeuvre: str, vehicles: tuple[str, ...], hit: bool) -> float | None:
     """How far it is to the nearest gap with the other answer, tried 1, 2, 4 … 64 m away."""
-    gap = state.gap(vehicles[0], vehicles[-1])
+    room = state.gap(vehicles[-2], vehicles[-1])
 
     def changes(more: Fraction) -> bool:
-        return gap + more >= 0 and controller_hits(state, manoeuvre, vehicles, more) is not hit
+        return room + more >= 0 and controller_hits(state, manoeuvre, vehicles, more) is not hit
 
     for before, after in pairwise(_TRIED):
         for way in (-1, 1):

@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from textwrap import indent
 from typing import Any
@@ -19,9 +19,18 @@ MOST_TOLD = 40
 _SURE, _POSSIBLE, _NONE = "#1f5fbf", "#9dbbe3", "#b5473c"
 
 
-def as_text(tests: int, found: Tested, notes: Sequence[str], counted: Sequence[Figure]) -> str:
-    """How much is tested, in ``counted`` figures, what is missing, and every remark."""
-    lines = [f"{tests} test{'s' * (tests != 1)}", *_figures(counted), *_gaps(found)]
+def as_text(
+    tests: int,
+    found: Tested,
+    notes: Sequence[str],
+    counted: Sequence[Figure],
+    drivers: Iterable[str] = (),
+) -> str:
+    """How much is tested, in ``counted`` figures, what is missing, and every remark.
+
+    ``drivers``: lines on what becomes of tests under driver models.
+    """
+    lines = [f"{tests} test{'s' * (tests != 1)}", *_figures(counted), *_gaps(found), *drivers]
     lines += _listed("not tested", [f"{x.name}: {x.words}" for x in found.missing])
     for heading, remarks in headings(found).items():
         lines += _listed(heading, [remark_line(x) for x in remarks])

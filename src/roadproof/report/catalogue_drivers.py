@@ -8,25 +8,30 @@ from itertools import groupby
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.preventing.models import MODELS
 
-MOST_TOLD = 40
+MOST_TOLD, MOST_ALIKE = 40, 8
 _STARTS = ("Ve0", "dV0", "Vf0", "Vy", "Gx", "headway", "dx0", "dx0_f", "dy0")
 
 
 def as_lines(decisions: Sequence[tuple[str, Decision]]) -> Iterator[str]:
-    """A line for each test and scenario, and how often each model comes to which side."""
+    """How often each model comes to which side, and a line for each test and scenario.
+
+    Of many tests only those are told that some model does not prevent.
+    """
     if not decisions:
         return
-    yield "driver models, asked when the manoeuvre begins (margin of the gap in m, of the response in s):"
-    groups = groupby(decisions, lambda x: (x[0], x[1].scenario))
-    lines = [_line(test, scenario, [x for _, x in those]) for (test, scenario), those in groups]
-    yield from lines[:MOST_TOLD]
-    if len(lines) > MOST_TOLD:
-        yield f"  … {len(lines) - MOST_TOLD} more in drivers.csv (--out)"
+    yield "driver models, asked when the manoeuvre begins (margins: gap in m, response time in s):"
     for model in MODELS:
         sides = [x.side for _, x in decisions if x.driver == model]
         if sides:
             told = ", ".join(f"{sides.count(side)} {side}" for side in dict.fromkeys(sides))
             yield f"  {model} ({MODELS[model].title}): {told}"
+    groups = groupby(decisions, lambda x: (x[0], x[1].scenario))
+    every = [(test, scenario, [x for _, x in those]) for (test, scenario), those in groups]
+    hit = [x for x in every if any(y.side in ("unpreventable", "partly") for y in x[2])]
+    told_of = (every if len(every) <= MOST_ALIKE else hit)[:MOST_TOLD]
+    yield from (_line(*x) for x in told_of)
+    if len(told_of) < len(every):
+        yield f"  … {len(every) - len(told_of)} more in drivers.csv (--out)"
 
 
 def _line(test: str, scenario: str, those: Sequence[Decision]) -> str:

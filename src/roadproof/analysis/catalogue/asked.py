@@ -104,11 +104,16 @@ class Asked:
         return tuple(dict.fromkeys(self._vehicles.values()))
 
     @cached_property
-    def role_names(self) -> frozenset[str]:
-        """The roles of all scenarios of the specification."""
+    def all_roles(self) -> tuple[tuple[str, ...], ...]:
+        """What the vehicles of all scenarios of the specification are called, each choice once."""
         home = self.specification
         own = (vehicles_of(home, Scenario(number, home.set_name)) for number in numbers_of(home))
-        return frozenset((*PAIR, *TRIPLE, *(role for roles in own for role in roles)))
+        return tuple(dict.fromkeys((PAIR, TRIPLE, *own)))
+
+    @cached_property
+    def role_names(self) -> frozenset[str]:
+        """All roles."""
+        return frozenset(role for roles in self.all_roles for role in roles)
 
     @cached_property
     def _vehicles(self) -> Mapping[int, tuple[str, ...]]:

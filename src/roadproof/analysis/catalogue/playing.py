@@ -110,22 +110,26 @@ def _plain(name: str) -> str:
 
 
 def choices(
-    roles: Sequence[tuple[str, ...]], names: Sequence[str], free: bool, any_way: bool = False
+    roles: Sequence[tuple[str, ...]],
+    all_roles: Sequence[tuple[str, ...]],
+    names: Sequence[str],
+    free: bool,
+    any_way: bool = False,
 ) -> Iterator[Choice]:
     """Choices of ``roles`` with vehicles for them: those of the same names, or any where it is ``free``.
 
-    Where there is no vehicle for each role of a choice, those that are called as a role play it, and the
-    others may play any other; ``any_way``: also where no vehicle is called as a role.
+    ``all_roles``: those of scenarios that are not asked about too. Where no choice of them has a vehicle for
+    each role, those that are called as a role play it alone, and the others may play any other; ``any_way``:
+    also where no vehicle is called as a role.
     """
-    complete = [x for x in roles if set(x) <= set(names)]
-    known = {role for x in roles for role in x} & set(names)
-    if not free and complete:
-        yield from ((x, x) for x in complete)
-    elif free or known or any_way:
-        fixed = frozenset() if free else known
-        for x in roles:
+    known = {role for x in all_roles for role in x} & {*names}
+    complete = any({*x} <= known for x in all_roles)
+    for x in roles:
+        if not free and complete:
+            yield from [(x, x)] if {*x} <= known else []
+        elif free or known or any_way:
             for chosen in permutations(names, len(x)):
-                if all(a == b for a, b in zip(x, chosen, strict=True) if {a, b} & fixed):
+                if free or all(a == b for a, b in zip(x, chosen, strict=True) if {a, b} & known):
                     yield x, chosen
 
 

@@ -9,7 +9,10 @@ from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Entry
 from roadproof.analysis.catalogue.listing import FILE_NAME, listed, unreadable_file
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import is_pair
+from roadproof.evidence.answers.catalogue import SCHEMA
 from roadproof.evidence.drive_file import SCHEMAS_READ
+from roadproof.evidence.folder import INDEX
+from roadproof.evidence.journal import HEAD
 from roadproof.formats.samples import HEADER
 from roadproof.formats.source import TRACK_FILES, first_line
 from roadproof.spec.library import Specification
@@ -30,8 +33,9 @@ def read_catalogue(paths: Iterable[Path | str], specification: Specification) ->
     """The tests of folders and files, in order; one that cannot be read is a test with a fault.
 
     A folder's tests are those of each ``catalogue.toml`` in it, and every drive file, file of samples and
-    scenario of CommonRoad or OpenSCENARIO that none of these names. Raises ``InputError`` where there is no
-    test, or nothing but files of tests that cannot be read at all.
+    scenario of CommonRoad or OpenSCENARIO that none of these names; but not the drives of answers about
+    catalogues, which may lie in it. Raises ``InputError`` where there is no test, or nothing but files of
+    tests that cannot be read at all.
     """
     found: list[_Found] = []
     notes: list[str] = []
@@ -93,12 +97,15 @@ def _folder(
 ) -> list[_Found]:
     """The tests of a folder; files that nobody names are called as in it, or by path if that is taken."""
     found: list[_Found] = []
+    answers = {x.parent for name in (INDEX, HEAD) for x in folder.rglob(name) if is_answer(x)}
     for path in sorted(folder.rglob(FILE_NAME)):
         found += _listed(path, specification)
     places = [x.entry.place for x in found if isinstance(x.entry, Concrete)]
     named = {Path(x) for x in places} | {Path(x.rpartition(":")[0] or x) for x in places}
     others = 0
     for path in sorted(x for x in folder.rglob("*") if x.is_file() and x not in named):
+        if answers & {*path.parents}:
+            continue
         if is_test(path):
             name = path.relative_to(folder).with_suffix("").as_posix()
             known = {*taken, *(x.entry.id for x in found)}
@@ -110,6 +117,11 @@ def _folder(
         told = "more files of data are no tests, such as indices, certificates and recordings"
         notes.append(f"{folder}: {others} {told}")
     return found
+
+
+def is_answer(path: Path) -> bool:
+    """Whether an index, or the head of kept answers, is one of ``catalogue``, whose drives are no tests."""
+    return f'"{SCHEMA}"' in _beginning(path)
 
 
 def is_test(path: Path) -> bool:

@@ -1,14 +1,20 @@
 """What is asked of a catalogue: which tests, and what of them is looked at."""
 
 import shlex
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, Literal, TypeAlias
 
 from roadproof.analysis.catalogue.showing import Freedom
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.strict import Fields
 from roadproof.preventing.models import MODELS
-from roadproof.spec.library import unknown
+from roadproof.preventing.restriction import restriction_of
+from roadproof.spec.bind import values_with
+from roadproof.spec.library import Specification, on_request, unknown
+from roadproof.spec.scenarios import numbers_of
+from roadproof.units import UNITS
 
 Look: TypeAlias = Literal["fixed", "any"]
 NEAR = 0.5
@@ -71,6 +77,33 @@ class Request:
         said += ["--near", f"{self.near:g}"] if self.near != NEAR else []
         said += [] if self.drivers == (*MODELS,) else ["--drivers", ",".join(self.drivers) or "none"]
         return shlex.join(["roadproof", "catalogue", *said, *more])
+
+
+def further_options(
+    specification: Specification, values: Mapping[str, Fraction], numbers: Sequence[int]
+) -> tuple[str, ...]:
+    """The options of the command that say what was asked otherwise than by default.
+
+    ``values``: parameters (SI); ``numbers``: the scenarios that were asked about.
+    """
+    library, restriction = specification.library, restriction_of(specification.options)
+    said: list[str] = []
+    if tuple(numbers) != numbers_of(specification):
+        said += ["--among", ",".join(map(str, numbers))]
+    known = {} if restriction is None else restriction.options
+    if restriction is not None:
+        said += [f"--{restriction.side}", restriction.model]
+    shipped = [*map(str, on_request().values())] if restriction is not None else []
+    for source in library.files:
+        said += ["--spec", source.name] if source.name not in shipped else []
+    for name, value in specification.options.items():
+        if name not in known and value != library.options[name].values[0]:
+            said += ["--option", f"{name}={value}"]
+    declared = values_with(library, {})
+    for name, number in values.items():
+        if number != declared[name]:
+            said += ["--param", f"{name}={number / UNITS[library.parameters[name].unit][0]}"]
+    return tuple(said)
 
 
 def read_request(content: object, where: str) -> Request:

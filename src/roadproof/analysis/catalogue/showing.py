@@ -132,12 +132,12 @@ def _of_drive(
     claims = entry.claims
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
-    others = tuple(name for name, value in file.values.items() if asked.values.get(name) != value)
+    others = tuple(name for name, value in file.values.items() if asked.values.get(name, value) != value)
     ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
     roles = roles_of(entry, tuple(file.drive.vehicles), asked.role_names)
     played = play_drive(file, roles)
     shown = all_shown_by(played, asked, freedom)
-    chosen = tuple(choices(asked.roles, tuple(played.drive.vehicles), freedom.roles))
+    chosen = tuple(choices(asked.roles, asked.all_roles, tuple(played.drive.vehicles), freedom.roles))
     why = None
     if not _has_scenario(shown):
         lanes = _lanes(file, freedom.lanes)
@@ -147,7 +147,7 @@ def _of_drive(
     notes = (
         *(() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",)),
         *((roles.note,) if roles.note else ()),
-        *(() if chosen else (no_role(played.drive.vehicles),)),
+        *(() if chosen or asked.role_names & {*played.drive.vehicles} else (no_role(played.drive.vehicles),)),
     )
     return ConcreteAnswer(
         entry,
@@ -157,7 +157,7 @@ def _of_drive(
         True,
         others,
         notes=notes,
-        made_with=tuple(_made_with(file, asked)),
+        made_with=tuple(_made_with(file, asked, drivers)),
         rejected=ruling.reason if ruling.readable else "",
         why=why,
         decisions=tuple(replace(x, vehicles=roles.own(x.vehicles)) for x in decided),
@@ -188,13 +188,16 @@ def _as_written(file: DriveFile, specification: Specification) -> DriveFile:
     return replace(file, options={**changed, **file.options})
 
 
-def _made_with(file: DriveFile, asked: Asked) -> Iterator[str]:
-    """What the file was made with, and is not asked with."""
+def _made_with(file: DriveFile, asked: Asked, drivers: Drivers | None) -> Iterator[str]:
+    """What the file was made with, and is not asked with; nothing of what the definitions do not speak of."""
     home = asked.specification
+    options, values = dict(home.options), dict(asked.values)
+    if drivers is not None:
+        options, values = {**drivers.specification.options, **options}, {**drivers.values, **values}
     if file.set_name != home.set_name:
         yield f"set {file.set_name}"
-    yield from (f"{k} = {v}" for k, v in file.options.items() if home.options.get(k, v) != v)
-    yield from (f"{k} = {v} (SI)" for k, v in file.values.items() if asked.values.get(k) != v)
+    yield from (f"{k} = {v}" for k, v in file.options.items() if options.get(k, v) != v)
+    yield from (f"{k} = {v} (SI)" for k, v in file.values.items() if values.get(k, v) != v)
 
 
 def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
@@ -221,7 +224,7 @@ def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Sh
 def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
     """What a drive shows, judged in dense time: all formulas at once, since they share their parts."""
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
-    for roles, vehicles in choices(asked.roles, tuple(file.drive.vehicles), freedom.roles):
+    for roles, vehicles in choices(asked.roles, asked.all_roles, tuple(file.drive.vehicles), freedom.roles):
         drive = file.drive.cast(dict(zip(roles, vehicles, strict=True)))
         for lane in _lanes(file, freedom.lanes):
             formulas = asked.on(file.road, roles, roles, lane)
@@ -271,7 +274,9 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers
         if _is_samples(entry):
             played = {role: name for role, name in told.items() if role in asked.role_names}
         notes |= dict.fromkeys(trace.notes)
-        for roles, vehicles in choices(asked.roles, tuple(trace.lanes), freedom.roles, any_way=True):
+        for roles, vehicles in choices(
+            asked.roles, asked.all_roles, tuple(trace.lanes), freedom.roles, any_way=True
+        ):
             called = tuple(told.get(name, name) for name in vehicles)
             cast, names = cast_samples(trace, roles, vehicles)
             for lane in trace.road.lanes:
@@ -312,7 +317,7 @@ def _why(trace: OneTrace, asked: Asked, freedom: Freedom) -> Why | None:
     if trace.batch.given:
         return None
     end = (int(trace.batch.lengths[0]) - 1) * trace.batch.dt
-    found = choices(asked.roles, tuple(trace.lanes), freedom.roles, any_way=True)
+    found = choices(asked.roles, asked.all_roles, tuple(trace.lanes), freedom.roles, any_way=True)
     roles = tuple(x for x in found if asked.role_names >= {*x[1]})
     return why_none(Course(signals_of(trace.batch), trace.road, end, roles, trace.road.lanes), asked)
 

@@ -304,13 +304,17 @@ _SAME = 1e-6  # m, m/s: samples are rounded
 
 
 def _same(concrete: Sequence[ConcreteAnswer], near: float) -> Iterator[Remark]:
-    """Tests that show the same and begin nearly as the first of them does; copies are not told."""
+    """Tests that show the same and begin nearly as the first of them does; copies are not told.
+
+    Tests on different sides of a driver model do not show the same.
+    """
     ids = {x.entry.id for x in concrete}
-    groups: dict[tuple[frozenset[str], tuple[str, ...]], list[list[ConcreteAnswer]]] = {}
+    groups: dict[tuple[frozenset[str], ...], list[list[ConcreteAnswer]]] = {}
     for x in concrete:
         if x.fault or x.entry.copy_of in ids:
             continue
-        known = groups.setdefault((x.names, tuple(x.begins)), [])
+        sides = frozenset(f"{y.scenario} {y.driver} {y.side}" for y in x.decisions)
+        known = groups.setdefault((x.names, frozenset(x.begins), sides), [])
         alike = next((those for those in known if _apart(those[0], x) <= near), None)
         if alike is None:
             known.append([x])

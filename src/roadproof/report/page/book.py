@@ -22,12 +22,14 @@ _NAMES, _CLOCK, _ROW = 250, 420, 16  # pixels of names and of the clock, and bet
 class Book:
     """``documents`` of the viewer, in the order in which drives are met; ``findings`` of evidence by file.
 
-    ``inside``: findings on evidence inside an index, by the place that they name.
+    ``inside``: findings on evidence inside an index, by the place that they name. ``rejected``: what is wrong
+    with an index itself, by its path.
     """
 
     library: Library
     findings: Mapping[Path, Finding] = field(default_factory=dict)
     inside: Mapping[str, Finding] = field(default_factory=dict)
+    rejected: Mapping[str, Sequence[str]] = field(default_factory=dict)
     documents: list[Mapping[str, Any]] = field(default_factory=list)
 
     def drive(

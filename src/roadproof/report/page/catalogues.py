@@ -8,6 +8,7 @@ from typing import Any
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.report.page.book import Book
+from roadproof.report.page.catalogue_facts import decisions, provenance
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
 from roadproof.report.page.pieces import behind, cell, folded, matrix, short, verdict
 from roadproof.report.page.results import Result
@@ -49,6 +50,7 @@ def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     for name, heading in _REMARKS.items():
         listed = tag("ul", *(tag("li", _remark(x)) for x in data.get(name) or ()))
         parts += [tag("h3", heading), listed] if data.get(name) else []
+    parts += decisions(data.get("decisions") or ())
     parts += _ranges(data.get("ranges") or ())
     parts += [tag("h3", "The tests")] if tests else []
     for k, x in enumerate(tests):
@@ -56,7 +58,7 @@ def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     known = {x.get("id") for x in tests}
     parts += [_fact(x, result, book) for x in facts if x.get("test") not in known]
     parts += [_gap(x, result, book) for x in gaps.get("classes") or ()]
-    return joined(parts)
+    return joined([*parts, *provenance(data, book)])
 
 
 _REMARKS = {

@@ -12,7 +12,7 @@ from roadproof.report.page.pieces import behind, filtered, folded, short, verdic
 from roadproof.report.page.results import Result
 
 Section = Callable[[Result, Book, Mapping[int, str]], Markup]
-MOST_ROWS = 2000
+MOST_ROWS, MOST_REASONS = 2000, 20
 _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters", "specs", "view")
 _EMPTY: tuple[object, ...] = (None, "", [], {})
 
@@ -30,7 +30,17 @@ def section(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
             f"{result.name}: it is no result that can be shown: what it says is not of the form of "
             f"{result.schema} ({reason}); make it again"
         ) from None
-    return tag("section", tag("h2", told), shown, id=f"result-{result.id}")
+    return tag("section", tag("h2", told), _rejection(result, book), shown, id=f"result-{result.id}")
+
+
+def _rejection(result: Result, book: Book) -> Markup | None:
+    """In red, above all else, what is wrong with the answer as a whole."""
+    reasons = () if result.folder is None else book.rejected.get(str(result.folder / "index.json"), ())
+    if not reasons:
+        return None
+    listed = tag("ul", *(tag("li", x) for x in reasons[:MOST_REASONS]))
+    more = f" ({len(reasons)} reasons)" if len(reasons) > 1 else ""
+    return tag("div", tag("p", f"roadproof check rejects this answer{more}:"), listed, class_="wrong")
 
 
 def evidence_section(findings: Sequence[Finding], book: Book, solver: str) -> Markup:

@@ -1,0 +1,194 @@
+"""Driver models put to tests: as evaluations decide, with margins at which the answer changes."""
+
+import csv
+import io
+from fractions import Fraction
+from pathlib import Path
+from random import Random
+
+import pytest
+
+import roadproof as rp
+from preventing.read import specification, values
+from roadproof.analysis.catalogue import decisions
+from roadproof.analysis.catalogue.decisions import (
+    Decision,
+    Drivers,
+    decide_drive,
+    decide_formula,
+    decide_trace,
+)
+from roadproof.evaluation.evaluate import evaluate_recording
+from roadproof.evaluation.one_trace import cut_trace
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.judge.exact import judge
+from roadproof.logic.rewrite import with_values
+from roadproof.preventing import margins
+from roadproof.preventing.claims import SIDES, Side
+from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, road_of
+from roadproof.preventing.manoeuvres import KMH, MANOEUVRES, signals_of
+from roadproof.preventing.margins import State, controller_hits, controller_margin, margin
+from roadproof.preventing.models import MODELS, SCENARIOS
+from traffic.test_drivers import EACH, drives, questions_with
+
+_NEAR = Fraction("0.02")  # m, s
+EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
+ALL = tuple(MODELS)
+DRIVERS = Drivers(specification(), {**values(), "minDanger": Fraction(0)}, ALL)
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize(("name", "model"), EACH)
+def test_decisions_are_those_of_evaluate(name: str, model: str, side: Side) -> None:
+    """Of each match that an evaluation puts to models, in the same frames."""
+    asked = questions_with()
+    place = asked.settings.drivers.index(model)
+    kind, compared = MANOEUVRES[name], 0
+    for _, recording in drives(name, model, side)[:2]:
+        where = {number: k for k, number in enumerate(recording.vehicle_id.tolist())}
+        for match in evaluate_recording(recording, asked).matches:
+            if not match.labels or match.scenario != SCENARIOS[name]:
+                continue
+            ids = [x for x in (match.sv, match.pov, match.pov2) if x is not None]
+            vehicles = dict(zip(kind.vehicles, (where[x] for x in ids), strict=True))
+            frames = match.start_frame, match.end_frame
+            trace = cut_trace(recording, "match", vehicles, frames)
+            found = decide_trace(
+                trace, DRIVERS, f"scenario_{match.scenario}", kind.vehicles, 0.0, kind.vehicles
+            )
+            [mine] = [x for x in found if x.driver == model]
+            assert mine.side == match.labels[place]
+            begun = None if mine.at is None else match.start_frame + round(mine.at * 25)
+            assert begun == match.begun
+            compared += 1
+    assert compared
+
+
+def state_of(name: str, at: dict[str, Fraction]) -> State:
+    kind = MANOEUVRES[name]
+    full = kind.values(at)
+    sizes = {(x, v): full[x] for x in ("length", "width") for v in kind.vehicles}
+    return State(signals_of(kind, full), sizes)
+
+
+def random_values(name: str, random: Random) -> dict[str, Fraction]:
+    def between(low: float, high: float) -> Fraction:
+        return Fraction(round(random.uniform(low, high) * 100), 100)
+
+    speed = between(8, 35)
+    match name:
+        case "cut-in":
+            return {"Ve0": speed, "dV0": between(0, 8), "Vy": between(0.3, 3), "dx0": between(0, 60)}
+        case "cut-out":
+            return {"Ve0": speed, "Vf0": between(0, 8), "Vy": between(0.3, 3), "dx0_f": between(0, 80)}
+        case _:
+            return {"Ve0": speed, "dV0": between(0, 6), "Gx": between(1, 9), "dx0": between(0, 60)}
+
+
+def is_hit(state: State, name: str, model: str, given: dict[str, Fraction]) -> bool:
+    formula = with_values(DRIVERS.boundary(name, model, MANOEUVRES[name].vehicles), given)
+    return judge(formula, margins._Varied(state)).holds
+
+
+@pytest.mark.parametrize(("name", "model"), EACH)
+def test_beyond_a_margin_the_answer_is_another_one(name: str, model: str) -> None:
+    """On random states: within the margin it is the same, and 2 cm or 20 ms beyond it is not, on one side."""
+    random, kind = Random(f"{name} {model}"), MANOEUVRES[name]
+    boundary = DRIVERS.boundary(name, model, kind.vehicles)
+    delay, known = margins._DELAYS[model], dict(DRIVERS.values)
+    seen = 0
+    for _ in range(12):
+        at = kind.values(random_values(name, random))
+        state = state_of(name, at)
+        hit = is_hit(state, name, model, known)
+        found = margin(state, boundary, model, kind.vehicles, known)
+
+        def with_gap(more: Fraction, at: dict[str, Fraction] = at) -> bool:
+            return is_hit(state_of(name, {**at, kind.line: at[kind.line] + more}), name, model, known)
+
+        def with_delay(more: Fraction, state: State = state) -> bool:
+            return is_hit(state, name, model, {**known, delay: known[delay] + more})
+
+        for told, asked, low in (
+            (found.metres, with_gap, at[kind.line]),
+            (found.seconds, with_delay, known[delay]),
+        ):
+            if told is not None:
+                way = Fraction(str(told))
+                inside = [x for x in (way - _NEAR, _NEAR - way) if way > _NEAR and low + x >= 0]
+                assert all(asked(x) is hit for x in inside)
+                beyond = [x for x in (way + _NEAR, -way - _NEAR) if low + x >= 0]
+                assert any(asked(x) is not hit for x in beyond)
+                seen += 1
+    assert seen >= 6
+
+
+@pytest.mark.parametrize("name", MANOEUVRES)
+def test_the_margin_of_the_controller(name: str) -> None:
+    random, kind, seen = Random(name), MANOEUVRES[name], 0
+    for _ in range(6):
+        state = state_of(name, kind.values(random_values(name, random)))
+        hit = controller_hits(state, name, kind.vehicles)
+        metres = controller_margin(state, name, kind.vehicles, hit)
+        if metres is None:
+            continue
+        room = state.gap(kind.vehicles[-2], kind.vehicles[-1])
+        ends = [x for x in (Fraction(str(metres)), -Fraction(str(metres))) if room + x >= 0]
+        assert any(controller_hits(state, name, kind.vehicles, x) is not hit for x in ends)
+        seen += 1
+    assert seen
+
+
+@pytest.mark.parametrize("name", MANOEUVRES)
+def test_a_state_gives_back_the_values_that_it_was_made_of(name: str) -> None:
+    kind = MANOEUVRES[name]
+    at = kind.values(random_values(name, Random(7)))
+    found = state_of(name, at).values(name, kind.vehicles)
+    assert found == {x: at[x] for x in found}
+
+
+@pytest.mark.parametrize("model", ["careful", "fsm"])
+@pytest.mark.parametrize(("gap", "side"), [(8, "unpreventable"), (60, "preventable")])
+def test_a_drive_is_decided_when_its_manoeuvre_begins(model: str, gap: int, side: str) -> None:
+    kind = MANOEUVRES["cut-in"]
+    at = kind.values({"Ve0": 90 * KMH, "dV0": 30 * KMH, "dx0": Fraction(gap)})
+    drive = drive_of(kind, "r157", at, Reading(values(), specification().options))
+    file = DriveFile(None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road_of(at), drive, True)
+    [found] = [x for x in decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 0.0) if x.driver == model]
+    assert (found.side, found.at, found.start["dx0"], found.reason) == (side, 0.0, gap, "")
+    late = decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 5.0)
+    assert {x.side for x in late} == {"not foreseen"}
+
+
+def test_scenarios_without_a_driver_are_not_decided() -> None:
+    assert decisions.course_of("scenario_3") is None
+    assert decisions.course_of("class_1") is None
+    assert decisions.course_of("scenario_9") == "cut-in"
+
+
+def test_a_formula_is_partly_preventable_only_where_drives_show_both() -> None:
+    one = Decision("scenario_1", ("SV", "POV"), "careful", "preventable", metres=1.0)
+    other = Decision("scenario_1", ("SV", "POV"), "careful", "unpreventable")
+    [both] = decide_formula([one, other])
+    [alone] = decide_formula([one])
+    assert (both.side, alone.side, alone.metres) == ("partly", "undecided", None)
+    assert "nothing is known of its other drives" in alone.reason
+
+
+def test_the_answer_decides_drives_and_samples_and_says_so(tmp_path: Path) -> None:
+    drive, samples = EXAMPLE / "drives" / "cut-in-hard.json", EXAMPLE / "samples" / "braking.csv"
+    made = rp.catalogue(drive, samples, among="1,4", classes=False, drivers=["careful", "rss"], jobs=1)
+    assert [(x, y.driver, y.side) for x, y in made.decisions] == [
+        (test, driver, "preventable") for test in ("cut-in-hard", "braking") for driver in ("careful", "rss")
+    ]
+    rows = list(csv.DictReader(io.StringIO(made.files(False)["drivers.csv"].decode())))
+    assert [x["driver"] for x in rows] == [y.driver for _, y in made.decisions]
+    assert "careful preventable (" in str(made)
+
+
+def test_no_models_no_decisions_and_wrong_names_are_refused() -> None:
+    path = EXAMPLE / "drives" / "braking.json"
+    made = rp.catalogue(path, among="4", classes=False, drivers=[], jobs=1)
+    assert made.decisions == ()
+    with pytest.raises(rp.UsageError, match="drivers=carefull"):
+        rp.catalogue(path, among="4", classes=False, drivers=["carefull"], jobs=1)
