@@ -2,6 +2,8 @@
 
 import csv
 import io
+import json
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -19,8 +21,8 @@ from roadproof.analysis.catalogue.decisions import (
     decide_trace,
 )
 from roadproof.evaluation.evaluate import evaluate_recording
-from roadproof.evaluation.one_trace import cut_trace
-from roadproof.evidence.drive_file import DriveFile
+from roadproof.evaluation.one_trace import cut_trace, sample_drive
+from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.judge.exact import judge
 from roadproof.logic.rewrite import with_values
 from roadproof.preventing import margins
@@ -29,8 +31,10 @@ from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, road_of
 from roadproof.preventing.manoeuvres import KMH, MANOEUVRES, signals_of
 from roadproof.preventing.margins import State, controller_hits, controller_margin, margin
 from roadproof.preventing.models import MODELS, SCENARIOS
+from roadproof.world.drive import Drive, Piece
 from traffic.test_drivers import EACH, drives, questions_with
 
+DELAYS = {"careful": "cc_delay", "r157": "r157_delay", "eu1426": "eu1426_delay", "rss": "rho"}
 _NEAR = Fraction("0.02")  # m, s
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 ALL = tuple(MODELS)
@@ -95,7 +99,7 @@ def test_beyond_a_margin_the_answer_is_another_one(name: str, model: str) -> Non
     """On random states: within the margin it is the same, and 2 cm or 20 ms beyond it is not, on one side."""
     random, kind = Random(f"{name} {model}"), MANOEUVRES[name]
     boundary = DRIVERS.boundary(name, model, kind.vehicles)
-    delay, known = margins._DELAYS[model], dict(DRIVERS.values)
+    delay, known = DELAYS[model], dict(DRIVERS.values)
     seen = 0
     for _ in range(12):
         at = kind.values(random_values(name, random))
@@ -158,6 +162,91 @@ def test_a_drive_is_decided_when_its_manoeuvre_begins(model: str, gap: int, side
     assert (found.side, found.at, found.start["dx0"], found.reason) == (side, 0.0, gap, "")
     late = decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 5.0)
     assert {x.side for x in late} == {"not foreseen"}
+
+
+@pytest.mark.parametrize("said", ["", "not "])
+def test_a_formula_about_drivers_is_judged_too(said: str, tmp_path: Path) -> None:
+    """A drive file of ``preventable`` is read with the definitions of drivers; a false one is a fault."""
+    kind = MANOEUVRES["cut-in"]
+    at = kind.values({"Ve0": 90 * KMH, "dV0": 30 * KMH, "dx0": Fraction(8)})
+    home = specification()
+    drive = drive_of(kind, "r157", at, Reading(values(), home.options))
+    formula = f"{said}unpreventable_cutIn_careful(SV, POV)"
+    reading = values(), dict(home.options)
+    file = DriveFile(None, "base", formula, Fraction(6), {"L": OWN_LANE}, *reading, road_of(at), drive, True)
+    path = tmp_path / "hit.json"
+    path.write_text(json.dumps(drive_data(file, {})), "utf-8")
+    made = rp.catalogue(path, among="1", classes=False, drivers=["careful"], jobs=1)
+    assert [x.told.partition(":")[0] for x in made.tested.faults if "rejected" in x.told] == (
+        ["its file is rejected"] if said else []
+    )
+    assert not made.notes
+
+
+def braking(gap: int, *pieces: tuple[int, int]) -> DriveFile:
+    """POV, ahead by ``gap`` and as fast as SV, brakes as the pieces say: seconds, and m/s^2."""
+    kind = MANOEUVRES["deceleration"]
+    at = kind.values({"Ve0": Fraction(25), "dx0": Fraction(gap), "Gx": Fraction(1)})
+    drive = drive_of(kind, "careful", at, Reading(values(), specification().options))
+    steps = [Piece(Fraction(t), Fraction(-a), Fraction(0)) for t, a in pieces]
+    last = (Piece(None, Fraction(0), Fraction(0)),)
+    motions = {
+        "SV": replace(drive.vehicles["SV"], pieces=last),
+        "POV": replace(drive.vehicles["POV"], pieces=(*steps, *last)),
+    }
+    road = road_of(at)
+    return DriveFile(None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road, Drive(motions), True)
+
+
+@pytest.mark.parametrize(
+    ("gap", "pieces", "since", "begins"),
+    [
+        (200, ((2, 0), (1, 3)), 0, 2),
+        (5, ((2, 0), (1, 3)), 0, None),  # danger is there from the beginning
+        (200, ((1, 3), (2, 0), (1, 3)), 0, 0),
+        (200, ((1, 3), (2, 0), (1, 3)), 2, 3),
+        (200, ((1, 3), (1, 0)), 2, None),
+    ],
+)
+def test_when_a_manoeuvre_begins(
+    gap: int, pieces: tuple[tuple[int, int], ...], since: int, begins: int | None
+) -> None:
+    """In a drive and in its samples alike: from the start that is asked for, up to danger."""
+    file = braking(gap, *pieces)
+    trace = sample_drive(file.drive, file.road, file.horizon, Fraction(1, 25), "drive")
+    who = MANOEUVRES["deceleration"].vehicles
+    for found in (
+        decide_drive(file, DRIVERS, "scenario_4", who, since),
+        decide_trace(trace, DRIVERS, "scenario_4", who, since, who),
+    ):
+        made = list(found)
+        assert {x.at for x in made} == {begins}
+        assert [x.driver for x in made] == ["careful", "rss", "fsm"]
+        assert (begins is None) is ({x.side for x in made} == {"not foreseen"})
+
+
+def test_danger_before_a_cut_out_is_that_of_the_vehicle_behind_which_it_opens() -> None:
+    """SV follows POV1 too closely from the beginning, and POV2 is far away: the cut-out is still decided."""
+    kind = MANOEUVRES["cut-out"]
+    at = kind.values(
+        {"Ve0": Fraction(25), "Vf0": Fraction(20), "headway": Fraction(1, 5), "dx0_f": Fraction(90)}
+    )
+    drive = drive_of(kind, "careful", at, Reading(values(), specification().options))
+    steps = (
+        Piece(Fraction(2), Fraction(0), Fraction(0)),
+        Piece(Fraction(1), Fraction(0), Fraction(1)),
+        Piece(None, Fraction(0), Fraction(0)),
+    )
+    motions = {
+        "SV": replace(drive.vehicles["SV"], pieces=steps[-1:]),
+        "POV1": replace(drive.vehicles["POV1"], v_lat=Fraction(0), pieces=steps),
+        "POV2": drive.vehicles["POV2"],
+    }
+    road = road_of(at)
+    file = DriveFile(None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road, Drive(motions), True)
+    found = [*decide_drive(file, DRIVERS, "scenario_2", kind.vehicles, 0.0)]
+    assert {x.at for x in found} == {2.0}
+    assert "POV moves across at 0.001 m/s when it begins" in found[0].reason
 
 
 def test_scenarios_without_a_driver_are_not_decided() -> None:

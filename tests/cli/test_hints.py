@@ -18,11 +18,14 @@ SOURCE = Path(roadproof.__file__).parent
 READERS = {
     "roadproof.cli.numbers": {"--cluster", "--jobs", "--json", "--shard"},
     "roadproof.hands": {"--jobs"},
-    "roadproof.study.frame": {"--shard"},
+    "roadproof.study.frame": {"--out", "--shard"},
     "roadproof.cli.options": {"--option", "--param", "--set"},
     "roadproof.study.pool": {"--jobs"},
     "roadproof.workers": {"--jobs"},
     "roadproof.analysis.explore.asking": {"--vary", "--steps", "--precision"},
+    # Raised for a catalogue that is asked for, and never for one that is judged again.
+    "roadproof.analysis.catalogue.examination": {"--no-classes"},
+    "roadproof.analysis.classify.classes": {"--among"},
 }
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 

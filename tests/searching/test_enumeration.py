@@ -100,11 +100,25 @@ def test_limits_that_make_the_claim_true_leave_no_drive():
     assert quick_drive(HOME, limits) is None
 
 
-def test_samples_and_drive_are_the_same_motion():
+@pytest.mark.parametrize(
+    "text",
+    [
+        "d(SV) <= 25 m and G v_lat(SV) <= 1 m/s -> G[1 s, 1 s] d(SV) <= 25 m",
+        "d(SV) <= 38 m and G v_lat(SV) <= 1 m/s -> G[5 s, 5 s] d(SV) <= 42 m",
+    ],
+)
+def test_across_the_road_at_the_numbers_of_the_claim(text):
+    drive = small_drive(HOME, claim(text), "claim", 2)
+    assert judge(drive.judgement.formula, drive.file.drive).holds
+    assert any(x.v_lat for x in drive.file.drive.vehicles.values())
+
+
+@pytest.mark.parametrize("text", [SLOW[0], "v_lat(SV) <= 1 m/s and d(POV) <= 25 m -> v_lat(POV) > 2 m/s"])
+def test_samples_and_drive_are_the_same_motion(text):
     """The monitor sees in floating point what the judge sees in rational numbers."""
     from roadproof.searching.enumeration import _search
 
-    search = _search(HOME, claim(SLOW[0]), "claim")
+    search = _search(HOME, claim(text), "claim")
     patterns, dt, steps = search.patterns(), Fraction(1, 2), 20
     rows = spread(0, 40, patterns.columns)
     batch = patterns.batch(rows, dt, steps)

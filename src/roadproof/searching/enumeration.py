@@ -171,7 +171,17 @@ class _Search:
         width = max(x.d[1] - x.d[0] for x in self.question.road.lanelets)
         places = (*TYPICAL_PLACES, *self._numbers((1, 0)))
         along = (speed, acceleration, speeds, accelerations, last, places)
-        return Menu(model, *along, (*middles, *sides), width)
+        beside, drifts = self._across(name)
+        return Menu(model, *along, (*middles, *sides, *beside), width, drifts)
+
+    def _across(self, name: str) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
+        """Places and speeds across the road at the start that the claim compares with."""
+        still = (Fraction(0),)
+        if self.within != "claim":
+            return (), still
+        places = self._numbers((1, 0), "d", name)
+        drifts = self._numbers((1, -1), "v_lat", name)
+        return places, (*still * (len(drifts) or 1), *drifts)
 
     def _range(self, name: str, signal: t.SignalName, usual: Range) -> Range:
         """The values of a signal that the claim's own limits leave."""
@@ -188,12 +198,17 @@ class _Search:
                 low = max(low, number)
         return (low, high) if low < high else (high, high)
 
-    def _numbers(self, dimension: t.Dimension) -> tuple[Fraction, ...]:
-        """The numbers of this dimension that the formula compares with, and some beside them."""
+    def _numbers(self, dimension: t.Dimension, *of: str) -> tuple[Fraction, ...]:
+        """The numbers of this dimension that the formula compares with, and some beside them.
+
+        ``of``: a signal and a vehicle, where only what is compared with it is wanted.
+        """
         found: dict[Fraction, None] = {}
         formula = with_values(self.question.query.formula, self.question.values)
         for part in f.subformulas(formula):
-            for side in terms_of(part) if isinstance(part, f.Compare) else ():
+            if not isinstance(part, f.Compare) or (of and not _speaks_of(part, *of)):
+                continue
+            for side in terms_of(part):
                 number = t.constant_value(side)
                 if number is not None and _measures(side, dimension):
                     found |= dict.fromkeys((number, number - 1, number + 1))
@@ -203,6 +218,11 @@ class _Search:
         formula = with_values(self.question.query.formula, self.question.values)
         bounds = [x for interval in intervals_of(formula) for x in bounds_of(interval) if x]
         return (*map(Fraction, (1, 2, 3)), *dict.fromkeys(x for x in bounds if 0 < x <= 6))[:8]
+
+
+def _speaks_of(part: Formula, signal: str, vehicle: str) -> bool:
+    leaves = (x for side in terms_of(part) for x in t.leaves(side))
+    return any(isinstance(x, t.Signal) and (x.name, x.vehicle) == (signal, vehicle) for x in leaves)
 
 
 def _measures(term: t.Term, dimension: t.Dimension) -> bool:

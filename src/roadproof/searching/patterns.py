@@ -29,7 +29,8 @@ COLUMNS = 8  # of one vehicle; before them is one for the duration
 class Menu:
     """What the motion of one vehicle is put together from, in SI units.
 
-    ``speed`` and ``acceleration`` are the ranges that the motion keeps along the road.
+    ``speed`` and ``acceleration`` are the ranges that the motion keeps along the road; ``drifts``: speeds
+    across the road at the start.
     """
 
     model: Vehicle
@@ -41,6 +42,7 @@ class Menu:
     places: tuple[Fraction, ...]
     sides: tuple[Fraction, ...]
     swerve: Fraction
+    drifts: tuple[Fraction, ...] = (Fraction(0),)
 
 
 @dataclass(frozen=True)
@@ -52,15 +54,23 @@ class Patterns:
 
     @property
     def columns(self) -> int:
-        """How many shares make a drive."""
-        return 1 + COLUMNS * len(self.menus)
+        """How many shares make a drive; those of drifts come last, where there are any."""
+        drifting = any(len(menu.drifts) > 1 for menu in self.menus.values())
+        return 1 + (COLUMNS + drifting) * len(self.menus)
+
+    def _drift(self, place: int) -> int:
+        """The column of the drift of a vehicle, by its place; any where no vehicle drifts."""
+        drift = 1 + COLUMNS * len(self.menus) + place
+        return drift if drift < self.columns else 0
 
     def drive(self, row: Sequence[float]) -> Drive:
         """The drive of one row of shares."""
         duration = _chosen(self.durations, row[0])
         return Drive(
             {
-                name: _motion(menu, duration, row[1 + COLUMNS * k : 1 + COLUMNS * (k + 1)])
+                name: _motion(
+                    menu, duration, row[1 + COLUMNS * k : 1 + COLUMNS * (k + 1)], row[self._drift(k)]
+                )
                 for k, (name, menu) in enumerate(self.menus.items())
             }
         )
@@ -74,7 +84,7 @@ class Patterns:
         ones = np.ones(len(rows))
         for k, (name, menu) in enumerate(self.menus.items()):
             own = rows[:, 1 + COLUMNS * k : 1 + COLUMNS * (k + 1)]
-            for signal, values in _samples(menu, durations, own, times).items():
+            for signal, values in _samples(menu, durations, own, rows[:, self._drift(k)], times).items():
                 signals[signal, name] = values
             sizes["length", name] = float(menu.model.length) * ones
             sizes["width", name] = float(menu.model.width) * ones
@@ -99,7 +109,7 @@ def _floats(values: Sequence[Fraction], shares: Shares) -> Shares:
     return table[np.minimum((shares * len(values)).astype(np.int64), len(values) - 1)]
 
 
-def _motion(menu: Menu, duration: Fraction, row: Sequence[float]) -> Motion:
+def _motion(menu: Menu, duration: Fraction, row: Sequence[float], share: float) -> Motion:
     speed = begun = _chosen(menu.speeds, row[0])
     swerve = SWERVES[min(int(row[7] * len(SWERVES)), len(SWERVES) - 1)]
     pieces: list[Piece] = []
@@ -110,11 +120,11 @@ def _motion(menu: Menu, duration: Fraction, row: Sequence[float]) -> Motion:
         speed = after
     pieces.append(Piece(None, _chosen(menu.last, row[6]), Fraction(0)))
     place, side = _chosen(menu.places, row[1]), _chosen(menu.sides, row[2])
-    model = menu.model
-    return Motion(model.length, model.width, place, side, begun, Fraction(0), tuple(pieces), kind=model.kind)
+    model, drift = menu.model, _chosen(menu.drifts, share)
+    return Motion(model.length, model.width, place, side, begun, drift, tuple(pieces), kind=model.kind)
 
 
-def _samples(menu: Menu, durations: Shares, rows: Shares, times: Shares) -> dict[str, Any]:
+def _samples(menu: Menu, durations: Shares, rows: Shares, shares: Shares, times: Shares) -> dict[str, Any]:
     """What ``_motion`` makes of each row, sampled."""
     speed = begun = _floats(menu.speeds, rows[:, 0])
     along: list[Shares] = []
@@ -129,7 +139,9 @@ def _samples(menu: Menu, durations: Shares, rows: Shares, times: Shares) -> dict
     across = [chosen[:, k] * float(menu.swerve) / durations**2 for k in range(PIECES)]
     across.append(np.zeros(len(rows)))
     s, v_lon, a_lon = _course(_floats(menu.places, rows[:, 1]), begun, along, durations, times)
-    d, v_lat, a_lat = _course(_floats(menu.sides, rows[:, 2]), np.zeros(len(rows)), across, durations, times)
+    d, v_lat, a_lat = _course(
+        _floats(menu.sides, rows[:, 2]), _floats(menu.drifts, shares), across, durations, times
+    )
     named = dict(zip(STARTING, (s, d, v_lon, v_lat), strict=True))
     return named | {"a_lon": a_lon, "a_lat": a_lat, "j_lon": np.zeros_like(s)}
 

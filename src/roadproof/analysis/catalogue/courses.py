@@ -7,7 +7,7 @@ from pathlib import Path
 
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import play_drive, roles_of
-from roadproof.analysis.catalogue.showing import first_trace
+from roadproof.analysis.catalogue.traces import first_trace
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import OneTrace, is_pair
 from roadproof.evidence.drive_file import DriveFile, load_drive

@@ -1,7 +1,7 @@
 """What a concrete test shows: judged exactly where it is a drive, monitored where it is samples."""
 
 from bisect import bisect_right
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -13,21 +13,17 @@ from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import (
     cast_samples,
-    checked,
     choices,
-    chosen_vehicles,
     no_role,
     play_drive,
-    play_samples,
     roles_of,
 )
+from roadproof.analysis.catalogue.traces import is_samples, traces_of
 from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
+from roadproof.evaluation.one_trace import OneTrace, is_pair
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.formats.recording import Recording
-from roadproof.formats.sources import find_source
 from roadproof.judge.algebraic import approximate
 from roadproof.judge.exact import judge
 from roadproof.judge.signals import DriveSignals
@@ -37,11 +33,9 @@ from roadproof.monitoring.compiled import compile
 from roadproof.preventing.restriction import restriction_of, unrestricted
 from roadproof.signals import SignalName
 from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of, number_in
+from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in
 from roadproof.spec.scenarios import roles as scenario_roles
 
-MOST_VEHICLES = 8
-"""In a scenario of CommonRoad of which no vehicles are named."""
 _STATE: tuple[SignalName, ...] = ("s", "d", "v_lon")
 ENDANGERED = "endangered"
 """What a test shows in which vehicles are safe and come into danger, whatever scenario that is."""
@@ -134,6 +128,8 @@ def _of_drive(
         claims = (name_of(file.scenario),)
     others = tuple(name for name, value in file.values.items() if asked.values.get(name, value) != value)
     ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
+    if not ruling.readable and drivers is not None:
+        ruling = judge_file(file, drivers.specification.library)
     roles = roles_of(entry, tuple(file.drive.vehicles), asked.role_names)
     played = play_drive(file, roles)
     shown = all_shown_by(played, asked, freedom)
@@ -269,9 +265,9 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers
     first: OneTrace | None = None
     notes: dict[str, None] = {}
     played = dict(entry.roles)
-    for trace, told in _traces(entry, asked.role_names):
+    for trace, told in traces_of(entry, asked.role_names):
         first = first or trace
-        if _is_samples(entry):
+        if is_samples(entry):
             played = {role: name for role, name in told.items() if role in asked.role_names}
         notes |= dict.fromkeys(trace.notes)
         for roles, vehicles in choices(
@@ -303,11 +299,6 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers
     )
 
 
-def _is_samples(entry: Concrete) -> bool:
-    """Whether a test is a file of samples of a few vehicles, which are called by names."""
-    return not is_pair(entry.place) and Path(entry.place).suffix in (".csv", ".parquet", ".xosc")
-
-
 def _has_scenario(shown: Iterable[Shown]) -> bool:
     return any(number_in(x.what) is not None for x in shown)
 
@@ -337,63 +328,12 @@ def _monitored(
             yield what, float(sample * trace.batch.dt)
 
 
-def first_trace(entry: Concrete) -> OneTrace | None:
-    """The first trace of a test that is samples. Raises ``InputError``."""
-    return next((trace for trace, _ in _traces(entry, {*PAIR, *TRIPLE, *entry.roles})), None)
-
-
 def _gap_in_samples(trace: OneTrace, asked: Asked, danger: Shown) -> Iterator[Shown]:
     """The danger of SV and POV as a gap, where no scenario covers it, whatever comes after the trace."""
     sample = round(danger.at / float(trace.batch.dt))
     kinds = () if asked.gaps is None else asked.gaps.of_trace(trace, sample)
     if kinds:
         yield from (replace(danger, what=what) for what in (GAP, *kinds))
-
-
-def _traces(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
-    """The traces of a test, each with what the test calls the vehicles; ``known``: the roles of scenarios."""
-    path = Path(entry.place)
-    if is_pair(entry.place):
-        if entry.roles:
-            raise InputError(
-                f"{entry.place}: roles: the order of the vehicles says their roles; leave roles out"
-            )
-        ids = entry.place.rpartition(":")[2].split(",")
-        trace = read_pair(entry.place)
-        yield trace, dict(zip(trace.lanes, ids, strict=True))
-    elif _is_samples(entry):
-        trace = read_samples(path)
-        roles = roles_of(entry, tuple(trace.lanes), known)
-        played = play_samples(trace, roles)
-        yield replace(played, notes=(*played.notes, *((roles.note,) * bool(roles.note)))), roles.own_names
-    else:
-        yield from _all_of(find_source(path).read(), entry, known)
-
-
-def _all_of(
-    recording: Recording, entry: Concrete, known: Collection[str]
-) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
-    """All pairs and triples of vehicles of one direction that are seen together, in all orders.
-
-    Where the test says who plays all roles of a pair or triple, that alone; of further vehicles those that
-    it names play their role.
-    """
-    ids = [str(x) for x in recording.vehicle_id]
-    given = dict(checked(entry, ids, known))
-    complete = [x for x in (PAIR, TRIPLE) if set(x) <= set(given)]
-    if recording.vehicles > MOST_VEHICLES and not complete:
-        raise InputError(
-            f"{entry.place}: {recording.vehicles} vehicles, but of at most {MOST_VEHICLES} all choices are "
-            f"looked at; name some in a catalogue.toml, as file = '{Path(entry.place).name}:12,15'"
-        )
-    for names in complete or (PAIR, TRIPLE):
-        for chosen in chosen_vehicles(ids, given, names):
-            low = max(int(recording.first_frame[v]) for v in chosen)
-            high = min(int(recording.last_frame[v]) for v in chosen)
-            if high > low and len({int(recording.direction[v]) for v in chosen}) == 1:
-                vehicles = dict(zip(names, chosen, strict=True))
-                trace = cut_trace(recording, entry.place, vehicles, (low, high))
-                yield trace, {n: ids[v] for n, v in vehicles.items()}
 
 
 def _states(trace: OneTrace) -> dict[str, tuple[float, ...]]:
