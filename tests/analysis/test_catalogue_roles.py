@@ -4,17 +4,20 @@ import json
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 import roadproof as rp
+from roadproof.analysis.catalogue import traces
 from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import choices, roles_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
 from roadproof.cli.main import main
+from roadproof.errors import InputError
 
 HOME = rp.load()
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
@@ -192,3 +195,31 @@ def test_roles_are_in_the_index_and_checked(tmp_path: Path) -> None:
     assert main(["check", str(out), "--jobs", "1"]) == 0
     (tests / "catalogue.toml").write_text(f"{entry}roles = {{ SV = 'blue' }}\n", "utf-8")
     assert main(["check", str(out), "--jobs", "1"]) == 10
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({"SV": "11", "POV": "12"}, [("11", "12")]),
+        ({"SV": "11", "POV1": "13", "POV2": "12"}, [("11", "13", "12")]),
+        ({"SV": "11"}, [("11", "12"), ("11", "13"), ("11", "12", "13"), ("11", "13", "12")]),
+        ({"SV": "11", "POV1": "12"}, [("11", "13"), ("11", "12", "13")]),
+    ],
+)
+def test_choices_of_obstacles(
+    given: dict[str, str], expected: list[tuple[str, ...]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of three obstacles: those alone that play all roles, or all choices that keep who is named."""
+    frames = {"first_frame": [0] * 3, "last_frame": [9] * 3, "direction": [0] * 3}
+    recording: Any = SimpleNamespace(vehicles=3, vehicle_id=[11, 12, 13], **frames)
+    monkeypatch.setattr(traces, "cut_trace", lambda recording, place, vehicles, frames: vehicles)
+    entry = Concrete("x", "a.xml", roles=given)
+    assert [tuple(told.values()) for _, told in traces._all_of(recording, entry, KNOWN)] == expected
+    monkeypatch.setattr(traces, "MOST_VEHICLES", 2)
+    if len(expected) == 1:
+        more = {name: [*values, values[0]] for name, values in frames.items()}
+        crowd: Any = SimpleNamespace(vehicles=4, vehicle_id=[11, 12, 13, 14], **more)
+        assert len([*traces._all_of(crowd, entry, KNOWN)]) == 1
+    else:
+        with pytest.raises(InputError, match="3 vehicles, but of at most 2"):
+            [*traces._all_of(recording, entry, KNOWN)]
