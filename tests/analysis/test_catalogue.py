@@ -25,7 +25,7 @@ from roadproof.analysis.classify.divide import Division, divide
 from roadproof.api.cataloguing import Catalogued, catalogue
 from roadproof.api.settings import basis_of
 from roadproof.cli.main import main
-from roadproof.errors import InputError, RoadproofError
+from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
 from roadproof.judge.algebraic import approximate
 from roadproof.judge.exact import judge
@@ -403,34 +403,6 @@ def test_files_of_one_name_are_two_tests(tmp_path: Path) -> None:
 
 
 # --- mistakes ---------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("", "there is no [[test]]"),
-        ("[[test]]\nid='x'", "either a file or a formula"),
-        ("[[test]]\nid='x'\nfile='a.json'\nformula='true'", "either a file or a formula"),
-        ("[[test]]\nid='x'\nfile='a.json'\nroad='main-2'", "road is for tests with a formula"),
-        ("[[test]]\nid='x'\nformula='true'\ncolour='red'", "'colour' is not known"),
-        ("[[test]]\nid=3\nformula='true'", "id=3"),
-        ("[[test]]\nid='x'\nformula='true'\nclaims=[99]", "there is no scenario '99'"),
-        ("[[test]]\nid='x'\nformula='true'\nclaims=4", "write a list"),
-        ("[[test]]\nid='x'\nformula='true'\nclaims=['1-8']", "names 8 scenarios"),
-        ("[[test]]\nid='x'\nformula='true'\nclaims=['a b']", "no number of a scenario and no name"),
-        ("[[test]]\nid='x'\nformula='v_lon(SV) >'", "test 1, formula, line 1, column"),
-        ("[[test]]\nid='x'\nformula='true'\nat_start={'v_lon(SV)'='20 m/s'}", "write a range"),
-        ("[[test]]\nid='x'\nformula='true'\nat_start={'v_lon(SV)'='20 m .. 30 m'}", "at_start"),
-        ("[[test]]\nid='x'\nformula='true'\n[[test]]\nid='x'\nformula='true'", "two tests are called so"),
-        ("[[test]]\nid='x'\nformula='true'\nroad='moon'", "there is no road 'moon'"),
-        ("other = 1", "'other' is not known"),
-    ],
-)
-def test_mistakes_in_a_catalogue(text: str, told: str, tmp_path: Path) -> None:
-    (tmp_path / "catalogue.toml").write_text(text, "utf-8")
-    with pytest.raises(RoadproofError, match=r".*") as error:
-        read_catalogue([tmp_path], HOME.alone)
-    assert told in str(error.value)
 
 
 def test_a_folder_without_tests_is_refused(tmp_path: Path) -> None:

@@ -177,7 +177,7 @@ def test_the_command_writes_what_is_checked_again(written: Path, capsys: pytest.
     assert said[-2].startswith(f"not checked in {written}: seconds, shares, classes[].happens, ")
     assert said[-5:-2] == [
         "  4: deceleration ahead, lane keep",
-        "  8: deceleration ahead, lane change",
+        "  8: deceleration ahead, lane change (SV leaves its lane)",
         "  4, 8: main road",
     ]
     assert [line.split()[0] for line in said[1:-5]] == ["WITNESSED"] * 3 + ["PROVED"] * 5

@@ -69,6 +69,7 @@ def test_plates_are_drawn_with_all_their_models_and_drives(tmp_path):
     assert seen.count('<svg viewBox="0 0 300 190" class="plate"') == 2
     assert seen.count("<polyline") == 4
     assert "Ve0 = 60 km/h, Vy = 2 m/s" in seen
+    assert "dV0: how much faster SV is than POV, Ve0-Vo0 (km/h); Vy: the lateral speed of POV (m/s)" in seen
     assert (found.drives, found.exit_code) == (4, 0)
     row = seen.partition("25/3</td>")[2]  # dV0 = 30 km/h
     assert row.startswith(f"<td>{line_of(tmp_path / 'p')}</td>")

@@ -33,7 +33,9 @@ def test_the_24_are_called_by_behaviour_of_pov_and_sv_and_by_sector() -> None:
     words = called(BASE)
     assert list(words) == list(range(1, 25))
     kinds = ("cut-in", "cut-out", "acceleration behind", "deceleration ahead")
-    rows = [(pov, sv) for sv in ("lane keep", "lane change") for pov in kinds]
+    rows = [(pov, "lane keep") for pov in kinds]
+    leaves, enters = "lane change (SV leaves its lane)", "lane change (SV enters that of POV)"
+    rows += [(pov, enters if pov == "acceleration behind" else leaves) for pov in kinds]
     sectors = ("main road", "merge zone", "departure zone")
     expected = [f"{pov}, {sv}, {sector}" for sector in sectors for pov, sv in rows]
     assert [x.name for x in words.values()] == expected
@@ -135,12 +137,21 @@ def test_files_beside_evidence_rename_nothing(tmp_path: Path) -> None:
         beside('title of 4 "harmless"')
 
 
+@pytest.mark.parametrize("number", range(1, 25))
+def test_titles_say_which_lane_change_the_formula_asks_for(number: int) -> None:
+    """SV leaves L in 5, 6 and 8, and enters L in 7; the titles of their like say the same."""
+    words = words_of(BASE, number)
+    body = str(BASE.definitions[f"behaviourSV_{(number - 1) % 8 + 1}"].body)
+    assert ("SV leaves its lane" in words.title) == ("leavingLane" in body)
+    assert ("SV enters that of POV" in words.title) == ("enteringLane" in body)
+
+
 def test_legends_are_in_order() -> None:
     told = [*legend(called(BASE, {12, 8, 1, 4}))]
     assert told == [
         "1:     cut-in, lane keep",
         "4, 12: deceleration ahead, lane keep",
-        "8:     deceleration ahead, lane change",
+        "8:     deceleration ahead, lane change (SV leaves its lane)",
         "1, 4, 8: main road; 12: merge zone",
     ]
 

@@ -228,6 +228,7 @@ class Catalogued(Studied[Meanings, Kept]):
             "file": entry.place,
             "sha256": answer.sha256,
             "copy_of": entry.copy_of,
+            "roles": dict(answer.roles),
             "claims": list(answer.claims),
             "dense": answer.dense,
             "shown": shown,

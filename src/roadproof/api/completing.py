@@ -7,7 +7,7 @@ from pathlib import Path
 from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.completing import Completion
 from roadproof.analysis.catalogue.entries import Concrete
-from roadproof.analysis.catalogue.reading import FILE_NAME
+from roadproof.analysis.catalogue.listing import FILE_NAME
 from roadproof.analysis.catalogue.showing import Freedom, show
 from roadproof.analysis.catalogue.writing import Listed, catalogue_text
 from roadproof.api.exporting import ExportedDrive, can_export, export, formats_in

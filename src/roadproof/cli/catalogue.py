@@ -33,6 +33,8 @@ tests:
     road = "main-2"
     vehicles = { POV = "truck" }
     claims = [4, "class_4_main"]         what it is meant to show
+    roles = { SV = "ego", POV = "car1" } with a file: vehicles by role; without it ego, hero, host and the
+                                         like are SV, and of two vehicles the other one is POV
 
 examples:
   roadproof catalogue tests                            what is tested, and what is not
@@ -47,6 +49,7 @@ examples:
   roadproof check report                               judge all tests again; stale ones are named
   roadproof catalogue tests --set base,ext             base, and figures of how much of ext is tested
 
+A test that cannot be read is a fault of this test; all others are judged.
 A drive file fixes roles, lane and start; samples fix roles where vehicles are called SV and POV, and are
 looked at in all lanes from all instants on. Which class of gap a test shows is told in any case; --gaps asks
 for a test of each class that is not proved empty, which takes as long as roadproof coverage.

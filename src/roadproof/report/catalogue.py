@@ -4,6 +4,7 @@ import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
+from textwrap import indent
 from typing import Any
 from xml.etree import ElementTree as xml
 
@@ -101,7 +102,7 @@ def remark_line(remark: Remark) -> str:
 def _listed(heading: str, lines: Sequence[str]) -> Iterator[str]:
     if lines:
         yield f"{heading}:"
-        yield from (f"  {line}" for line in lines[:MOST_TOLD])
+        yield from (indent(line, "  ") for line in lines[:MOST_TOLD])
         if len(lines) > MOST_TOLD:
             yield f"  … {len(lines) - MOST_TOLD} more"
 

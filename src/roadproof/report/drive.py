@@ -54,7 +54,8 @@ def compose_drive(file: DriveFile, library: Library, title: str = "") -> Any:
     dangers = dangers_of(file, library)
     lanes = len(file.road.lanes)
     heights = [0.2 + 0.26 * lanes] * SNAPSHOTS + [1.4, 1.4, 1.2, 0.2 + STRIP * len(strips)]
-    figure, axes = make_figure(heights, WIDTH)
+    longest = max((2 * x.depth + len(x.name) for x in strips), default=0)
+    figure, axes = make_figure(heights, WIDTH + 0.05 * max(0, longest - 50))  # room for names of strips
     colours = dict(zip(vehicles_of(file), COLOURS * len(file.drive.vehicles), strict=False))
     _draw_roads(axes[:SNAPSHOTS], file, colours, heights[0])
     speeds, along, across, below = axes[SNAPSHOTS:]

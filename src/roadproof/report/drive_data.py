@@ -16,6 +16,7 @@ from roadproof.judge.exact import Judgement, judge
 from roadproof.judge.robust import robustness
 from roadproof.judge.truth import TruthSet
 from roadproof.logic.formula import Compare, Formula, nesting, subformulas
+from roadproof.preventing.words import words_of_parts
 from roadproof.spec.bind import bind, values_with
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
@@ -103,9 +104,13 @@ def times_of(file: DriveFile) -> list[Fraction]:
 
 def strips_of(judgement: Judgement, horizon: Fraction) -> tuple[Strip, ...]:
     """Every named part of a judged formula, each below the one that it is part of."""
-    depths = nesting(judgement.formula)
+    depths, words = nesting(judgement.formula), words_of_parts(judgement.formula)
     return tuple(
-        Strip(f"{part.name}({', '.join(part.arguments)})", depths[part], tuple(_spans(truth, float(horizon))))
+        Strip(
+            words.get(part) or f"{part.name}({', '.join(part.arguments)})",
+            depths[part],
+            tuple(_spans(truth, float(horizon))),
+        )
         for part, truth in judgement.named()
     )
 

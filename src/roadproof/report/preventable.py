@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from math import ceil
+from textwrap import wrap
 from typing import Any
 
 from roadproof.analysis.preventable import Plate, Preventable, Proved, Shown
 from roadproof.preventing.lines import Line
 from roadproof.preventing.manoeuvres import Quantity
 from roadproof.preventing.models import MODELS, parts_of
+from roadproof.preventing.words import legend
 from roadproof.report.figures import as_bytes, make_page
 from roadproof.units import UNITS
 
@@ -24,6 +26,7 @@ COLOURS: Mapping[str, str] = {
 }
 _STEPPED = "Single lines: places looked at, stepped at 10 Hz; nothing is claimed between them"
 _LEGEND = 1.9, 0.2  # inches for the name of a model
+_LETTERS = 21  # of a line below the plates, an inch
 _TOLD = 5  # lines of a plate, and spans of a line, that the terminal shows
 
 
@@ -36,6 +39,12 @@ def fixed_text(study: Preventable, plate: Plate) -> str:
     """What is fixed on a plate."""
     known = study.manoeuvre.quantities
     return ", ".join(f"{name} = {measured(known[name], value)}" for name, value in plate.fixed.items())
+
+
+def shown_symbols(study: Preventable) -> tuple[Quantity, ...]:
+    """The initial values that plates are about, in the order of the manoeuvre."""
+    names = {study.manoeuvre.line, study.manoeuvre.across, *study.sheet, *study.fixed}
+    return tuple(x for name, x in study.manoeuvre.quantities.items() if name in names)
 
 
 def share_of(study: Preventable, plate: Plate) -> float:
@@ -79,6 +88,7 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved
                 )
                 told = f"a drive at {values}{_scenario_text(study, x)}"
             lines.append(f"  {x.side}: {told}")
+    lines += [legend(shown_symbols(study))] if plates else []
     for proved in lemmas:
         lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
         if proved.reason:
@@ -137,7 +147,7 @@ def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
     rows = list(product(*(study.sheet[name] for name in names[1:2])))
     width = 1.1 + 2.5 * len(columns)
     top = 0.55 + _LEGEND[1] * ceil(len(study.models) / _models_a_row(width))
-    height = top + 0.5 + 2.2 * len(rows)
+    height = top + 0.3 + 0.12 * len(_below(study, width)) + 2.2 * len(rows)
     figure = make_page(width, height)
     for i, row in enumerate(rows):
         for j, column in enumerate(columns):
@@ -161,6 +171,13 @@ def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
     return as_bytes(figure)
 
 
+def _below(study: Preventable, width: float) -> list[str]:
+    """Lines below the plates, the lowest first: symbols, readings, and what single lines are."""
+    lines = [_STEPPED] if any(model.is_stepped for model in study.models) else []
+    lines += wrap(legend(shown_symbols(study)), int(width * _LETTERS))[::-1]
+    return lines + ([f"With {', '.join(study.readings)}"] if study.readings else [])
+
+
 def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
     what = "in what is shaded"
     if all(model.is_stepped for model in study.models):
@@ -169,10 +186,7 @@ def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
     fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in study.fixed.items())
     title = f"{study.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
     figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
-    below = [f"With {', '.join(study.readings)}"] if study.readings else []
-    if any(model.is_stepped for model in study.models):
-        below.insert(0, _STEPPED)
-    for k, said in enumerate(below):
+    for k, said in enumerate(_below(study, width)):
         figure.text(0.2 / width, (0.1 + 0.12 * k) / height, said, fontsize=5.5, va="center")
     for k, model in enumerate(study.models):
         row, column = divmod(k, _models_a_row(width))

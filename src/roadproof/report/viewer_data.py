@@ -23,6 +23,7 @@ from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import bounds_of
 from roadproof.logic.show import as_syntax, text
+from roadproof.preventing.words import words_of_parts
 from roadproof.report.drive_data import (
     GRAIN,
     Direction,
@@ -230,6 +231,7 @@ def shown_parts(judgement: Judgement, file: DriveFile, home: Specification) -> d
     shown = every[:MOST_PARTS]
     places = {part: k for k, part in enumerate(shown)}
     step, margins = _margins(judgement.formula, file)
+    words = words_of_parts(judgement.formula)
     parts = []
     for part in shown:
         entry: dict[str, Any] = {
@@ -241,6 +243,8 @@ def shown_parts(judgement: Judgement, file: DriveFile, home: Specification) -> d
         if isinstance(part, f.Named):
             definition = home.definitions.get(part.name.partition("@")[0])
             entry["says"] = "" if definition is None else home.describe(definition)
+            if part in words:
+                entry["words"] = words[part]
         if part in margins:
             entry["margins"] = _short(margins[part])
         parts.append(entry)

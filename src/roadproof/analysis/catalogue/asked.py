@@ -23,6 +23,8 @@ from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import (
     LANE,
+    PAIR,
+    TRIPLE,
     Scenario,
     applied,
     danger_comes,
@@ -30,6 +32,7 @@ from roadproof.spec.scenarios import (
     endangered,
     name_of,
     number_in,
+    numbers_of,
     safe,
     sector,
     vehicles_of,
@@ -99,6 +102,18 @@ class Asked:
     def roles(self) -> tuple[tuple[str, ...], ...]:
         """What the vehicles of the scenarios are called, each choice once."""
         return tuple(dict.fromkeys(self._vehicles.values()))
+
+    @cached_property
+    def all_roles(self) -> tuple[tuple[str, ...], ...]:
+        """What the vehicles of all scenarios of the specification are called, each choice once."""
+        home = self.specification
+        own = (vehicles_of(home, Scenario(number, home.set_name)) for number in numbers_of(home))
+        return tuple(dict.fromkeys((PAIR, TRIPLE, *own)))
+
+    @cached_property
+    def role_names(self) -> frozenset[str]:
+        """All roles."""
+        return frozenset(role for roles in self.all_roles for role in roles)
 
     @cached_property
     def _vehicles(self) -> Mapping[int, tuple[str, ...]]:

@@ -6,11 +6,12 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.analysis.catalogue.entries import Concrete
-from roadproof.analysis.catalogue.showing import Freedom, first_trace
+from roadproof.analysis.catalogue.playing import play_drive, roles_of
+from roadproof.analysis.catalogue.traces import first_trace
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import OneTrace, is_pair
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.spec.scenarios import SUBJECT
+from roadproof.spec.scenarios import PAIR, SUBJECT, TRIPLE
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
 
@@ -41,10 +42,14 @@ class Courses:
 
 def courses_of(entry: Concrete) -> Courses | None:
     """How the vehicles of a test move; None where it cannot be read."""
+    if entry.fault:
+        return None
     try:
         if entry.place.endswith(".json") and not is_pair(entry.place):
-            return of_drive(load_drive(Path(entry.place)))
-        trace = first_trace(entry, Freedom())
+            file = load_drive(Path(entry.place))
+            known = {*PAIR, *TRIPLE, *entry.roles}
+            return of_drive(play_drive(file, roles_of(entry, tuple(file.drive.vehicles), known)))
+        trace = first_trace(entry)
         return None if trace is None else _of_trace(trace)
     except InputError:
         return None

@@ -15,7 +15,9 @@ class Concrete:
 
     ``place``: a drive file, samples, a scenario of CommonRoad, or vehicles of a recording such as
     ``01_tracks.csv:12,15``. ``claims``: the scenarios and classes that it is meant to show, by definition.
-    ``copy_of``: the id of the test of which it is the same in another format, if any.
+    ``copy_of``: the id of the test of which it is the same in another format, if any. ``roles``: the name of
+    the vehicle of each role that it names. ``fault``: why the test cannot be read, concrete or not; its place
+    is then the file that names it where no other is known.
     """
 
     id: str
@@ -23,6 +25,8 @@ class Concrete:
     title: str = ""
     claims: tuple[str, ...] = ()
     copy_of: str = ""
+    roles: Mapping[str, str] = field(default_factory=dict)
+    fault: str = ""
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +11,19 @@ from roadproof.analysis.catalogue.asked import Asked, Endangered, Key
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
 from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.playing import (
+    cast_samples,
+    choices,
+    no_role,
+    play_drive,
+    roles_of,
+)
+from roadproof.analysis.catalogue.traces import is_samples, traces_of
 from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
+from roadproof.evaluation.one_trace import OneTrace, is_pair
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.formats.recording import Recording
-from roadproof.formats.sources import find_source
 from roadproof.judge.algebraic import approximate
 from roadproof.judge.exact import judge
 from roadproof.judge.signals import DriveSignals
@@ -28,10 +33,9 @@ from roadproof.monitoring.compiled import compile
 from roadproof.preventing.restriction import restriction_of, unrestricted
 from roadproof.signals import SignalName
 from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, TRIPLE, endangered, name_of, number_in
+from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in
+from roadproof.spec.scenarios import roles as scenario_roles
 
-MOST_VEHICLES = 8
-"""In a scenario of CommonRoad of which no vehicles are named."""
 _STATE: tuple[SignalName, ...] = ("s", "d", "v_lon")
 ENDANGERED = "endangered"
 """What a test shows in which vehicles are safe and come into danger, whatever scenario that is."""
@@ -70,7 +74,8 @@ class ConcreteAnswer:
     readings and spec set of its file that are not those asked for; ``rejected``: why the judge rejects its
     file, with the file's own values. ``fault``: why it could not be read. ``why``: why it shows none.
     ``sha256``: the digest of its files when it was judged (``digest_of``). ``decisions``: what becomes of its
-    scenarios under driver models.
+    scenarios under driver models. ``roles``: what the test calls the vehicle of each role, where that is not
+    the role.
     """
 
     entry: Concrete
@@ -86,6 +91,7 @@ class ConcreteAnswer:
     why: Why | None = None
     sha256: str = ""
     decisions: tuple[Decision, ...] = ()
+    roles: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def names(self) -> frozenset[str]:
@@ -100,6 +106,8 @@ def show(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers | Non
     """
     digest = digest_of(entry.place)
     try:
+        if entry.fault:
+            raise InputError(entry.fault)
         if entry.place.endswith(".json") and not is_pair(entry.place):
             found = _of_drive(entry, load_drive(Path(entry.place)), asked, freedom, drivers)
         else:
@@ -119,27 +127,37 @@ def _of_drive(
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
         claims = (name_of(file.scenario),)
     others = tuple(name for name, value in file.values.items() if asked.values.get(name, value) != value)
-    shown = all_shown_by(file, asked, freedom)
-    why = None
-    if not _has_scenario(shown):
-        roles = tuple(_choices(asked, tuple(file.drive.vehicles), freedom.roles))
-        lanes = _lanes(file, freedom.lanes)
-        why = why_none(Course(DriveSignals(file.drive), file.road, file.horizon, roles, lanes), asked)
     ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
     if not ruling.readable and drivers is not None:
         ruling = judge_file(file, drivers.specification.library)
+    roles = roles_of(entry, tuple(file.drive.vehicles), asked.role_names)
+    played = play_drive(file, roles)
+    shown = all_shown_by(played, asked, freedom)
+    chosen = tuple(choices(asked.roles, asked.all_roles, tuple(played.drive.vehicles), freedom.roles))
+    why = None
+    if not _has_scenario(shown):
+        lanes = _lanes(file, freedom.lanes)
+        named = tuple(x for x in chosen if asked.role_names >= {*x[1]})
+        why = why_none(Course(DriveSignals(played.drive), file.road, file.horizon, named, lanes), asked)
+    decided = () if drivers is None else decisions_on(played, shown, drivers)
+    notes = (
+        *(() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",)),
+        *((roles.note,) if roles.note else ()),
+        *(() if chosen or asked.role_names & {*played.drive.vehicles} else (no_role(played.drive.vehicles),)),
+    )
     return ConcreteAnswer(
         entry,
         claims,
-        shown,
-        begins_of(file),
+        tuple(replace(x, vehicles=roles.own(x.vehicles)) for x in shown),
+        begins_of(played),
         True,
         others,
-        notes=() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",),
+        notes=notes,
         made_with=tuple(_made_with(file, asked, drivers)),
         rejected=ruling.reason if ruling.readable else "",
         why=why,
-        decisions=() if drivers is None else decisions_on(file, shown, drivers),
+        decisions=tuple(replace(x, vehicles=roles.own(x.vehicles)) for x in decided),
+        roles=roles.played(asked.role_names),
     )
 
 
@@ -148,9 +166,15 @@ def decisions_on(file: DriveFile, shown: Iterable[Shown], drivers: Drivers) -> t
     first: dict[tuple[str, tuple[str, ...]], Shown] = {}
     for x in shown:
         first.setdefault((x.what, x.vehicles), x)
-    return tuple(
-        decision for x in first.values() for decision in decide_drive(file, drivers, x.what, x.vehicles, x.at)
-    )
+    return tuple(y for x in first.values() for y in _decided(file, x, drivers))
+
+
+def _decided(file: DriveFile, shown: Shown, drivers: Drivers) -> Iterator[Decision]:
+    """As ``decide_drive``, with the vehicles called as the roles that they play."""
+    names = scenario_roles(len(shown.vehicles))
+    played = replace(file, drive=file.drive.cast(dict(zip(names, shown.vehicles, strict=True))))
+    for x in decide_drive(played, drivers, shown.what, names, shown.at):
+        yield replace(x, vehicles=shown.vehicles)
 
 
 def _as_written(file: DriveFile, specification: Specification) -> DriveFile:
@@ -196,27 +220,17 @@ def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Sh
 def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
     """What a drive shows, judged in dense time: all formulas at once, since they share their parts."""
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
-    for roles, vehicles in _choices(asked, tuple(file.drive.vehicles), freedom.roles):
+    for roles, vehicles in choices(asked.roles, asked.all_roles, tuple(file.drive.vehicles), freedom.roles):
+        drive = file.drive.cast(dict(zip(roles, vehicles, strict=True)))
         for lane in _lanes(file, freedom.lanes):
-            formulas = asked.on(file.road, roles, vehicles, lane)
-            judgement = judge(f.And(tuple(formulas.values())), file.drive)
+            formulas = asked.on(file.road, roles, roles, lane)
+            judgement = judge(f.And(tuple(formulas.values())), drive)
             truths = {key: judgement.truth(formula) for key, formula in formulas.items()}
             for cut, true in _instants(truths, file, freedom.start):
                 for what in _what(asked, roles, true):
                     at = approximate(cut.point)
                     shown.setdefault((what, vehicles, lane), Shown(what, vehicles, lane, at))
     return _sorted(shown.values())
-
-
-def _choices(
-    asked: Asked, names: tuple[str, ...], free: bool
-) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
-    """Roles of scenarios with vehicles for them: those of the same names, or any."""
-    for roles in asked.roles:
-        if free:
-            yield from ((roles, chosen) for chosen in permutations(names, len(roles)))
-        elif set(roles) <= set(names):
-            yield roles, roles
 
 
 def _lanes(file: DriveFile, free: bool) -> tuple[str, ...]:
@@ -250,21 +264,25 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers
     endangered_in: dict[Shown, OneTrace] = {}
     first: OneTrace | None = None
     notes: dict[str, None] = {}
-    for trace, told in _traces(entry, freedom):
+    played = dict(entry.roles)
+    for trace, told in traces_of(entry, asked.role_names):
         first = first or trace
+        if is_samples(entry):
+            played = {role: name for role, name in told.items() if role in asked.role_names}
         notes |= dict.fromkeys(trace.notes)
-        names = tuple(trace.lanes)
-        free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
-        for roles, vehicles in _choices(asked, names, free):
+        for roles, vehicles in choices(
+            asked.roles, asked.all_roles, tuple(trace.lanes), freedom.roles, any_way=True
+        ):
+            called = tuple(told.get(name, name) for name in vehicles)
+            cast, names = cast_samples(trace, roles, vehicles)
             for lane in trace.road.lanes:
-                for what, at in _monitored(trace, asked, roles, vehicles, lane):
-                    called = tuple(told.get(name, name) for name in vehicles)
+                for what, at in _monitored(cast, asked, roles, names, lane):
                     shown.setdefault((what, called, lane), Shown(what, called, lane, at))
                     if drivers is not None and (what, called) not in decisions:
-                        made = decide_trace(trace, drivers, what, vehicles, at, called)
+                        made = decide_trace(cast, drivers, what, names, at, called)
                         decisions[what, called] = tuple(made)
         dangers = [x for x in shown.values() if x.what == ENDANGERED]
-        if dangers and tuple(trace.lanes) == PAIR:
+        if dangers and {*trace.lanes} == {*PAIR}:
             endangered_in.setdefault(min(dangers, key=lambda x: x.at), trace)
         begins = begins or _begins(_states(trace))
     gaps = [
@@ -276,7 +294,9 @@ def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers
     why = None if first is None or _has_scenario(shown.values()) else _why(first, asked, freedom)
     found = (*_sorted(shown.values()), *gaps)
     decided = tuple(x for made in decisions.values() for x in made)
-    return ConcreteAnswer(entry, entry.claims, found, begins, notes=tuple(notes), why=why, decisions=decided)
+    return ConcreteAnswer(
+        entry, entry.claims, found, begins, notes=tuple(notes), why=why, decisions=decided, roles=played
+    )
 
 
 def _has_scenario(shown: Iterable[Shown]) -> bool:
@@ -287,10 +307,9 @@ def _why(trace: OneTrace, asked: Asked, freedom: Freedom) -> Why | None:
     """Why no scenario holds from the first sample on; None on measured roads, whose lanes are not known."""
     if trace.batch.given:
         return None
-    names = tuple(trace.lanes)
-    free = freedom.roles or not any(set(roles) <= set(names) for roles in asked.roles)
     end = (int(trace.batch.lengths[0]) - 1) * trace.batch.dt
-    roles = tuple(_choices(asked, names, free))
+    found = choices(asked.roles, asked.all_roles, tuple(trace.lanes), freedom.roles, any_way=True)
+    roles = tuple(x for x in found if asked.role_names >= {*x[1]})
     return why_none(Course(signals_of(trace.batch), trace.road, end, roles, trace.road.lanes), asked)
 
 
@@ -309,46 +328,12 @@ def _monitored(
             yield what, float(sample * trace.batch.dt)
 
 
-def first_trace(entry: Concrete, freedom: Freedom) -> OneTrace | None:
-    """The first trace of a test that is samples. Raises ``InputError``."""
-    return next((trace for trace, _ in _traces(entry, freedom)), None)
-
-
 def _gap_in_samples(trace: OneTrace, asked: Asked, danger: Shown) -> Iterator[Shown]:
     """The danger of SV and POV as a gap, where no scenario covers it, whatever comes after the trace."""
     sample = round(danger.at / float(trace.batch.dt))
     kinds = () if asked.gaps is None else asked.gaps.of_trace(trace, sample)
     if kinds:
         yield from (replace(danger, what=what) for what in (GAP, *kinds))
-
-
-def _traces(entry: Concrete, freedom: Freedom) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
-    """The traces of a test, each with what the test calls the vehicles."""
-    path = Path(entry.place)
-    if is_pair(entry.place):
-        ids = entry.place.rpartition(":")[2].split(",")
-        trace = read_pair(entry.place)
-        yield trace, dict(zip(trace.lanes, ids, strict=True))
-    elif path.suffix in (".csv", ".parquet", ".xosc"):
-        yield read_samples(path), {}
-    else:
-        yield from _all_of(find_source(path).read(), entry.place)
-
-
-def _all_of(recording: Recording, place: str) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
-    """All pairs and triples of vehicles of one direction that are seen together, in all orders."""
-    if recording.vehicles > MOST_VEHICLES:
-        raise InputError(
-            f"{place}: {recording.vehicles} vehicles, but of at most {MOST_VEHICLES} all choices are looked "
-            f"at; name some in a catalogue.toml, as file = '{Path(place).name}:12,15'"
-        )
-    for names in (PAIR, TRIPLE):
-        for chosen in permutations(range(recording.vehicles), len(names)):
-            low = max(int(recording.first_frame[v]) for v in chosen)
-            high = min(int(recording.last_frame[v]) for v in chosen)
-            if high > low and len({int(recording.direction[v]) for v in chosen}) == 1:
-                trace = cut_trace(recording, place, dict(zip(names, chosen, strict=True)), (low, high))
-                yield trace, {n: str(recording.vehicle_id[v]) for n, v in zip(names, chosen, strict=True)}
 
 
 def _states(trace: OneTrace) -> dict[str, tuple[float, ...]]:

@@ -134,7 +134,7 @@ def _test(
     summary = (tag("b", x.get("id")), f" {x['title']}" if x.get("title") else "")
     inside: list[Content] = []
     inside += [tag("p", "claims ", short(x["claims"]))] if x.get("claims") else []
-    inside += [tag("p", x["fault"], class_="wrong")] if x.get("fault") else []
+    inside += [tag("pre", x["fault"], class_="wrong")] if x.get("fault") else []
     inside += [tag("p", tag("code", x["formula"]))] if x.get("formula") else []
     shown = [
         (y.get("what"), ", ".join(y.get("vehicles", ())), y.get("lane"), y.get("at"))

@@ -7,6 +7,7 @@ from typing import Any
 
 from roadproof.preventing.manoeuvres import MANOEUVRES, Quantity
 from roadproof.preventing.models import MODELS
+from roadproof.preventing.words import legend
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
 from roadproof.report.page.pieces import behind, counts, folded, verdict
@@ -36,6 +37,9 @@ def plates(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
             class_="faint",
         )
     )
+    fixed = {name for x in found for name in x.get("fixed", {})}
+    symbols = [x for name, x in known.items() if name in {along[0], across[0], *fixed}]
+    parts.append(tag("p", f"{legend(symbols)}.", class_="faint"))
     parts += [_plate(x, known, result, book) for x in found]
     lemmas = result.data.get("lemmas", ())
     for x in lemmas:

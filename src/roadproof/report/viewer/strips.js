@@ -188,7 +188,7 @@ function Row({ row, part, drive, look, chosen, join, because, other, onFold, onS
         ? html`<button class="fold" tabindex="-1" aria-label=${row.open ? "fold" : "unfold"} onClick=${(e) => (e.stopPropagation(), onFold())}>${row.open ? "▾" : "▸"}</button>`
         : html`<span class="fold"></span>`}
       <span class=${`now ${now ? "on" : "off"}`} aria-hidden="true"></span>
-      <span class="words">${part.text}</span>
+      <span class="words">${part.words ?? part.text}</span>
       ${join && row.open ? html`<span class="join">${join}</span>` : null}
     </div>
     ${other
