@@ -110,7 +110,9 @@ def _draw_matrix(axes: Any, row: Row, scenarios: Sequence[int], words: Called) -
         for x, j in enumerate(scenarios[: y + 1]):
             colour = "white" if share(i, j) > 0.6 else "black"
             axes.text(x, y, str(count(i, j)), ha="center", va="center", fontsize=7, color=colour)
-    names = [f"s{i}  {words[i].title}".rstrip() for i in scenarios]
+    names = [
+        "\n".join(wrap(f"s{i}  {words[i].title}", 34, drop_whitespace=False)).rstrip() for i in scenarios
+    ]
     axes.set_xticks(range(len(scenarios)), [f"s{i}" for i in scenarios], fontsize=7)
     axes.set_yticks(range(len(scenarios)), names, fontsize=7)
     axes.tick_params(length=0)

@@ -30,7 +30,7 @@ from roadproof.spec.scenarios import danger, endangered, number_in
 from roadproof.world.motion import state_at
 
 Side: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
-DANGER = "danger"
+DANGER = "in danger"
 _JUST_AFTER = Fraction(1, 1000)  # s after an instant that is not one of the manoeuvre itself
 _PLACES = 6  # decimals of a state
 _LEAST = (("Vy", 0.1, "moves across", "m/s"), ("Gx", 0.5, "brakes", "m/s^2"))
