@@ -30,7 +30,7 @@ from roadproof.preventing.claims import SIDES, Side
 from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, road_of
 from roadproof.preventing.manoeuvres import KMH, MANOEUVRES, signals_of
 from roadproof.preventing.margins import State, controller_hits, controller_margin, margin
-from roadproof.preventing.models import MODELS, SCENARIOS
+from roadproof.preventing.models import MODELS, SCENARIOS, unpreventable
 from roadproof.world.drive import Drive, Piece
 from traffic.test_drivers import EACH, drives, questions_with
 
@@ -90,8 +90,8 @@ def random_values(name: str, random: Random) -> dict[str, Fraction]:
 
 
 def is_hit(state: State, name: str, model: str, given: dict[str, Fraction]) -> bool:
-    formula = with_values(DRIVERS.boundary(name, model, MANOEUVRES[name].vehicles), given)
-    return judge(formula, margins._Varied(state)).holds
+    text = unpreventable(name, model, MANOEUVRES[name].vehicles)
+    return judge(with_values(DRIVERS.formula(text), given), margins._Varied(state)).holds
 
 
 @pytest.mark.parametrize(("name", "model"), EACH)
@@ -105,7 +105,7 @@ def test_beyond_a_margin_the_answer_is_another_one(name: str, model: str) -> Non
         at = kind.values(random_values(name, random))
         state = state_of(name, at)
         hit = is_hit(state, name, model, known)
-        found = margin(state, boundary, model, kind.vehicles, known)
+        found = margin(state, boundary, kind.vehicles)
 
         def with_gap(more: Fraction, at: dict[str, Fraction] = at) -> bool:
             return is_hit(state_of(name, {**at, kind.line: at[kind.line] + more}), name, model, known)

@@ -102,27 +102,42 @@ class Margin:
     seconds: float | None
 
 
-def margin(
-    state: State,
-    boundary: Formula,
-    model: str,
-    vehicles: tuple[str, ...],
-    values: Mapping[str, Fraction],
-) -> Margin:
-    """Of a model with a formula; ``boundary``: that a collision is unpreventable, parameters as they are.
+@dataclass(frozen=True)
+class Boundary:
+    """That a collision is unpreventable for a model, as a formula about a state.
 
-    ``values``: of all parameters (SI). Ends of what was looked at, such as a gap of 0, are no changes.
+    ``at_values``: at the values of parameters; ``delayed``: with the time that the model takes to respond as
+    a signal of its own, which is ``delay`` (s) at these values.
     """
+
+    at_values: Formula
+    delayed: Formula
+    delay: Fraction
+
+
+def boundary_of(formula: Formula, model: str, values: Mapping[str, Fraction]) -> Boundary:
+    """The boundary of a model with a formula, whose parameters are left as they are; ``values`` (SI)."""
+    name = _DELAYS[model]
+    others = {key: x for key, x in values.items() if key != name}
+    delayed = with_values(_varying(formula, name), others)
+    return Boundary(with_values(formula, values), delayed, values[name])
+
+
+def holds_in(formula: Formula, state: State) -> bool:
+    """Whether a formula about a state, without parameters, holds in this one; exact."""
+    return truth_within(formula, _Varied(state), Fraction(0), Fraction(1)).at(Fraction(0))
+
+
+def margin(state: State, boundary: Boundary, vehicles: tuple[str, ...]) -> Margin:
+    """How far a state is from the boundary. Ends of what was looked at, as a gap of 0, are no changes."""
     last = vehicles[-1]
     room = state.gap(vehicles[-2], last)  # less is no such manoeuvre
     shifted = _Varied(state, last, state.signals["s", last] - room)
     farthest = max(room, Fraction(0)) + _FARTHEST
-    gaps = _inside(truth_within(with_values(boundary, values), shifted, Fraction(0), farthest), farthest)
-    name = _DELAYS[model]
-    late = with_values(_varying(boundary, name), {k: x for k, x in values.items() if k != name})
-    latest = values[name] + _LATEST
-    delays = _inside(truth_within(late, _Varied(state), Fraction(0), latest), latest)
-    return Margin(_distance(gaps, room), _distance(delays, values[name]))
+    gaps = _inside(truth_within(boundary.at_values, shifted, Fraction(0), farthest), farthest)
+    latest = boundary.delay + _LATEST
+    delays = _inside(truth_within(boundary.delayed, _Varied(state), Fraction(0), latest), latest)
+    return Margin(_distance(gaps, room), _distance(delays, boundary.delay))
 
 
 def _inside(truth: TruthSet, last: Fraction) -> tuple[float, ...]:

@@ -21,7 +21,15 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
 from roadproof.monitoring.compiled import compile
-from roadproof.preventing.margins import State, controller_hits, controller_margin, margin
+from roadproof.preventing.margins import (
+    Boundary,
+    State,
+    boundary_of,
+    controller_hits,
+    controller_margin,
+    holds_in,
+    margin,
+)
 from roadproof.preventing.models import MODELS, course_in, foreseen, unpreventable
 from roadproof.signals import SIGNALS
 from roadproof.spec.elaborate import read_claim
@@ -66,6 +74,8 @@ class Drivers:
     values: Mapping[str, Fraction]
     models: tuple[str, ...]
     _read: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
+    _bound: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
+    _boundaries: dict[str, Boundary] = field(default_factory=dict, repr=False, compare=False)
 
     def of(self, manoeuvre: str) -> tuple[str, ...]:
         """The models that speak of a manoeuvre."""
@@ -77,22 +87,33 @@ class Drivers:
             self._read[text] = read_claim(self.specification, text).formula
         return self._read[text]
 
-    def asked(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, Formula]:
-        """What is asked of a drive: that the manoeuvre begins, that danger is there, and of each model."""
+    def begins(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, Formula]:
+        """What is asked of a drive: that the manoeuvre begins, and that danger is there."""
         first, last = endangered(vehicles)
-        found = {
-            BEGINS: self.formula(foreseen(manoeuvre, vehicles)),
-            DANGER: danger(self.specification, first, last).formula,
+        return {
+            BEGINS: self._at_values(foreseen(manoeuvre, vehicles)),
+            DANGER: self._at_values(danger(self.specification, first, last).text),
         }
-        found |= {x: self.boundary(manoeuvre, x, vehicles) for x in self._with_formula(manoeuvre)}
-        return {key: with_values(x, self.values) for key, x in found.items()}
 
-    def boundary(self, manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> Formula:
-        """That a collision is unpreventable for a model, with parameters left as they are."""
-        return self.formula(unpreventable(manoeuvre, model, vehicles))
+    def collides(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, Formula]:
+        """What is asked of a state: that a collision is unpreventable, for each model with a formula."""
+        return {
+            x: self._at_values(unpreventable(manoeuvre, x, vehicles))
+            for x in self.of(manoeuvre)
+            if not MODELS[x].is_stepped
+        }
 
-    def _with_formula(self, manoeuvre: str) -> Iterator[str]:
-        return (x for x in self.of(manoeuvre) if not MODELS[x].is_stepped)
+    def boundary(self, manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> Boundary:
+        """Where a collision is unpreventable for a model, to be varied."""
+        text = unpreventable(manoeuvre, model, vehicles)
+        if text not in self._boundaries:
+            self._boundaries[text] = boundary_of(self.formula(text), model, self.values)
+        return self._boundaries[text]
+
+    def _at_values(self, text: str) -> Formula:
+        if text not in self._bound:
+            self._bound[text] = with_values(self.formula(text), self.values)
+        return self._bound[text]
 
 
 def course_of(scenario: str) -> str | None:
@@ -111,7 +132,7 @@ def decide_drive(
     manoeuvre = course_of(scenario)
     if manoeuvre is None or not drivers.of(manoeuvre):
         return
-    asked = drivers.asked(manoeuvre, vehicles)
+    asked = drivers.begins(manoeuvre, vehicles)
     judgement = judge(f.And(tuple(asked.values())), file.drive)
     truths = {key: judgement.truth(x) for key, x in asked.items()}
     start = Cut(Fraction(since), False)
@@ -119,14 +140,28 @@ def decide_drive(
     if begins is None or (threat is not None and threat < begins):
         yield from _not_foreseen(drivers, manoeuvre, scenario, vehicles)
         return
-    time = Fraction(approximate(begins.point)) + (_JUST_AFTER if begins.after else 0)
+    state = _state_at(file, begins)
+    hit = _hit(file, begins, state, drivers.collides(manoeuvre, vehicles))
+    yield from _decided(drivers, manoeuvre, scenario, vehicles, approximate(begins.point), state, hit)
+
+
+def _state_at(file: DriveFile, cut: Cut) -> State:
+    """The state at a cut; near it where it is just after a point, or at an irrational one."""
+    time = cut.point if isinstance(cut.point, Fraction) else Fraction(approximate(cut.point))
+    time += _JUST_AFTER if cut.after else 0
     states = {name: state_at(motion, time) for name, motion in file.drive.vehicles.items()}
-    state = State(
+    return State(
         {(x, name): Fraction(getattr(at, x)) for name, at in states.items() for x in SIGNALS},
         {(x, n): getattr(m, x) for n, m in file.drive.vehicles.items() for x in ("length", "width")},
     )
-    hit = {x: bisect_right(truths[x].cuts, begins) % 2 == 1 for x in asked if x in MODELS}
-    yield from _decided(drivers, manoeuvre, scenario, vehicles, approximate(begins.point), state, hit)
+
+
+def _hit(file: DriveFile, cut: Cut, state: State, collides: Mapping[str, Formula]) -> dict[str, bool]:
+    """Whether each formula about a state holds at a cut of a drive, exactly."""
+    if isinstance(cut.point, Fraction) and not cut.after:
+        return {name: holds_in(x, state) for name, x in collides.items()}
+    judgement = judge(f.And(tuple(collides.values())), file.drive)
+    return {name: bisect_right(judgement.truth(x).cuts, cut) % 2 == 1 for name, x in collides.items()}
 
 
 def _first(truth: TruthSet, start: Cut) -> Cut | None:
@@ -153,7 +188,8 @@ def decide_trace(
     if manoeuvre is None or not drivers.of(manoeuvre):
         return
     batch = trace.batch
-    answers = compile(drivers.asked(manoeuvre, vehicles)).evaluate(batch, "truncated", at="all").answers
+    asked = {**drivers.begins(manoeuvre, vehicles), **drivers.collides(manoeuvre, vehicles)}
+    answers = compile(asked).evaluate(batch, "truncated", at="all").answers
     true = {key: answer.true[:, 0] for key, answer in answers.items()}
     first = round(since / float(batch.dt))
     for k in range(first, int(batch.lengths[0])):
@@ -232,8 +268,7 @@ def _decided(
         if MODELS[model].is_stepped:
             yield _of_controller(replace(made, driver=model), near, manoeuvre, vehicles)
             continue
-        boundary = drivers.boundary(manoeuvre, model, vehicles)
-        found = margin(near, boundary, model, vehicles, drivers.values)
+        found = margin(near, drivers.boundary(manoeuvre, model, vehicles), vehicles)
         side: Side = "unpreventable" if hit[model] else "preventable"
         yield replace(made, driver=model, side=side, metres=found.metres, seconds=found.seconds)
 
@@ -249,7 +284,7 @@ def _slight(start: Mapping[str, float]) -> str:
 def _of_controller(made: Decision, state: State, manoeuvre: str, vehicles: tuple[str, ...]) -> Decision:
     try:
         hit = controller_hits(state, manoeuvre, vehicles)
-        metres = controller_margin(state, manoeuvre, vehicles, hit)
+        metres = None if made.reason else controller_margin(state, manoeuvre, vehicles, hit)
     except InputError as error:
         return replace(made, reason=str(error))
     return replace(made, side="unpreventable" if hit else "preventable", metres=metres)
