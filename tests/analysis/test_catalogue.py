@@ -318,7 +318,7 @@ formula = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
 def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("abstract")
     (folder / "catalogue.toml").write_text(ABSTRACT, "utf-8")
-    found = catalogue(folder, among="3-4", classes=False, jobs=1, out=folder / "report")
+    found = catalogue(folder, among="3-4", classes=False, drivers=(), jobs=1, out=folder / "report")
     relations = {(x.test, x.other): x.relation for x in tested.all_facts(found.found.answers)}
     assert relations == {
         ("wide", ""): "runs",
@@ -344,7 +344,7 @@ def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_answers_about_formulas_are_kept_and_checked(meant: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["check", str(meant / "report"), "--jobs", "1"]) == 0
     monkeypatch.setattr(meaning, "answer", lambda search: pytest.fail("it is kept"))
-    again = catalogue(meant, among="3-4", classes=False, jobs=1, out=meant / "report")
+    again = catalogue(meant, among="3-4", classes=False, drivers=(), jobs=1, out=meant / "report")
     assert len(again.evidence) == 11
 
 

@@ -3,10 +3,12 @@
 import csv
 import io
 import json
+from copy import deepcopy
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 
@@ -20,9 +22,11 @@ from roadproof.analysis.catalogue.decisions import (
     decide_formula,
     decide_trace,
 )
+from roadproof.analysis.catalogue.sides import read_side_name, side_name
 from roadproof.evaluation.evaluate import evaluate_recording
 from roadproof.evaluation.one_trace import cut_trace, sample_drive
-from roadproof.evidence.drive_file import DriveFile, drive_data
+from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
+from roadproof.evidence.finding import Acceptance
 from roadproof.judge.exact import judge
 from roadproof.logic.rewrite import with_values
 from roadproof.preventing import margins
@@ -31,6 +35,9 @@ from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, road_of
 from roadproof.preventing.manoeuvres import KMH, MANOEUVRES, signals_of
 from roadproof.preventing.margins import State, controller_hits, controller_margin, margin
 from roadproof.preventing.models import MODELS, SCENARIOS, unpreventable
+from roadproof.spec.bind import bind, values_with
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.library import bundled_library
 from roadproof.world.drive import Drive, Piece
 from traffic.test_drivers import EACH, drives, questions_with
 
@@ -260,8 +267,74 @@ def test_a_formula_is_partly_preventable_only_where_drives_show_both() -> None:
     other = Decision("scenario_1", ("SV", "POV"), "careful", "unpreventable")
     [both] = decide_formula([one, other])
     [alone] = decide_formula([one])
+    [missed] = decide_formula([one, one], {("scenario_1", "careful")})
     assert (both.side, alone.side, alone.metres) == ("partly", "undecided", None)
-    assert "nothing is known of its other drives" in alone.reason
+    assert alone.reason == "drives found: 1 preventable; no other was looked for; nothing is proved"
+    assert (
+        missed.reason == "drives found: 2 preventable; a search found none on another side; nothing is proved"
+    )
+
+
+WIDE = (
+    "scenario_1(SV,POV,L) and v_lon(SV) = 30 m/s and v_lon(POV) >= 15 m/s and v_lon(POV) <= 30 m/s "
+    "and s(POV) - s(SV) >= 10 m and s(POV) - s(SV) <= 80 m"
+)
+
+
+@pytest.fixture(scope="module", params=["careful", "rss"])
+def both_sides(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """A test with a formula, and its answer by one driver model."""
+    home = tmp_path_factory.mktemp("sides")
+    text = f'[[test]]\nid = "wide"\nformula = "{WIDE}"\n'
+    (home / "tests").mkdir()
+    (home / "tests" / "catalogue.toml").write_text(text, "utf-8")
+    options: dict[str, Any] = {"among": "1", "classes": False, "drivers": [request.param], "jobs": 1}
+    made = rp.catalogue(home / "tests", **options, out=home / "report")
+    assert [(x, y.driver, y.side) for x, y in made.decisions] == [("wide", request.param, "partly")]
+    return request.param, home / "report"
+
+
+def test_drives_of_a_formula_are_looked_for_on_both_sides(both_sides: tuple[str, Path]) -> None:
+    """Each drive that is found is one of the test, and is on the side that its fact names."""
+    model, report = both_sides
+    sides = set()
+    for fact in json.loads((report / "index.json").read_text("utf-8"))["facts"]:
+        named = read_side_name(fact["other"])
+        if named is None or fact["drive"] is None:
+            continue
+        scenario, side, driver = named
+        assert (scenario, driver, fact["relation"]) == ("scenario_1", model, "shows")
+        file = load_drive(report / fact["drive"])
+        home = bundled_library().select("base", {})
+        formula = bind(read_claim(home, WIDE).formula, file.road, file.lanes, values_with(home.library, {}))
+        assert judge(formula, file.drive).holds
+        found = decide_drive(file, replace(DRIVERS, values=values()), "scenario_1", ("SV", "POV"), 0.0)
+        assert [x.side for x in found if x.driver == model] == [side]
+        sides.add(side)
+    assert sides
+
+
+def test_drives_are_on_the_sides_that_facts_name(both_sides: tuple[str, Path]) -> None:
+    """A fact that names the other side, a model that was not asked or another scenario is rejected."""
+    model, report = both_sides
+    index = json.loads((report / "index.json").read_text("utf-8"))
+    place = next(
+        k for k, x in enumerate(index["facts"]) if x["drive"] is not None and read_side_name(x["other"])
+    )
+    scenario, side, _ = read_side_name(index["facts"][place]["other"]) or ("", "", "")
+    [another] = {*SIDES} - {side}
+    for other, told in (
+        (side_name(scenario, another, model), f"its drive is not {another} for {model}"),
+        (side_name(scenario, side, "r157"), "that was not asked"),
+        ("scenario_9", "its conclusion is not scenario_9"),
+        ("anything", "that was not asked"),
+    ):
+        changed = deepcopy(index)
+        changed["facts"][place]["other"] = other
+        (report / "index.json").write_text(json.dumps(changed), "utf-8")
+        found = [x.reason for x in rp.check(report, jobs=1).findings if x.outcome is Acceptance.REJECTED]
+        assert any(told in x for x in found), (other, found)
+    (report / "index.json").write_text(json.dumps(index), "utf-8")
 
 
 def test_the_answer_decides_drives_and_samples_and_says_so(tmp_path: Path) -> None:

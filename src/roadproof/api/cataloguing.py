@@ -13,10 +13,11 @@ from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_for
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
 from roadproof.analysis.catalogue.examination import Examination, examine
 from roadproof.analysis.catalogue.figures import SCENARIOS, Figure, figures, figures_beside, kind_of
-from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
+from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers, scenarios_shown
 from roadproof.analysis.catalogue.ranges import Span, spans_of
 from roadproof.analysis.catalogue.request import NEAR, Look, Request
-from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, all_shown_by, decisions_on
+from roadproof.analysis.catalogue.showing import ConcreteAnswer
+from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.catalogue.tested import Remark, Target, Tested, all_facts, targets_of, tested
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.claims import Covered
@@ -109,20 +110,18 @@ class Catalogued(Studied[Meanings, Kept]):
         for entry in self.catalogue.entries:
             made: Iterable[Decision] = concrete.get(entry.id, ())
             if isinstance(entry, Abstract):
-                made = decide_formula([*self._of_drives(entry, drivers)])
+                made = self._of_formula(entry, drivers)
             found += [(entry.id, x) for x in made]
         return tuple(found)
 
-    def _of_drives(self, entry: Abstract, drivers: Drivers) -> Iterator[Decision]:
-        """What becomes of the drives of an abstract test that were found, each once."""
-        facts = [x for x in all_facts(self.found.answers) if x.test == entry.id and x.drive is not None]
-        seen = set()
-        for fact in facts:
-            assert fact.drive is not None
-            file = fact.drive.file
-            if repr(file.drive) not in seen:
-                seen.add(repr(file.drive))
-                yield from decisions_on(file, all_shown_by(file, self.study.asked, Freedom()), drivers)
+    def _of_formula(self, entry: Abstract, drivers: Drivers) -> Iterator[Decision]:
+        """What becomes of an abstract test by the drives of it that were found, each once."""
+        facts = [x for x in all_facts(self.found.answers) if x.test == entry.id]
+        drives = {repr(x.drive.file.drive): x.drive for x in facts if x.drive is not None}
+        scenarios = scenarios_shown(facts)
+        sides = [read_side_name(x.other) for x in facts if x.relation == "open"]
+        missed = {(x[0], x[2]) for x in sides if x is not None}
+        return decide_formula(decisions_of(drives.values(), scenarios, self.study.asked, drivers), missed)
 
     @property
     def tests(self) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from roadproof.analysis.catalogue.fact import Fact, read_fact
 from roadproof.analysis.catalogue.meaning import GAPS, AboutGaps, Kept, Meanings
 from roadproof.analysis.catalogue.request import Request, read_request
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by
+from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.coverage.answers import ClassAnswer, names_of
 from roadproof.analysis.coverage.claims import Covered
 from roadproof.analysis.coverage.pieces import name_of
@@ -26,6 +27,7 @@ from roadproof.evidence.folder import INDEX, Told
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.hands import Jobs
 from roadproof.spec.library import Library
+from roadproof.spec.scenarios import name_of as scenario_name
 from roadproof.study.frame import Conducted
 from roadproof.study.pool import Progress
 from roadproof.study.shelf import Shelf, inside
@@ -226,10 +228,37 @@ def _wrong(fact: Fact, entries: Mapping[str, Abstract], made: Examination) -> st
         return "it names a number, though no range was asked for"
     if fact.premise.formula != expected.formula:
         return f"its premise is not the formula of {fact.test or fact.other}"
+    if fact.test and fact.other not in entries:
+        reason = _wrong_target(fact, made)
+        if reason:
+            return reason
     if fact.drive is None or fact.relation == "reaches":
         return "it names what drives show, and has none" if fact.also else ""
     shown = {x.what for x in all_shown_by(fact.drive.file, asked, Freedom())}
     return "" if shown == {*fact.also} else f"its drive shows {', '.join(sorted(shown)) or 'nothing'}"
+
+
+def _wrong_target(fact: Fact, made: Examination) -> str:
+    """Why a fact of a test speaks of nothing that was asked, or its drive is on the other side of a model."""
+    asked, target = made.study.asked, fact.other
+    scenarios = {*map(scenario_name, asked.numbers)}
+    side = read_side_name(target)
+    if side is None:
+        beside = {f"{x}@{y.specification.set_name}" for x in scenarios for y in made.study.beside}
+        is_asked = target in ("", *scenarios, *beside, *asked.named.values())
+        return "" if is_asked else f"{target}: that was not asked"
+    scenario, wanted, model = side
+    drivers = made.study.drivers
+    if drivers is None or model not in drivers.models or scenario not in scenarios:
+        return f"{target}: that was not asked"
+    if fact.conclusion is not None and fact.conclusion.formula != asked.query_of(scenario).formula:
+        return f"its conclusion is not {scenario}"
+    if fact.drive is None:
+        return ""
+    found = decisions_of([fact.drive], [scenario], asked, drivers)
+    if any((x.driver, x.side) == (model, wanted) for x in found):
+        return ""
+    return f"its drive is not {wanted} for {model}"
 
 
 def _whole(index: Fields, now: Mapping[str, Any], where: str) -> Iterator[Finding]:

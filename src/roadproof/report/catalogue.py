@@ -17,6 +17,7 @@ from roadproof.spec.scenarios import number_in
 
 MOST_TOLD = 40
 _SURE, _POSSIBLE, _NONE = "#1f5fbf", "#9dbbe3", "#b5473c"
+_INCH_A_LETTER = 0.06  # of labels at 7 points
 
 
 def as_text(
@@ -176,8 +177,11 @@ def draw_matrix(tests: Sequence[str], found: Tested, in_force: Sequence[str] = (
     bars = {"tests of each class (red: none)": classes}
     bars |= {"tests of each class of gaps (red: none)": [*found.gaps.targets] if found.gaps.asked else []}
     bars = {title: those for title, those in bars.items() if those}
-    heights = [0.16 * len(tests) + 3.4, *(2.2 + 0.6 * ("gaps" in title) for title in bars)]
     columns = [*scenarios, *gaps]
+    names = [f"{number_in(x.name)} {x.words}" for x in scenarios]
+    names += [x.name.removeprefix(PREFIX).replace("_", " ") + " (gap)" for x in gaps]
+    labels = _INCH_A_LETTER * max(map(len, names), default=0)
+    heights = [0.16 * len(tests) + labels + 1.2, *(2.2 + 0.6 * ("gaps" in title) for title in bars)]
     longest = max(map(len, bars.values()), default=0)
     width = max(7.0, 1.5 + 0.26 * len(columns), 1.0 + 0.15 * longest)
     figure, axes = make_figure(heights, width=width)
@@ -187,8 +191,6 @@ def draw_matrix(tests: Sequence[str], found: Tested, in_force: Sequence[str] = (
             mark = _mark(test, target)
             if mark:
                 above.scatter(x, y, s=26, marker="s", color=_SURE if mark == "x" else _POSSIBLE)
-    names = [f"{number_in(x.name)} {x.words}" for x in scenarios]
-    names += [x.name.removeprefix(PREFIX).replace("_", " ") + " (gap)" for x in gaps]
     if gaps:
         above.axvline(len(scenarios) - 0.5, color="#888888", lw=0.8)
     above.xaxis.tick_top()  # before labels have colours, since it draws others

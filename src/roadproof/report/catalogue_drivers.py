@@ -29,15 +29,18 @@ def as_lines(decisions: Sequence[tuple[str, Decision]]) -> Iterator[str]:
     every = [(test, scenario, [x for _, x in those]) for (test, scenario), those in groups]
     hit = [x for x in every if any(y.side in ("unpreventable", "partly") for y in x[2])]
     told_of = (every if len(every) <= MOST_ALIKE else hit)[:MOST_TOLD]
-    yield from (_line(*x) for x in told_of)
+    yield from (line for x in told_of for line in _lines(*x))
     if len(told_of) < len(every):
         yield f"  … {len(every) - len(told_of)} more in drivers.csv (--out)"
 
 
-def _line(test: str, scenario: str, those: Sequence[Decision]) -> str:
-    reasons = "; ".join(dict.fromkeys(x.reason for x in those if x.reason))
-    sides = ", ".join(f"{x.driver} {said(x)}" for x in those)
-    return f"  {test} {scenario}: {sides}" + (f" [{reasons}]" if reasons else "")
+def _lines(test: str, scenario: str, those: Sequence[Decision]) -> Iterator[str]:
+    """The sides of all models in one line, and below it each reason with its models."""
+    yield f"  {test} {scenario}: " + ", ".join(f"{x.driver} {said(x)}" for x in those)
+    for reason in dict.fromkeys(x.reason for x in those if x.reason):
+        models = [x.driver for x in those if x.reason == reason]
+        whose = "" if len(models) == len(those) else f"{', '.join(models)}: "
+        yield f"    {whose}{reason}"
 
 
 def said(decision: Decision) -> str:

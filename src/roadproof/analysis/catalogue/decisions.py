@@ -5,7 +5,8 @@ at danger at the latest, and POV is supposed to go on as it moves there.
 """
 
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
@@ -215,27 +216,24 @@ def decide_trace(
 # --- tests with a formula -------------------------------------------------------------------------
 
 
-def decide_formula(found: Sequence[Decision]) -> Iterator[Decision]:
+def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]] = ()) -> Iterator[Decision]:
     """What becomes of a test with a formula, of some drives of which there are decisions.
 
     Drives on both sides show that it is partly preventable; one side alone decides nothing of other drives.
+    ``missed``: scenarios and models for which a search for a drive on a further side found none.
     """
     groups: dict[tuple[str, str], list[Decision]] = {}
     for x in found:
         groups.setdefault((x.scenario, x.driver), []).append(x)
-    for those in groups.values():
-        sides = list(dict.fromkeys(x.side for x in those))
-        if {"preventable", "unpreventable"} <= {*sides}:
-            told = "some of its drives are preventable, others are not: drives were found of both"
-            yield replace(those[0], side="partly", metres=None, seconds=None, start={}, reason=told)
+    for key, those in groups.items():
+        made = replace(those[0], at=None, metres=None, seconds=None, start={})
+        counts = Counter(x.side for x in those)
+        if counts["preventable"] and counts["unpreventable"]:
+            yield replace(made, side="partly", reason="drives were found on both sides")
         else:
-            count = (
-                "its drive that was found is"
-                if len(those) == 1
-                else f"its {len(those)} drives that were found are"
-            )
-            told = f"{count} {' or '.join(sides)}; nothing is known of its other drives"
-            yield replace(those[0], side="undecided", metres=None, seconds=None, start={}, reason=told)
+            told = ", ".join(f"{count} {side}" for side, count in counts.items())
+            other = "a search found none on another side" if key in missed else "no other was looked for"
+            yield replace(made, side="undecided", reason=f"drives found: {told}; {other}; nothing is proved")
 
 
 # --- both ----------------------------------------------------------------------------------------

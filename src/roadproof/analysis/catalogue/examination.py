@@ -21,7 +21,7 @@ from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import divide
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.hands import Jobs
-from roadproof.preventing.restriction import said_in, unrestricted
+from roadproof.preventing.restriction import restriction_of, said_in, unrestricted
 from roadproof.spec.library import Specification
 from roadproof.study import pool
 from roadproof.study.pool import Progress
@@ -77,7 +77,8 @@ def examine(
     abstract = tuple(x for x in tests.entries if isinstance(x, Abstract))
     shown = frozenset(x for answer in answers for x in answer.names if x.startswith(PREFIX))
     reaches = tuple(_reaches(asked, answers)) if request.explore else ()
-    study = Meanings(basis, abstract, asked, tuple(others), kinds, shown, reaches)
+    both_sides = drivers if restriction_of(home.options) is None else None
+    study = Meanings(basis, abstract, asked, tuple(others), kinds, shown, reaches, both_sides)
     return Examination(request, tests, study, answers, beside, drivers)
 
 

@@ -7,18 +7,20 @@ not excluded, a drive of the test is looked for that shows it.
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.decisions import Drivers
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact, Relation, read_fact, record_of
 from roadproof.analysis.catalogue.gaps import GapKinds
 from roadproof.analysis.catalogue.ranges import Reach, reached
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, shown_by
+from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides, unanswered_sides
 from roadproof.analysis.coverage import pieces
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.placing import judged_as
@@ -32,7 +34,7 @@ from roadproof.searching.question import SearchOptions, Setting
 from roadproof.spec.bind import bind
 from roadproof.spec.compose import both
 from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, name_of
+from roadproof.spec.scenarios import Scenario, applied, name_of, number_in
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
 
@@ -53,7 +55,7 @@ class GapPiece:
     piece: pieces.Piece
 
 
-Piece: TypeAlias = Abstract | Pair | GapPiece | Reach
+Piece: TypeAlias = Abstract | Pair | Sides | GapPiece | Reach
 Facts: TypeAlias = tuple[Fact, ...]
 
 
@@ -76,6 +78,7 @@ class Meanings:
 
     ``beside``: what is asked in further sets. ``gaps``: classes of gaps of which it is asked which are empty,
     but for those that tests have ``shown``. ``reaches``: how far drives can go that show what tests show.
+    ``drivers``: the models of which it is asked whether a test has drives on both sides.
     """
 
     basis: Basis
@@ -85,6 +88,7 @@ class Meanings:
     gaps: GapKinds | None = None
     shown: frozenset[str] = frozenset()
     reaches: tuple[Reach, ...] = ()
+    drivers: Drivers | None = None
 
     @property
     def question(self) -> Question:
@@ -92,6 +96,9 @@ class Meanings:
         said = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
         more = {x.id: repr((x.query.text, x.road, sorted(x.vehicles.items()))) for x in self.entries}
         more |= {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
+        if self.entries and self.drivers is not None:
+            values = sorted(self.drivers.values.items())
+            more["drivers"] = repr((self.drivers.models, self.drivers.specification.options, values))
         return Question(SCHEMA, said | self.basis.said(), more, self.basis.library)
 
     @cached_property
@@ -100,15 +107,16 @@ class Meanings:
         return None if self.gaps is None else self.gaps.study()
 
     def pieces(self, known: Mapping[str, Kept]) -> Sequence[Piece]:
-        """Each test and what is asked about gaps; when all are known, pairs of tests: what a drive does not
-        share is not implied."""
+        """Each test and what is asked about gaps. When all are known, the sides of driver models and pairs of
+        tests: what a drive does not share is not implied."""
         left: list[Piece] = [entry for entry in self.entries if _name(entry.id) not in known]
         left += [reach for reach in self.reaches if _name(reach.target, reach.term) not in known]
         left += self._about_gaps(known)
         if left:
             return left
-        drives = {entry.id: _drive(facts_in(known[_name(entry.id)])) for entry in self.entries}
-        return [
+        facts = {entry.id: facts_in(known[_name(entry.id)]) for entry in self.entries}
+        drives = {name: _drive(those) for name, those in facts.items()}
+        pairs = [
             Pair(one, other, drive)
             for one in self.entries
             for other in self.entries
@@ -117,6 +125,15 @@ class Meanings:
             and (drive := drives[one.id]) is not None
             and _name(one.id, other.id) not in known
         ]
+        sides = [x for entry in self.entries for x in self._sides(entry, facts[entry.id])]
+        return [*pairs, *(x for x in sides if _name(x.entry.id, x.scenario) not in known)]
+
+    def _sides(self, entry: Abstract, facts: Facts) -> Iterator[Sides]:
+        """A piece for each scenario of a test of which a driver model speaks."""
+        drives = tuple(x.drive for x in facts if x.drive is not None)
+        for scenario in scenarios_shown(facts):
+            if self.drivers is not None and has_sides(self.drivers, scenario):
+                yield Sides(entry, scenario, drives)
 
     def _about_gaps(self, known: Mapping[str, Kept]) -> Iterator[GapPiece]:
         """The pieces of the survey, without the classes that tests show."""
@@ -137,6 +154,10 @@ class Meanings:
                 return {GAPS + name: AboutGaps(x) for name, x in self.survey.settle(inside).items()}
             case Pair(one, other, drive):
                 return {_name(one.id, other.id): self._implied(one, other, drive)}
+            case Sides(entry, scenario):
+                assert self.drivers is not None
+                facts = facts_on_sides(self.basis, self.asked, self.drivers, piece)
+                return {_name(entry.id, scenario): facts}
             case Abstract():
                 return {_name(piece.id): self._of_test(piece)}
             case Reach(target, term):
@@ -218,6 +239,9 @@ class Meanings:
                 return {GAPS + name: AboutGaps(x) for name, x in self.survey.doubt(inside, reason).items()}
             case Pair(one, other):
                 return {_name(one.id, other.id): ()}
+            case Sides(entry, scenario):
+                assert self.drivers is not None
+                return {_name(entry.id, scenario): unanswered_sides(self.drivers, piece, reason)}
             case Abstract():
                 return {_name(piece.id): (Fact(piece.id, "", "open", piece.query, reason=reason),)}
             case Reach(target, term, query):
@@ -251,6 +275,15 @@ class Meanings:
 def facts_in(answer: Kept) -> Facts:
     """What an answer says about tests."""
     return () if isinstance(answer, AboutGaps) else answer
+
+
+def scenarios_shown(facts: Iterable[Fact]) -> tuple[str, ...]:
+    """The scenarios that a test implies, or that the first drive of it shows."""
+    named = [
+        (x.other,) if x.relation == "implies" else x.also for x in facts if x.relation in ("implies", "runs")
+    ]
+    shown = [name for those in named for name in those]
+    return tuple(dict.fromkeys(x for x in shown if number_in(x) is not None))
 
 
 def gap_answers(known: Mapping[str, Kept]) -> dict[str, pieces.Kept]:

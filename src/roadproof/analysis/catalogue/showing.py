@@ -134,11 +134,7 @@ def _of_drive(
     played = play_drive(file, roles)
     shown = all_shown_by(played, asked, freedom)
     chosen = tuple(choices(asked.roles, asked.all_roles, tuple(played.drive.vehicles), freedom.roles))
-    why = None
-    if not _has_scenario(shown):
-        lanes = _lanes(file, freedom.lanes)
-        named = tuple(x for x in chosen if asked.role_names >= {*x[1]})
-        why = why_none(Course(DriveSignals(played.drive), file.road, file.horizon, named, lanes), asked)
+    why = None if _has_scenario(shown) else why_not(file, played, asked, freedom)
     decided = () if drivers is None else decisions_on(played, shown, drivers)
     notes = (
         *(() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",)),
@@ -159,6 +155,14 @@ def _of_drive(
         decisions=tuple(replace(x, vehicles=roles.own(x.vehicles)) for x in decided),
         roles=roles.played(asked.role_names),
     )
+
+
+def why_not(file: DriveFile, played: DriveFile, asked: Asked, freedom: Freedom) -> Why | None:
+    """Why a drive shows no scenario; ``played``: with vehicles called as their roles."""
+    chosen = choices(asked.roles, asked.all_roles, tuple(played.drive.vehicles), freedom.roles)
+    named = tuple(x for x in chosen if asked.role_names >= {*x[1]})
+    course = Course(DriveSignals(played.drive), file.road, file.horizon, named, _lanes(file, freedom.lanes))
+    return why_none(course, asked)
 
 
 def decisions_on(file: DriveFile, shown: Iterable[Shown], drivers: Drivers) -> tuple[Decision, ...]:

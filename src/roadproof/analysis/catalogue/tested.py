@@ -8,7 +8,7 @@ from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.meaning import Kept, facts_in
-from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
+from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer, Freedom, why_not
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.preventing.restriction import restriction_of
 from roadproof.spec.scenarios import name_of
@@ -104,7 +104,9 @@ def tested(
     known = {*words, *(x.name for x in (*gaps.targets, *gaps.empty))}
     restricted = restriction_of(asked.specification.options) is not None
     claimed = (
-        () if restricted else (*_of_concrete(concrete, known, gaps.asked), *_of_abstract(abstract, facts))
+        ()
+        if restricted
+        else (*_of_concrete(concrete, known, gaps.asked), *_of_abstract(asked, abstract, facts))
     )
     return Tested(
         tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
@@ -251,7 +253,19 @@ def _with_other_values(answer: ConcreteAnswer) -> str:
 _NO_TARGET = "but there is no scenario and no class of that name: classes that are proved empty are left out"
 
 
-def _of_abstract(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
+def _why_of_formula(runs: Fact, asked: Asked) -> str:
+    """Why the drive of a test with a formula shows no scenario."""
+    if runs.drive is None:
+        return ""
+    vehicles = runs.drive.file.drive.vehicles
+    if not any({*roles} <= {*vehicles} for roles in asked.roles):
+        needed = " or ".join(", ".join(roles) for roles in asked.roles)
+        return f"; it speaks of {', '.join(vehicles)}, and scenarios have {needed}"
+    why = why_not(runs.drive.file, runs.drive.file, asked, Freedom())
+    return "" if why is None else f"; on the drive that was found: {why}"
+
+
+def _of_abstract(asked: Asked, abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
     by_test: dict[str, dict[str, Fact]] = {}
     for x in facts:
         by_test.setdefault(x.test, {}).setdefault(x.other, x)
@@ -262,7 +276,7 @@ def _of_abstract(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterato
             yield Remark((entry.id,), "can never be run: that is proved")
             continue
         if alone is not None and alone.relation == "runs" and not entry.claims and not _says_something(known):
-            yield Remark((entry.id,), "shows no scenario")
+            yield Remark((entry.id,), "shows no scenario" + _why_of_formula(alone, asked))
         for claim in entry.claims:
             fact: Fact | None = known.get(claim)
             if fact is None and alone is not None and claim in alone.also:

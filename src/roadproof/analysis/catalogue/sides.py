@@ -1,0 +1,145 @@
+"""Drives of a test with a formula on both sides of a driver model: preventable ones, and others.
+
+A search among the drives of a restricted scenario (``preventing.restriction``) only proposes a drive. It
+counts where the judge accepts it for the test and the scenario, and ``decide_drive`` tells its side.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import get_args
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.decisions import Decision, Drivers, course_of
+from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.fact import Fact
+from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, decisions_on
+from roadproof.analysis.placing import judged_as
+from roadproof.errors import InputError
+from roadproof.evidence.judged import Judged
+from roadproof.preventing.models import MODELS
+from roadproof.preventing.restriction import Restriction, Side, check_library, files_for, said_in
+from roadproof.searching.ask import Search, answer
+from roadproof.searching.question import SearchOptions, Setting
+from roadproof.spec.compose import both
+from roadproof.spec.library import Library, Source, Specification, load_library
+from roadproof.spec.scenarios import Scenario, applied, number_in
+
+
+@dataclass(frozen=True)
+class Sides:
+    """The question for drives of a test, which implies a scenario or shows it, on each side of each model.
+
+    ``drives`` are those of the test that are known.
+    """
+
+    entry: Abstract
+    scenario: str
+    drives: tuple[Judged, ...]
+
+
+_NAME = re.compile(r"(scenario_\d+) (preventable|unpreventable) \((\w+)\)")
+
+
+def side_name(scenario: str, side: str, model: str) -> str:
+    """How facts name a side of a scenario: ``scenario_1 unpreventable (careful)``."""
+    return f"{scenario} {side} ({model})"
+
+
+def read_side_name(name: str) -> tuple[str, str, str] | None:
+    """Scenario, side and model; None for other names."""
+    found = _NAME.fullmatch(name)
+    return None if found is None else (found[1], found[2], found[3])
+
+
+def has_sides(drivers: Drivers, scenario: str) -> bool:
+    """Whether a model with a formula speaks of a scenario."""
+    return any(True for _ in _models(drivers, scenario))
+
+
+def _models(drivers: Drivers, scenario: str) -> Iterator[str]:
+    manoeuvre = course_of(scenario)
+    if manoeuvre is not None:
+        yield from (x for x in drivers.of(manoeuvre) if not MODELS[x].is_stepped)
+
+
+def decisions_of(
+    drives: Iterable[Judged], scenarios: Sequence[str], asked: Asked, drivers: Drivers
+) -> list[Decision]:
+    """What becomes of these scenarios on each of the drives that shows them."""
+    return [
+        decision
+        for drive in drives
+        for decision in decisions_on(drive.file, all_shown_by(drive.file, asked, Freedom()), drivers)
+        if decision.scenario in scenarios
+    ]
+
+
+def facts_on_sides(basis: Basis, asked: Asked, drivers: Drivers, piece: Sides) -> tuple[Fact, ...]:
+    """A drive for each side of each model that the known drives are not on, or that none was found."""
+    scenario = piece.scenario
+    found = decisions_of(piece.drives, [scenario], asked, drivers)
+    facts: list[Fact] = []
+    for model in _models(drivers, scenario):
+        for side in get_args(Side):
+            if any(x.driver == model and x.side == side for x in found):
+                continue
+            fact = _fact(basis, asked, drivers, piece, Restriction(side, model))
+            if fact.drive is not None:
+                found += decisions_of([fact.drive], [scenario], asked, drivers)
+            facts.append(fact)
+    return tuple(facts)
+
+
+def unanswered_sides(drivers: Drivers, piece: Sides, reason: str) -> tuple[Fact, ...]:
+    """The facts of a piece that nothing is known of."""
+    return tuple(
+        Fact(piece.entry.id, side_name(piece.scenario, side, model), "open", piece.entry.query, reason=reason)
+        for model in _models(drivers, piece.scenario)
+        for side in get_args(Side)
+    )
+
+
+def _fact(basis: Basis, asked: Asked, drivers: Drivers, piece: Sides, wanted: Restriction) -> Fact:
+    entry, home = piece.entry, basis.specification
+    number = number_in(piece.scenario)
+    assert number is not None
+    plain = applied(home, Scenario(number, home.set_name))
+    other = side_name(piece.scenario, wanted.side, wanted.model)
+    left_open = Fact(entry.id, other, "open", entry.query, plain)
+    try:
+        there = _restricted(drivers.specification, wanted)
+        test = said_in(both(entry.query, plain), home, there)
+    except InputError as error:
+        return replace(left_open, reason=str(error))
+    query = both(test, applied(there, Scenario(number, home.set_name)))
+    setting = Setting(entry.road, vehicles=entry.vehicles, values=drivers.values)
+    outcome = answer(
+        Search(there, query, setting, SearchOptions("smooth", effort=basis.effort, explain=False))
+    )
+    for drive in outcome.drives:
+        file = replace(drive.file, options=dict(home.options), values=basis.all_values())
+        judged = judged_as(file, both(entry.query, plain), basis.library)
+        if judged is None:
+            continue
+        if any(
+            (x.driver, x.side) == (wanted.model, wanted.side)
+            for x in decisions_of([judged], [piece.scenario], asked, drivers)
+        ):
+            also = tuple(sorted({x.what for x in all_shown_by(judged.file, asked, Freedom())}))
+            return Fact(entry.id, other, "shows", entry.query, plain, drive=judged, also=also)
+    return replace(left_open, reason=outcome.told(()) or "a search found none")
+
+
+@cache
+def _library(files: tuple[Source, ...]) -> Library:
+    library = load_library(files_for(files))
+    check_library(library)
+    return library
+
+
+def _restricted(home: Specification, wanted: Restriction) -> Specification:
+    """The definitions under ``prevention.spec``. Raises ``InputError``."""
+    return _library(tuple(home.library.files)).select(home.set_name, {**home.options, **wanted.options})
