@@ -33,6 +33,21 @@ _PARTS: Mapping[str, str] = MappingProxyType(
         "rss_in": f"{_RSS} {_SIDE}",
         "rss_hits": f"{_RSS} hits {{b}}",
         "rss_gains": f"{_RSS} gains more than the gap on {{b}}",
+        "careful_drives": "{a} moves as the careful driver drives it while {b} cuts in",
+        "seesIn": "the driver of {a} perceives {b}",
+        "soon": "the driver of {a} may respond to {b} at this time to collision",
+        "soonAfter": "the driver of {a} may brake at this time to collision with {b}",
+        "weighs": "the driver of {a} evaluates the risk of {b}, then brakes after a delay",
+        "delays": "the driver of {a} waits for the delay, then brakes",
+        "goesOn": "the driver of {a} does not brake yet",
+        "brakes": "the driver of {a} brakes",
+        "isRelieved": "AEB alone brakes {a} from here on",
+        "isFree": "{b} is not yet fully in front of {a}",
+        "isWrapped": "{b} is, or was, fully in front of {a}",
+        "freely": "{a} brakes as its driver does, without AEB",
+        "isAided": "{a} brakes as AEB does once {b} is fully in front of it",
+        "perceivedTooLate": "{a}, driven as the careful driver, hits {b}, which it perceives in this state",
+        "brakesTooHard": "{a}, driven as the careful driver, hits {b}, which begins to brake in this state",
     }
 )
 _ENDINGS = {"careful": _CAREFUL, "r157": _R157, "eu1426": _EU1426, "rss": _RSS, "fsm": _FSM}
