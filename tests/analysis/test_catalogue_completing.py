@@ -4,6 +4,7 @@ import json
 import shutil
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
 from pathlib import Path
@@ -12,12 +13,15 @@ import pytest
 
 import roadproof as rp
 from cli.test_schemas import validator
+from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue import examination, far, gaps, ranges, tested
 from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.completing import complete
 from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import NO_SINGLE
+from roadproof.analysis.catalogue.meaning import Meanings
 from roadproof.analysis.catalogue.ranges import Reach
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
 from roadproof.analysis.coverage import claims, found, settling, study
@@ -31,12 +35,18 @@ from roadproof.judge.exact import judge
 from roadproof.report import catalogue_drives
 from roadproof.report.catalogue_drives import Drawn, draw_tests
 from roadproof.report.figures import make_page, shorten
-from roadproof.spec.bind import bind
+from roadproof.spec.bind import bind, values_with
 from roadproof.verdict import Verdict
 
 HOME = rp.load()
 DRIVES = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives"
 CUT_IN, BRAKING, SEVEN = (DRIVES / f"{name}.json" for name in ("cut-in", "braking", "seven"))
+
+
+NEVER = """
+def behaviourPOV_4(POV, SV: vehicle, L: lane) "POV drives away, and stands"
+  := v_lon(POV) > v_lon(SV) and v_lon(POV) < v_lon(SV)
+"""
 
 
 def asked_about(*numbers: int) -> Asked:
@@ -311,3 +321,36 @@ def test_a_motorcycle_is_one_for_commonroad(tmp_path: Path) -> None:
     assert path.read_text("utf-8").count("<type>motorcycle</type>") == 1
     (pair,) = [catalogue(path, among="4", classes=False, jobs=1).concrete]
     assert {"scenario_4", ENDANGERED} <= pair[0].names
+
+
+def test_only_drives_that_are_of_a_target_from_their_start_seed_its_range() -> None:
+    """A test that shows a class later on is none of its drives from the start."""
+    asked = asked_about(1, 4)
+    lies = show(Concrete("braking", str(BRAKING)), asked, Freedom())
+    begins = {"v_lon(SV)": (lies.begins["v_lon(SV)"],) * 2}
+    found = {x: [*ranges.reaches_of(asked, {x: begins}, [lies])] for x in ("scenario_1", "scenario_4")}
+    assert [len(x.known) for x in found["scenario_4"]] == [1]
+    later = replace(lies, shown=(*lies.shown, replace(lies.shown[0], what="scenario_1", at=1.0)))
+    assert [x.known for x in ranges.reaches_of(asked, {"scenario_1": begins}, [later])] == [()]
+
+
+def test_a_scenario_without_drives_has_a_proof(tmp_path: Path) -> None:
+    (tmp_path / "never.spec").write_text(NEVER, "utf-8")
+    home = rp.load(specs=[tmp_path / "never.spec"]).specification
+    [made] = complete(
+        Basis(home), Asked(home, (4,), None, values_with(home.library, {})), ["scenario_4"], hands=1
+    )
+    assert made.drive is None
+    assert made.empty is not None
+
+
+def test_doubts_have_the_names_of_the_answers_that_they_stand_for() -> None:
+    """A piece that was cut off is not asked again in the same run."""
+    asked = asked_about(1)
+    query = asked.query_of("scenario_1")
+    reach = Reach("scenario_1", "v_lon(SV)", query)
+    study = Meanings(Basis(HOME.specification), (), asked, reaches=(reach,))
+    [piece] = study.pieces({})
+    doubts = study.doubt(piece, "cut off")
+    assert study.pieces(doubts) == []
+    assert not any(map(study.is_sure, doubts.values()))

@@ -256,6 +256,21 @@ def test_danger_before_a_cut_out_is_that_of_the_vehicle_behind_which_it_opens() 
     assert "POV moves across at 0.001 m/s when it begins" in found[0].reason
 
 
+@pytest.mark.parametrize(
+    ("start", "told"),
+    [
+        ({"Vy": 0.09}, "POV moves across at 0.09 m/s"),
+        ({"Vy": 0.11}, ""),
+        ({"Gx": 0.4}, "POV brakes at 0.4 m/s^2"),
+        ({"Gx": 0.6}, ""),
+        ({"Ve0": 0.0}, ""),
+    ],
+)
+def test_a_manoeuvre_that_has_hardly_begun_is_told(start: dict[str, float], told: str) -> None:
+    assert decisions._slight(start).startswith(told)
+    assert bool(told) is bool(decisions._slight(start))
+
+
 def test_scenarios_without_a_driver_are_not_decided() -> None:
     assert decisions.course_of("scenario_3") is None
     assert decisions.course_of("class_1") is None

@@ -9,6 +9,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
+from roadproof.analysis.catalogue.fragments import _by_itself
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.cli.main import main
 from roadproof.errors import InputError
@@ -112,6 +113,16 @@ def test_a_text_over_several_lines_is_not_read_as_tests(tmp_path: Path) -> None:
     """A test inside of a text is none, even where the file is no TOML."""
     text = f'[[test]]\nid = \'X\ntitle = """\n{FIRST}"""\n'
     assert [*faults_in(written(tmp_path, text))] == [str(tmp_path / "catalogue.toml")]
+
+
+@pytest.mark.parametrize("quotes", ['"""', "'''"])
+def test_tests_inside_of_a_long_text_are_none(quotes: str, tmp_path: Path) -> None:
+    text = f"[[test]]\nid = 'X\ntitle = {quotes}\n[[test]]\nid = 'inside'\nfile = 'x.json'\n{quotes}\n"
+    path = tmp_path / "catalogue.toml"
+    path.write_text(text, "utf-8")
+    assert _by_itself(path) == ()
+    path.write_text(text.replace(quotes, "''"), "utf-8")
+    assert any(x.fields.get("id") == "inside" for x in _by_itself(path))
 
 
 def test_a_file_that_a_faulty_test_names_is_no_test_by_itself(tmp_path: Path) -> None:

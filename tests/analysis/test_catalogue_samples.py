@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
+from roadproof.analysis.catalogue import digests
+from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.errors import InputError
 from roadproof.evaluation.one_trace import read_pair, read_samples
 
@@ -76,3 +78,27 @@ def test_samples_without_contradictions_have_no_notes(tmp_path: Path) -> None:
     path = changed(tmp_path, None)
     found = rp.catalogue(path, among="4", classes=False, jobs=1)
     assert (found.missing, found.notes) == ((), ())
+
+
+def test_samples_begin_as_their_first_sample_does() -> None:
+    path = SAMPLES / "braking.csv"
+    first = {x["vehicle"]: x for x in reversed([*csv.DictReader(path.open())])}
+    found = rp.catalogue(path, among="4", classes=False, jobs=1)
+    [answer] = found.concrete
+    assert answer.begins["v_lon(SV)"] == pytest.approx(float(first["SV"]["v_lon"]))
+    assert answer.begins["v_lon(POV)"] == pytest.approx(float(first["POV"]["v_lon"]))
+    apart = float(first["POV"]["s"]) - float(first["SV"]["s"])
+    assert answer.begins["s(POV) - s(SV)"] == pytest.approx(apart)
+
+
+def test_the_digest_of_samples_is_that_of_both_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is empty where one of the files cannot be read."""
+    path = changed(tmp_path, None)
+    whole = digest_of(str(path))
+    assert len(whole) == 64
+    road = tmp_path / "braking_road.toml"
+    road.write_text(road.read_text() + "\n")
+    assert digest_of(str(path)) not in ("", whole)
+    assert digest_of(str(tmp_path / "none.json")) == ""
+    monkeypatch.setattr(digests, "files_of", lambda place: (path, tmp_path / "none.toml"))
+    assert digest_of(str(path)) == ""

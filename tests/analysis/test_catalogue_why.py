@@ -103,3 +103,25 @@ def test_the_change_makes_the_part_true_and_less_does_not(seed: int) -> None:
             moved = t.Sum((comparison.left, t.Number(by if grows else -by)))
             truth = judge(f.Compare(moved, comparison.op, comparison.right), course.signals)
             assert (truth.truth(truth.formula).at(part.at) is part.needed) is expected
+
+
+@pytest.mark.parametrize(
+    ("text", "at_most", "lack"),
+    [
+        ("v_lon(SV) >= 0 m/s U v_lon(SV) > 100 m/s", 10, 80),
+        ("F[0, 1 s] v_lon(POV) < 5 m/s", 1, 15),
+        ("F v_lon(SV) < 5 m/s", 10, 15),
+        ("not (F[0, 1 s] v_lon(POV) > 5 m/s)", 0, 15),
+    ],
+)
+def test_the_false_part_is_within_its_window_and_needed_as_it_stands(
+    text: str, at_most: int, lack: int
+) -> None:
+    """POV brakes after the window; SV goes on at 20 m/s."""
+    course = pair(*map(Fraction, (20, 20, 60, 6, 2)))
+    formula = bind(HOME.read(text).formula, course.road, FILE.lanes, ASKED.values)
+    found = first_false_part(formula, course.signals, course.horizon)
+    assert found is not None
+    assert 0 <= found.at <= at_most
+    assert found.lack == lack
+    assert found.needed is not text.startswith("not")
