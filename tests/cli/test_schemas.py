@@ -20,6 +20,7 @@ from roadproof.cli.main import COMMANDS, main
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import Judged
+from roadproof.evidence.schemas import as_text, schemas
 from roadproof.formats.write_highd import write_highd
 from roadproof.simulation.synthetic import simulate
 from roadproof.simulation.traffic import Traffic
@@ -423,7 +424,11 @@ def test_schemas_are_schemas_and_leave_nothing_open(name: str) -> None:
 
 def test_every_schema_of_the_source_is_written_down() -> None:
     texts = (path.read_text("utf-8") for path in (ROOT / "src" / "roadproof").rglob("*.py"))
-    named = {found for text in texts for found in re.findall(r'SCHEMA = "(roadproof/[a-z-]+/[0-9]+)"', text)}
+    named = {
+        found
+        for text in texts
+        for found in re.findall(r'SCHEMA(?:: Final)? = "(roadproof/[a-z-]+/[0-9]+)"', text)
+    }
     assert named == {*NAMES} | INTERNAL
 
 
@@ -468,3 +473,9 @@ def test_planted_holes_in_a_schema_are_noticed(change: str) -> None:
 def test_the_answers_of_python_are_those_of_the_command_line() -> None:
     told = rp.witness("v_lon(SV) > 3 m/s", jobs=1).as_data()
     accept("witness.json", json.loads(json.dumps(told)))
+
+
+def test_schemas_are_those_of_the_definitions() -> None:
+    """Make them again with ``python -m roadproof.evidence.schemas docs/schema``."""
+    for name, content in schemas(SCHEMAS["common.json"]):
+        assert (ROOT / "docs" / "schema" / name).read_text("utf-8") == as_text(content)

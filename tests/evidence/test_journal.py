@@ -12,14 +12,16 @@ from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import NAME, Journal, head_of, read_journal, seal_of
 
 SCHEMA = "roadproof/overlap/1"
-SAID = {"set": "base", "lanes": "same", "roles": "same", "start": "same", "options": {}, "specs": []}
+SAID: dict[str, Any] = {"set": "base", "lanes": "same", "roles": "same", "start": "same", "options": {}}
+SAID |= {"parameters": {}, "specs": []}
+NO_EVIDENCE = {"certificate": None, "drive": None}
 HEAD = head_of(SCHEMA, "which?", SAID)
 
 
 def answer(a: int, b: int, folder: Path) -> dict[str, Any]:
     """An answer that promises nothing, so that no file is needed."""
     pair = {"a": a, "b": b, "set_a": "base", "set_b": "base", "verdict": "UNKNOWN", "formula": "true"}
-    record: dict[str, Any] = {"evidence": [], "verdict": {**pair, "core": [], "cores": []}}
+    record: dict[str, Any] = {"evidence": [], "verdict": {**pair, "core": [], "cores": [], **NO_EVIDENCE}}
     return {**record, "seal": seal_of(record, "which?", folder)}
 
 

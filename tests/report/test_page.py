@@ -95,12 +95,15 @@ def test_what_does_not_stand_is_said_on_the_page(tmp_path, drives):
 
 
 def hostile_overlap() -> dict:
+    said = {"set": HOSTILE, "lanes": "same", "roles": "any", "start": "same", "options": {HOSTILE: CLOSED}}
+    said |= {"parameters": {HOSTILE: "1"}, "specs": [HOSTILE], "view": "dense", "seconds": 1}
     pair = {"set_a": HOSTILE, "set_b": CLOSED, "formula": HOSTILE, "reason": CLOSED, "certificate": HOSTILE}
+    pair |= {"drive": None, "cores": [{"formula": CLOSED, "parts": [HOSTILE]}]}
     verdicts = [
-        {"a": 1, "b": 5, "verdict": HOSTILE, "core": [HOSTILE], **pair},
+        {"a": 1, "b": 5, "verdict": "UNKNOWN", "core": [HOSTILE], **pair},
         {"a": 1, "b": 4, "verdict": "IMPOSSIBLE", "core": [CLOSED], **pair},
     ]
-    return {"schema": "roadproof/overlap/1", "set": HOSTILE, "verdicts": verdicts}
+    return {"schema": "roadproof/overlap/1", **said, "verdicts": verdicts}
 
 
 def hostile_answers(drive: dict) -> dict[str, dict]:
@@ -227,7 +230,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         ("{", "is no JSON"),
         ("[]", ""),
         ('{"schema": "other/1"}', "no schema that begins with roadproof/"),
-        ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "is no result that can be shown"),
+        ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'set' is missing"),
         ('{"schema": "roadproof/classify/1", "classes": 3}', "is no result that can be shown"),
     ],
 )

@@ -16,7 +16,10 @@ from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.placing import placed
 from roadproof.effort import Late
 from roadproof.elapsed import now, since
+from roadproof.evidence.answers import overlap as kept_answers
+from roadproof.evidence.answers.overlap import SCHEMA, Word
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
@@ -29,8 +32,6 @@ from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, likes_of, numbers_of
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
-
-SCHEMA = "roadproof/overlap/1"
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class PairVerdict:
 
     a: Scenario
     b: Scenario
-    verdict: Verdict
+    verdict: Word
     query: Query | None = None
     reason: str = ""
     cores: tuple[Core, ...] = ()
@@ -145,36 +146,36 @@ class Overlap:
         return answer.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
     def record(self, name: str, answer: PairVerdict, shelf: Shelf) -> dict[str, Any]:
-        verdict = {
-            "a": answer.a.number,
-            "b": answer.b.number,
-            "set_a": answer.a.set_name,
-            "set_b": answer.b.set_name,
-            "verdict": str(answer.verdict),
-            "formula": "" if answer.query is None else answer.query.text,
-            "core": list(dict.fromkeys(part for core in answer.cores for part in core.told)),
-            "cores": [{"formula": core.whole.text, "parts": list(core.told)} for core in answer.cores],
-            "certificate": shelf.certificate(f"impossible-{name}.json", answer.certificate),
-            "drive": shelf.drive(f"drive-{name}.json", answer.drive),
-            "reason": answer.reason,
-            "seconds": answer.seconds,
-        }
-        return {"verdict": verdict}
+        kept = kept_answers.Pair(
+            a=answer.a.number,
+            b=answer.b.number,
+            set_a=answer.a.set_name,
+            set_b=answer.b.set_name,
+            verdict=answer.verdict,
+            formula="" if answer.query is None else answer.query.text,
+            core=tuple(dict.fromkeys(part for core in answer.cores for part in core.told)),
+            cores=tuple(kept_answers.Clash(formula=x.whole.text, parts=x.told) for x in answer.cores),
+            certificate=shelf.certificate(f"impossible-{name}.json", answer.certificate),
+            drive=shelf.drive(f"drive-{name}.json", answer.drive),
+            reason=answer.reason,
+            seconds=answer.seconds,
+        )
+        return write(kept_answers.Record(verdict=kept))
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, PairVerdict]:
-        said = record["verdict"]
-        a, b = Scenario(said["a"], said["set_a"]), Scenario(said["b"], said["set_b"])
-        cores = [Core(self._read(x["formula"]), self._parts(x["parts"])) for x in said["cores"]]
+        kept = read(kept_answers.Record, record, "a kept answer").verdict
+        a, b = kept.scenarios
+        cores = tuple(Core(self._read(x.formula), self._parts(x.parts)) for x in kept.cores)
         return name_of(a, b), PairVerdict(
             a,
             b,
-            Verdict(said["verdict"]),
-            self._read(said["formula"]),
-            said["reason"],
-            tuple(cores),
-            shelf.read_certificate(said["certificate"]),
-            shelf.read_drive(said["drive"]),
-            said["seconds"],
+            kept.verdict,
+            self._read(kept.formula),
+            kept.reason,
+            cores,
+            shelf.read_certificate(kept.certificate),
+            shelf.read_drive(kept.drive),
+            kept.seconds,
         )
 
     def _read(self, text: str) -> Query:
@@ -189,12 +190,10 @@ class Overlap:
 
     def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
-        return {
-            **self.question.heading,
-            "view": "dense",
-            "seconds": round(seconds, 2),
-            "verdicts": [records[name_of(a, b)]["verdict"] for a, b in self.pairs],
-        }
+        kept = (records[name_of(a, b)] for a, b in self.pairs)
+        verdicts = tuple(read(kept_answers.Record, x, "a kept answer").verdict for x in kept)
+        index = kept_answers.Index(**self.question.heading, seconds=round(seconds, 2), verdicts=verdicts)
+        return write(index)
 
 
 def name_of(a: Scenario, b: Scenario) -> str:
@@ -272,7 +271,7 @@ class _Deciding:
             if found is not None:
                 return found
         sure = all(verdict in (Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN) for verdict in verdicts)
-        verdict = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
+        verdict: Word = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
         return PairVerdict(*pair, verdict, either(*left), "; ".join(dict.fromkeys(reasons)))
 
     def _core(self, query: Query, proof: Result | None = None) -> Core:

@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from textwrap import wrap
 from typing import Any
@@ -167,7 +167,7 @@ def _axes(verdicts: Sequence[PairVerdict], across: bool) -> tuple[list[int], lis
     return (sorted(rows), sorted(columns)) if across else (sorted(rows | columns),) * 2
 
 
-def _cells(verdicts: Sequence[PairVerdict], across: bool) -> dict[tuple[int, int], Verdict]:
+def _cells(verdicts: Sequence[PairVerdict], across: bool) -> Mapping[tuple[int, int], Verdict]:
     cells = {(x.a.number, x.b.number): x.verdict for x in verdicts}
     return cells if across else cells | {(b, a): verdict for (a, b), verdict in cells.items()}
 

@@ -108,6 +108,12 @@ def one_of(data: Fields, shows: Shows, proof: str = "certificate", drive: str = 
     return evidence_name(data, field)
 
 
+def file_of(where: str, shows: Shows, proof: object, drive: object) -> str | None:
+    """The file of an answer that may name a proof or a drive. Raises ``InputError`` for both."""
+    named = {"certificate": proof, "drive": drive}
+    return one_of(Fields(named, where), shows)
+
+
 def read_evidence(path: Path) -> Certificate | DriveFile:
     """A certificate or a drive file. Raises ``InputError``."""
     content = read_json(path)

@@ -1,93 +1,169 @@
 """The index and the journal of ``roadproof overlap``: which pairs of scenarios hold together."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import combinations, permutations
+from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.errors import InputError
-from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, Shows, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.shared import (
+    Dense,
+    Heading,
+    KeptCertificate,
+    KeptDrive,
+    Number,
+    Options,
+    Parameters,
+    Reason,
+    Seconds,
+    SetName,
+    Specifications,
+)
+from roadproof.evidence.answers.shared import (
+    Formula as FormulaText,
+)
+from roadproof.evidence.codec import UNCHECKED, Doc, Rule, read
+from roadproof.evidence.json_schema import Shared
 from roadproof.evidence.strict import Fields
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.spec.compose import both, eventually
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import LANE, Scenario, applied, vehicles_of
+from roadproof.verdict import Verdict
 
-SCHEMA = "roadproof/overlap/1"
-_ENTRY = ("a", "b", "set_a", "set_b", "verdict", "formula", "core", "cores", "certificate", "drive")
-_ENTRY_MORE = ("reason", "seconds")
-
-
-def read_index(data: Fields, background: Background) -> Iterator[Entry]:
-    """The entries of an index. Raises ``InputError``."""
-    return _entries(background, data.items("verdicts"))
+SCHEMA: Final = "roadproof/overlap/1"
+Choice: TypeAlias = Annotated[
+    Literal["same", "any"], Doc("Whether both have the same, or each its own."), Shared("choice")
+]
+Word: TypeAlias = Literal[Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN, Verdict.UNKNOWN]
 
 
-def read_record(record: Fields, background: Background) -> Iterator[Entry]:
-    """The entry of a kept answer. Raises ``InputError``."""
-    return _entries(background, [record.get("verdict")])
+@dataclass(frozen=True, kw_only=True)
+class Clash:
+    """Parts of a conjunction that contradict each other."""
+
+    formula: FormulaText
+    parts: tuple[str, ...]
 
 
-def _entries(background: Background, records: Sequence[object]) -> Iterator[Entry]:
-    common = background.home
-    choices = {name: background.said.text(name) for name in ("lanes", "roles", "start")}
-    for name, choice in choices.items():
-        if choice not in ("same", "any"):
-            raise InputError(f"{common.where}: {name}='{choice[:40]}' must be same or any")
-    for number, content in enumerate(records, 1):
-        line = Fields(content, f"{common.where}, pair {number}", (*_ENTRY, *_ENTRY_MORE))
-        yield _entry(line, common, choices)
+@dataclass(frozen=True, kw_only=True)
+class Pair:
+    """Whether two scenarios can hold together."""
+
+    a: Number
+    b: Number
+    set_a: SetName
+    set_b: SetName
+    verdict: Word
+    formula: Annotated[
+        str,
+        Doc(
+            "Of a WITNESSED what holds on the drive; of an IMPOSSIBLE what is proved; empty where nothing is "
+            "known."
+        ),
+    ]
+    core: Annotated[tuple[str, ...], UNCHECKED, Doc("Parts that clash, of all cores.")]
+    cores: Annotated[
+        tuple[Clash, ...],
+        UNCHECKED,
+        Doc("For each way in which the two can meet, parts that clash."),
+    ]
+    certificate: KeptCertificate
+    drive: KeptDrive
+    reason: Reason = ""
+    seconds: Seconds = 0.0
+
+    @property
+    def scenarios(self) -> tuple[Scenario, Scenario]:
+        """The two, in their sets."""
+        return Scenario(self.a, self.set_a), Scenario(self.b, self.set_b)
 
 
-def _entry(line: Fields, common: Common, choices: dict[str, str]) -> Entry:
-    one = Scenario(line.whole("a"), line.text("set_a"))
-    other = Scenario(line.whole("b"), line.text("set_b"))
-    claim, verdict = line.text("formula"), line.text("verdict")
-    shows = shows_of(verdict, line.where, "proof", "drive")
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """What an index says once for all pairs."""
+
+    set: Annotated[str, Rule(least=1), Doc("The spec set, or two with a comma between.")]
+    lanes: Annotated[Choice, Doc("Whether both speak of one lane, or each of its own.")]
+    roles: Annotated[Choice, Doc("Whether vehicles play the same parts in both.")]
+    start: Annotated[Choice, Doc("Whether both start at 0, or one then or later.")]
+    options: Options
+    parameters: Parameters
+    specs: Specifications
+
+
+@dataclass(frozen=True, kw_only=True)
+class Index(Said, Heading):
+    """Which pairs of scenarios can hold together."""
+
+    schema: Literal["roadproof/overlap/1"] = SCHEMA
+    view: Dense = "dense"
+    seconds: Seconds = 0.0
+    verdicts: tuple[Pair, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A kept answer."""
+
+    verdict: Pair
+
+
+def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
+    index = read(Index, data.content, data.where)
+    for number, pair in enumerate(index.verdicts, 1):
+        yield _entry(pair, f"{data.where}, pair {number}", background.home, index)
+
+
+def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
+    said = read(Said, background.said.content, background.said.where)
+    pair = read_kept(Record, record).verdict
+    yield _entry(pair, f"{record.where}, pair 1", background.home, said)
+
+
+def _entry(pair: Pair, where: str, common: Common, said: Said) -> Entry:
+    one, other = pair.scenarios
+    shows = shows_of(pair.verdict, where, "proof", "drive")
     fault = ""
-    if shows != "nothing" and common.formula(claim) not in _expected(
-        common, one, other, choices, shows == "drive"
-    ):
-        fault = f"{line.where} is about scenarios {one} and {other}, but its formula is not: {claim[:120]}"
-    unchecked = ("that the core alone clashes",) if line.items("core") else ()
+    if shows != "nothing" and common.formula(pair.formula) not in _expected(common, one, other, said, shows):
+        fault = f"{where} is about scenarios {one} and {other}, but its formula is not: {pair.formula[:120]}"
+    unchecked = ("that the core alone clashes",) if pair.core else ()
     return Entry(
         common,
-        line.where,
+        where,
         ("pair", *sorted((str(one), str(other)))),
-        verdict,
+        pair.verdict,
         f"scenarios {one} and {other}",
         shows,
-        claim,
-        one_of(line, shows),
-        unchecked=(*unchecked_of(verdict), *unchecked),
+        pair.formula,
+        file_of(where, shows, pair.certificate, pair.drive),
+        unchecked=(*unchecked_of(pair.verdict), *unchecked),
         fault=fault,
     )
 
 
-def _expected(
-    common: Common, one: Scenario, other: Scenario, choices: dict[str, str], together: bool
-) -> list[Formula]:
+def _expected(common: Common, one: Scenario, other: Scenario, said: Said, shows: Shows) -> list[Formula]:
     """What a drive of both satisfies; or the claims that say that no such conjunction ever holds."""
-    orders = [_conjunctions(common, a, b, choices) for a, b in ((one, other), (other, one))]
-    if together:
+    orders = [_conjunctions(common, a, b, said) for a, b in ((one, other), (other, one))]
+    if shows == "drive":
         return [query.formula for queries in orders for query in queries]
     return [f.conjunction(*(f.negation(query.formula) for query in queries)) for queries in orders]
 
 
-def _conjunctions(common: Common, one: Scenario, other: Scenario, choices: dict[str, str]) -> list[Query]:
+def _conjunctions(common: Common, one: Scenario, other: Scenario, said: Said) -> list[Query]:
     """The formulas of which one has to hold for two scenarios to hold together."""
     home = common.specification
     mine, theirs = vehicles_of(home, one), vehicles_of(home, other)
     swapped = len(theirs) > len(mine)
     most, fewer = (theirs, mine) if swapped else (mine, theirs)
     found: list[Query] = []
-    for roles in _assignments(most, len(fewer), choices["roles"]):
+    for roles in _assignments(most, len(fewer), said.roles):
         first = applied(home, one, roles if swapped else most)
-        second = applied(
-            home, other, most if swapped else roles, f"{LANE}2" if choices["lanes"] == "any" else LANE
-        )
-        if choices["start"] == "same":
+        second = applied(home, other, most if swapped else roles, f"{LANE}2" if said.lanes == "any" else LANE)
+        if said.start == "same":
             found.append(both(first, second))
         else:
             found += [both(first, eventually(second)), both(second, eventually(first))]
@@ -100,12 +176,4 @@ def _assignments(vehicles: Sequence[str], count: int, roles: str) -> list[tuple[
     return [(vehicles[0], *others) for others in combinations(vehicles[1:], count - 1)]
 
 
-READER = Reader(
-    SCHEMA,
-    ("set", "lanes", "roles", "start", "options", "parameters", "specs"),
-    ("view", "seconds", "verdicts"),
-    read_index,
-    ("verdict",),
-    read_record,
-    unchecked=("seconds", *(f"verdicts[].{x}" for x in ("core", "cores", "reason", "seconds"))),
-)
+READER = Reader.of(Index, Said, _of_index, Record, _of_record)

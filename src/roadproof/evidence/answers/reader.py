@@ -2,12 +2,16 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar, get_args
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Common, Entry, common_of
+from roadproof.evidence.codec import fields_of, read, unchecked
+from roadproof.evidence.heading import HEADING
 from roadproof.evidence.strict import Fields
 from roadproof.spec.library import Library
+
+T = TypeVar("T")
 
 # Property, part and scenario of a claim in a set, where it is a template property.
 FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
@@ -51,6 +55,16 @@ def first_set(data: Fields) -> str:
     return sets[0]
 
 
+_ABOUT_FILE = ("evidence", "seal")
+"""What a file of a kept answer says beside the answer."""
+
+
+def read_kept(kind: type[T], record: Fields) -> T:
+    """A kept answer, as it is defined. Raises ``InputError``."""
+    content = {key: x for key, x in record.content.items() if key not in _ABOUT_FILE}
+    return read(kind, content, record.where)
+
+
 Read: TypeAlias = Callable[[Fields, Background], Iterable[Entry]]
 
 
@@ -86,3 +100,13 @@ class Reader:
     faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = _without_faults
     alone: bool = False
     unchecked: tuple[str, ...] = ()
+
+    @staticmethod
+    def of(index: type, said: type, read_index: Read, record: type, read_record: Read) -> "Reader":
+        """The reader of an index that is defined as ``index``, and whose kept answers are ``record``."""
+        every = {x.key: x for x in fields_of(index)}
+        once = tuple(x.key for x in fields_of(said))
+        left = tuple(x for x in every if x not in (*HEADING, *once))
+        kept = tuple(x.key for x in fields_of(record))
+        [schema] = get_args(every["schema"].type)
+        return Reader(schema, once, left, read_index, kept, read_record, unchecked=unchecked(index))

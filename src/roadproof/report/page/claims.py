@@ -7,7 +7,7 @@ from typing import Any
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import core, counts, filtered, folded, verdict
+from roadproof.report.page.pieces import core, counts, filtered, folded, verdict, words_in
 from roadproof.report.page.results import Result
 from roadproof.spec.motion import statement
 from roadproof.study.shelf import INDEX
@@ -60,7 +60,12 @@ def claims(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
             refuted.append(folded((verdict("REFUTED"), f" {_label(x)} ", claim), _against(x, result, book)))
     told = f"; the evidence of {accepted} was accepted when this page was made" if accepted else ""
     head = ("verdict", "property", "set", "claim", "evidence")
-    line = tag("p", f"{len(entries)} claim{'s' if len(entries) != 1 else ''}: ", counts(entries), told)
+    line = tag(
+        "p",
+        f"{len(entries)} claim{'s' if len(entries) != 1 else ''}: ",
+        counts(words_in(entries)),
+        told,
+    )
     return joined([line, filtered(table(head, rows)), *refuted])
 
 
@@ -90,7 +95,7 @@ def witnesses(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
         inside = [tag("p", x["reason"])] if x.get("reason") else []
         inside += [core(x["core"])] if x.get("core") else []
         made.append(folded(summary, *inside, *(book.drive(y) for y in x.get("drives", ()))))
-    return joined([tag("p", counts(result.data.get("verdicts", ()))), *made])
+    return joined([tag("p", counts(words_in(result.data.get("verdicts", ())))), *made])
 
 
 _RELATIONS = {

@@ -7,7 +7,7 @@ from typing import Any
 from roadproof.report.explore import show
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import behind, cell, counts, folded, matrix, verdict
+from roadproof.report.page.pieces import behind, cell, counts, folded, matrix, verdict, words_in
 from roadproof.report.page.results import Result
 
 Finding = Mapping[str, Any]
@@ -30,7 +30,11 @@ def _exploration(place: str, x: Finding, result: Result, book: Book, words: Mapp
     vary: Sequence[Finding] = x.get("vary", ())
     values: Sequence[Finding] = x.get("values", ())
     if vary and values:
-        parts += [tag("p", counts(values)), _values(place, vary, values), *_told_boundaries(x, vary)]
+        parts += [
+            tag("p", counts(words_in(values))),
+            _values(place, vary, values),
+            *_told_boundaries(x, vary),
+        ]
     parts += [_extremes(place, x["extremes"], vary)] if x.get("extremes") else []
     for k, one in enumerate(values):
         parts.append(_behind(f"value-{place}-{k}", _at(one, vary), one, result, book))

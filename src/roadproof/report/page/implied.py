@@ -5,7 +5,7 @@ from typing import Any
 
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import behind, cell, counts, filtered, folded, matrix, verdict
+from roadproof.report.page.pieces import behind, cell, counts, filtered, folded, matrix, verdict, words_in
 from roadproof.report.page.results import Result
 
 
@@ -105,7 +105,7 @@ def redundancy(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
             )
         shown.append(folded(summary, *inside, *behind(x, result, book), id=target))
     head = ("", "scenario", "where", "part", "put in its place", "where it is assumed that")
-    return joined([tag("p", told, " ", counts(entries)), filtered(table(head, rows)), *shown])
+    return joined([tag("p", told, " ", counts(words_in(entries))), filtered(table(head, rows)), *shown])
 
 
 _REDUNDANT: Mapping[object, str] = {

@@ -1,21 +1,28 @@
 """Matrices with what is behind each cell: which scenarios hold together, and which dangers are missed."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeAlias
 
+from roadproof.evidence.answers.overlap import Index, Pair
+from roadproof.evidence.codec import read
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import behind, cell, counts, folded, matrix, short, verdict
+from roadproof.report.page.pieces import behind, cell, counts, evidence_of, folded, matrix, short, verdict
 from roadproof.report.page.results import Result
+
+End: TypeAlias = tuple[int, str]
 
 
 def overlap(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """Every pair of scenarios: a cell each, and behind it the drive or the clash."""
-    pairs = result.data.get("verdicts", ())
-    several = len({str(x.get(key)) for x in pairs for key in ("set_a", "set_b")}) > 1
-    ends = {(x[side], x.get(f"set_{side}") if several else "") for x in pairs for side in ("a", "b")}
-    order = sorted(ends, key=lambda end: (str(end[1]), end[0]))
-    known = {_key(x, several): k for k, x in enumerate(pairs)}
+    pairs = read(Index, result.data, result.name).verdicts
+    several = len({x for pair in pairs for x in (pair.set_a, pair.set_b)}) > 1
+
+    def ends(pair: Pair) -> tuple[End, End]:
+        return (pair.a, pair.set_a if several else ""), (pair.b, pair.set_b if several else "")
+
+    known = {ends(x): k for k, x in enumerate(pairs)}
+    order = sorted({end for x in known for end in x}, key=lambda end: (end[1], end[0]))
     rows: list[list[Content]] = []
     for row in order:
         cells: list[Content] = [_heading(row, words, "row")]
@@ -27,7 +34,7 @@ def overlap(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     called = [(f"{n} {of}".strip(), words[n]) for n, of in order if words.get(n)]
     return joined(
         [
-            tag("p", counts(pairs), ". Each cell leads to its drive, or to what clashes."),
+            tag("p", counts(x.verdict for x in pairs), ". Each cell leads to its drive, or to what clashes."),
             matrix(columns, rows),
             folded(("What the scenarios are called",), table(("", ""), called)) if called else None,
             *(_pair(result, k, x, book, words) for k, x in enumerate(pairs)),
@@ -35,28 +42,25 @@ def overlap(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     )
 
 
-def _key(x: Mapping[str, Any], several: bool) -> tuple[tuple[int, Any], tuple[int, Any]]:
-    return (x["a"], x.get("set_a") if several else ""), (x["b"], x.get("set_b") if several else "")
-
-
-def _heading(end: tuple[int, Any], words: Mapping[int, str], scope: str) -> Markup:
+def _heading(end: End, words: Mapping[int, str], scope: str) -> Markup:
     return tag("th", f"{end[0]} {end[1]}".strip(), scope=scope, title=words.get(end[0]))
 
 
-def _cell(result: Result, place: int, x: Mapping[str, Any]) -> Markup:
-    return cell(x.get("verdict"), f"{x['a']} and {x['b']}: {x.get('verdict')}", _id(result, "pair", place))
+def _cell(result: Result, place: int, pair: Pair) -> Markup:
+    return cell(pair.verdict, f"{pair.a} and {pair.b}: {pair.verdict}", _id(result, "pair", place))
 
 
 def _id(result: Result, what: str, place: object) -> str:
     return f"{what}-{result.id}-{place}"
 
 
-def _pair(result: Result, place: int, x: Mapping[str, Any], book: Book, words: Mapping[int, str]) -> Markup:
-    one, two = (tag("b", f"{x[side]} {words.get(x[side], '')}".strip()) for side in ("a", "b"))
-    inside: list[Content] = [tag("p", tag("code", x.get("formula")))]
-    inside += [tag("p", x["reason"])] if x.get("reason") else []
-    inside += behind(x, result, book)
-    return folded((verdict(x.get("verdict")), " ", one, " and ", two), *inside, id=_id(result, "pair", place))
+def _pair(result: Result, place: int, pair: Pair, book: Book, words: Mapping[int, str]) -> Markup:
+    one, two = (tag("b", f"{x} {words.get(x, '')}".strip()) for x in (pair.a, pair.b))
+    inside: list[Content] = [tag("p", tag("code", pair.formula))]
+    inside += [tag("p", pair.reason)] if pair.reason else []
+    cores = [(x.formula, x.parts) for x in pair.cores]
+    inside += evidence_of(result, book, pair.drive, pair.certificate, cores)
+    return folded((verdict(pair.verdict), " ", one, " and ", two), *inside, id=_id(result, "pair", place))
 
 
 def coverage(result: Result, book: Book, words: Mapping[int, str]) -> Markup:

@@ -34,10 +34,15 @@ def sign_of(word: object) -> tuple[str, str]:
     return SIGNS.get(str(word), ("?", "doubt"))
 
 
-def counts(entries: Iterable[Mapping[str, Any]]) -> Markup:
-    """How many entries have which verdict."""
-    counted = Counter(str(x.get("verdict")) for x in entries)
+def counts(words: Iterable[object]) -> Markup:
+    """How often there is which verdict."""
+    counted = Counter(map(str, words))
     return joined([joined([n, " ", verdict(word)]) for word, n in counted.items()], ", ")
+
+
+def words_in(entries: Iterable[Mapping[str, Any]]) -> list[str]:
+    """The verdicts of answers as plain data."""
+    return [str(x.get("verdict")) for x in entries]
 
 
 def folded(summary: Sequence[Content], *inside: Content, id: str | None = None) -> Markup:
@@ -80,16 +85,27 @@ def core(parts: object) -> Markup:
 
 
 def behind(entry: Mapping[str, Any], result: Result, book: Book) -> list[Content]:
+    """As ``evidence_of``, of an answer as plain data."""
+    cores = entry.get("cores") or ([{"parts": entry["core"]}] if entry.get("core") else [])
+    clashes = [(x.get("formula", ""), x.get("parts", ())) for x in cores]
+    return evidence_of(result, book, entry.get("drive"), entry.get("certificate"), clashes)
+
+
+def evidence_of(
+    result: Result,
+    book: Book,
+    drive: object = None,
+    certificate: object = None,
+    cores: Sequence[tuple[str, Sequence[str]]] = (),
+) -> list[Content]:
     """The drive behind an answer, or the parts that clash, with what was found of its evidence."""
     found: list[Content] = []
-    cores = entry.get("cores") or ([{"parts": entry["core"]}] if entry.get("core") else [])
-    for one in cores:
-        found += [tag("p", tag("code", one["formula"]))] if one.get("formula") and len(cores) > 1 else []
-        found.append(core(one.get("parts", ())))
-    for name in (entry.get("drive"), entry.get("certificate")):
+    for formula, parts in cores:
+        found += [tag("p", tag("code", formula))] if formula and len(cores) > 1 else []
+        found.append(core(parts))
+    for name in (drive, certificate):
         if isinstance(name, str):
             found.append(book.checked(book.finding(result.folder, name)))
-    drive = entry.get("drive")
     if isinstance(drive, Mapping):
         found.append(book.drive(drive))
     elif isinstance(drive, str) and result.folder is not None:

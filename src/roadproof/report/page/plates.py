@@ -10,7 +10,7 @@ from roadproof.preventing.models import MODELS
 from roadproof.preventing.words import legend
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import behind, counts, folded, verdict
+from roadproof.report.page.pieces import behind, counts, folded, verdict, words_in
 from roadproof.report.page.results import Result
 from roadproof.report.preventable import COLOURS, measured
 from roadproof.units import UNITS
@@ -29,7 +29,11 @@ def plates(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     for x in found:
         groups.setdefault(tuple(sorted(x.get("fixed", {}).items())), []).append(x)
     pictures = [_picture(_told(known, dict(of)), here, known, along, across) for of, here in groups.items()]
-    parts: list[Content] = [tag("p", counts(found)), _legend(found), tag("div", *pictures, class_="plates")]
+    parts: list[Content] = [
+        tag("p", counts(words_in(found))),
+        _legend(found),
+        tag("div", *pictures, class_="plates"),
+    ]
     parts.append(
         tag(
             "p",

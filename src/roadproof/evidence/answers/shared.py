@@ -1,0 +1,120 @@
+"""Types of fields that several answers share, and how every answer begins."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, TypeAlias
+
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.evidence.json_schema import Other, Shared
+
+Formula: TypeAlias = Annotated[
+    str, Rule(least=1), Doc("A formula or a claim as text (docs/language.md)."), Shared("formula")
+]
+Number: TypeAlias = Annotated[int, Rule(minimum=0), Doc("Number of a scenario."), Shared("number")]
+SetName: TypeAlias = Annotated[str, Rule(least=1), Doc("Name of a spec set."), Shared("set")]
+Rational: TypeAlias = Annotated[
+    str,
+    Rule(pattern="^-?[0-9]{1,40}(/[0-9]{1,40})?$"),
+    Doc('An exact number, such as "3/5".'),
+    Shared("rational"),
+]
+Seconds: TypeAlias = Annotated[
+    float,
+    Rule(minimum=0),
+    UNCHECKED,
+    Doc("How long it took, in s; differs from run to run."),
+    Shared("seconds"),
+]
+Reason: TypeAlias = Annotated[
+    str,
+    UNCHECKED,
+    Doc("Why it is in doubt, or a note on it, in words; empty where there is nothing to say."),
+    Shared("reason"),
+]
+KeptCertificate: TypeAlias = Annotated[
+    Any,
+    Other("certificate.json"),
+    Doc("A certificate: its file where evidence goes to a folder, else itself; null where there is none."),
+    Shared("kept_certificate"),
+]
+KeptDrive: TypeAlias = Annotated[
+    Any,
+    Other("drive.json"),
+    Doc("A judged drive: its file where evidence goes to a folder, else itself; null where there is none."),
+    Shared("kept_drive"),
+]
+Version: TypeAlias = Annotated[
+    str,
+    Rule(pattern=r"^[0-9]+\.[0-9]+"),
+    Doc("Version of roadproof that gave the answer."),
+    Shared("version"),
+]
+Fingerprint: TypeAlias = Annotated[
+    str,
+    Doc(
+        "Fingerprint of all that the specification files in use declare, those of --spec among them: two "
+        "answers with one fingerprint read names alike."
+    ),
+    Rule(pattern="^[0-9a-f]{16}$"),
+    Shared("library"),
+]
+Signals: TypeAlias = Annotated[
+    Mapping[str, Annotated[str, Rule(least=1)]],
+    Rule(least=1),
+    Doc(
+        "Own signals that the specification does not derive, and what an answer supposes of them; a proof "
+        "holds for all such functions, a drive has one, in a recording they are read. Left out where there "
+        "are none."
+    ),
+    Shared("signals"),
+]
+Options: TypeAlias = Annotated[
+    Mapping[str, str], Doc("The chosen reading of each option, by name."), Shared("options")
+]
+Parameters: TypeAlias = Annotated[
+    Mapping[str, Rational],
+    Doc("Values of parameters by name, in SI units (s, m, m/s, m/s^2)."),
+    Shared("parameters"),
+]
+Specifications: TypeAlias = Annotated[
+    tuple[Annotated[str, Rule(least=1)], ...],
+    Doc("Names of the users' specification files; in a folder of evidence they lie beside the index."),
+    Shared("specs"),
+]
+Dense: TypeAlias = Annotated[
+    Literal["dense"], Doc("Judged or proved in dense, unbounded time."), Shared("dense")
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prevention:
+    """Of a question that is asked only of what a driver model prevents, or cannot prevent."""
+
+    side: Literal["preventable", "unpreventable"]
+    driver: Annotated[Literal["careful", "r157", "eu1426", "rss"], Doc("The driver model.")]
+    of: Annotated[
+        Literal["scenarios", "drives"],
+        Doc("What begins so: scenarios, or, for coverage, drives between two vehicles."),
+    ]
+    scenarios: Annotated[tuple[Number, ...], Doc("The scenarios that begin so; all others are as they are.")]
+
+
+KeptPrevention: TypeAlias = Annotated[
+    Prevention,
+    Doc(
+        "Of a question that is asked only of what a driver model prevents, or cannot prevent; left out in "
+        "all others."
+    ),
+    Shared("prevention"),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heading:
+    """How every answer begins; earlier versions did not say the version and the library."""
+
+    schema: str
+    roadproof: Version = ""
+    library: Fingerprint = ""
+    signals: Annotated[Signals | None, LEFT_OUT] = None
+    prevention: Annotated[KeptPrevention | None, LEFT_OUT] = None

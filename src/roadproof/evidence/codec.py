@@ -1,0 +1,314 @@
+"""Reads and writes frozen dataclasses as JSON: one definition of an answer gives both, and its JSON Schema.
+
+A field is declared as ``name: Annotated[type, Doc("one sentence"), …]``. Types are ``str``, ``int``,
+``float``, ``bool``, ``Literal``, enumerations of texts, ``tuple[T, …]``, ``Mapping[str, T]``, other
+dataclasses, unions with ``None``, and ``Any`` (plain JSON). A field with a default may be missing, as in
+evidence of earlier versions; it is written all the same, but where it is marked ``LEFT_OUT``.
+"""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from enum import StrEnum
+from functools import cache
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from roadproof.errors import InputError
+from roadproof.evidence.strict import Fields, text
+
+T = TypeVar("T")
+Read: TypeAlias = Callable[[object, str], Any]
+Path: TypeAlias = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Doc:
+    """What a field or a type means, in one sentence."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Key:
+    """The name of a field in JSON, where Python does not allow it."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What values of a type have to be: texts match ``pattern`` and have ``least`` characters, numbers are at
+    least ``minimum``, lists have ``least`` items.
+    """
+
+    pattern: str = ""
+    minimum: int | None = None
+    least: int = 0
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A property of a field that is not part of its value."""
+
+    name: str
+
+
+UNCHECKED = Mark("unchecked")
+"""``check`` compares the field with nothing, and lists it."""
+LEFT_OUT = Mark("left out")
+"""The field is left out where it has its default."""
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of a definition: ``name`` in Python, ``key`` in JSON, ``notes`` from its annotation."""
+
+    name: str
+    key: str
+    type: Any
+    notes: tuple[object, ...]
+    default: Any
+
+    @property
+    def is_required(self) -> bool:
+        return self.default is MISSING
+
+    @property
+    def is_written(self) -> bool:
+        """Whether each answer that is written has it."""
+        return not self.has(LEFT_OUT)
+
+    def has(self, mark: Mark) -> bool:
+        """Whether the field has a mark."""
+        return mark in self.notes
+
+
+@cache
+def fields_of(kind: type) -> tuple[Field, ...]:
+    """The fields of a definition, in the order of its JSON."""
+    hints = get_type_hints(kind, include_extras=True)
+    found = []
+    for x in fields(kind):
+        notes = notes_of(hints[x.name])
+        key = next((note.name for note in notes if isinstance(note, Key)), x.name)
+        found.append(Field(x.name, key, hints[x.name], notes, x.default))
+    return tuple(found)
+
+
+def notes_of(kind: Any) -> tuple[object, ...]:
+    """What the annotation of a type says beside it."""
+    return kind.__metadata__ if get_origin(kind) is Annotated else ()
+
+
+def bare(kind: Any) -> Any:
+    """A type without its annotation."""
+    return get_args(kind)[0] if get_origin(kind) is Annotated else kind
+
+
+# --- write ---------------------------------------------------------------------------------------
+
+
+def write(value: object) -> dict[str, Any]:
+    """The JSON object of a value of a definition."""
+    found: dict[str, Any] = _plain(value)
+    return found
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, StrEnum):
+        return str(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return {
+            x.key: _plain(found)
+            for x in fields_of(type(value))
+            if not ((found := getattr(value, x.name)) == x.default and x.has(LEFT_OUT))
+        }
+    if isinstance(value, Mapping):
+        return {key: _plain(x) for key, x in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(x) for x in value]
+    return value
+
+
+# --- read ----------------------------------------------------------------------------------------
+
+
+def read(kind: type[T], content: object, where: str) -> T:
+    """The value that JSON data say. Raises ``InputError`` for unknown, missing and mistaken fields."""
+    found: T = _reader(kind)(content, where)
+    return found
+
+
+def _reader(kind: Any) -> Read:
+    """The function that reads a type from plain data and the place where they stand."""
+    if kind not in _READERS:
+        made = _unruled(bare(kind))
+        for note in notes_of(kind):
+            made = _ruled(made, note) if isinstance(note, Rule) else made
+        _READERS[kind] = made
+    return _READERS[kind]
+
+
+_READERS: dict[Any, Read] = {}
+
+
+def _ruled(inner: Read, rule: Rule) -> Read:
+    pattern = re.compile(rule.pattern)
+
+    def make(content: object, where: str) -> Any:
+        found = inner(content, where)
+        if isinstance(found, str) and not (pattern.search(found) and len(found) >= rule.least):
+            raise InputError(f"{where}: {_shown(content)} is not as it has to be: {rule.pattern or 'a text'}")
+        if rule.minimum is not None and isinstance(found, int | float) and found < rule.minimum:
+            raise InputError(f"{where}: {_shown(content)} is below {rule.minimum}")
+        if isinstance(found, tuple | dict) and len(found) < rule.least:
+            raise InputError(f"{where}: it has {len(found)} entries, and needs {rule.least}")
+        return found
+
+    return make
+
+
+def _unruled(kind: Any) -> Read:
+    if is_dataclass(kind):
+        return _object(kind)
+    origin, inside = get_origin(kind), get_args(kind)
+    if origin in (Union, UnionType):
+        return _optional(_reader(next(x for x in inside if x is not NoneType)))
+    if origin is Literal:
+        return _one_of(inside)
+    if origin is tuple:
+        return _items(inside[0])
+    if origin is not None and issubclass(origin, Mapping):
+        return _named(_reader(inside[1]))
+    if isinstance(kind, type) and issubclass(kind, StrEnum):
+        return _word(kind)
+    return _SIMPLE[kind]
+
+
+def _object(kind: Any) -> Read:
+    every = fields_of(kind)
+    keys = tuple(x.key for x in every)
+    readers: dict[str, Read] = {}
+
+    def make(content: object, where: str) -> Any:
+        if not readers:
+            readers.update((x.key, _reader(x.type)) for x in every)
+        data = Fields(content, where, keys)
+        return kind(
+            **{
+                x.name: readers[x.key](data.get(x.key), f"{where}, {x.key}")
+                for x in every
+                if x.is_required or x.key in data.content
+            }
+        )
+
+    return make
+
+
+def _optional(inner: Read) -> Read:
+    return lambda content, where: None if content is None else inner(content, where)
+
+
+def _one_of(words: tuple[Any, ...]) -> Read:
+    def make(content: object, where: str) -> Any:
+        for word in words:
+            if content == word and type(content) is (str if isinstance(word, str) else type(word)):
+                return word
+        raise InputError(f"{where}: {_shown(content)} is none of {', '.join(map(str, words))}")
+
+    return make
+
+
+def _word(kind: type[StrEnum]) -> Read:
+    def make(content: object, where: str) -> Any:
+        try:
+            return kind(text(content, where))
+        except ValueError:
+            raise InputError(f"{where}: there is no {kind.__name__.lower()} {_shown(content)}") from None
+
+    return make
+
+
+def _items(kind: Any) -> Read:
+    """``kind``: the type of the items; an item of a definition is called by its name."""
+    inner = bare(kind)
+    name = inner.__name__.lower() if is_dataclass(inner) and isinstance(inner, type) else "item"
+    readers: list[Read] = []
+
+    def make(content: object, where: str) -> Any:
+        if not isinstance(content, list):
+            raise InputError(f"{where}: {_shown(content)} is no list")
+        if not readers:
+            readers.append(_reader(kind))
+        return tuple(readers[0](x, f"{where}, {name} {number}") for number, x in enumerate(content, 1))
+
+    return make
+
+
+def _named(inner: Read) -> Read:
+    def make(content: object, where: str) -> Any:
+        if not isinstance(content, dict):
+            raise InputError(f"{where}: {_shown(content)} is no object")
+        return {key: inner(x, f"{where}.{key}") for key, x in content.items()}
+
+    return make
+
+
+def _flag(content: object, where: str) -> bool:
+    if not isinstance(content, bool):
+        raise InputError(f"{where}: {_shown(content)}; write true or false")
+    return content
+
+
+def _whole(content: object, where: str) -> int:
+    if type(content) is not int:
+        raise InputError(f"{where}: {_shown(content)} is no whole number")
+    return content
+
+
+def _number(content: object, where: str) -> float:
+    if isinstance(content, bool) or not isinstance(content, int | float):
+        raise InputError(f"{where}: {_shown(content)} is no number")
+    return content
+
+
+def _shown(value: object) -> str:
+    return repr(value)[:60]
+
+
+_SIMPLE: Mapping[Any, Read] = {
+    str: text,
+    int: _whole,
+    float: _number,
+    bool: _flag,
+    Any: lambda content, where: content,
+}
+
+
+# --- what check says -----------------------------------------------------------------------------
+
+
+def unchecked(kind: Any) -> tuple[str, ...]:
+    """The paths of the fields that ``check`` compares with nothing, such as ``verdicts[].seconds``."""
+    kind = bare(kind)
+    if is_dataclass(kind):
+        return tuple(
+            path
+            for x in fields_of(kind)  # type: ignore[arg-type]
+            for path in ([x.key] if x.has(UNCHECKED) else (f"{x.key}{y}" for y in _below(x.type)))
+        )
+    return ()
+
+
+def _below(kind: Any) -> list[str]:
+    """Paths below a field, with what joins them to it."""
+    kind = bare(kind)
+    if is_dataclass(kind):
+        return [f".{path}" for path in unchecked(kind)]
+    return [
+        f"{'[]' if get_origin(kind) is tuple else ''}{path}"
+        for x in get_args(kind)
+        if x is not NoneType and x is not Ellipsis
+        for path in _below(x)
+    ]

@@ -1,0 +1,151 @@
+"""JSON Schemas of answers, derived from their definitions (``evidence.codec``)."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, is_dataclass
+from enum import StrEnum
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin
+
+from roadproof.evidence.codec import Doc, Field, Rule, bare, fields_of, notes_of
+
+DRAFT = "https://json-schema.org/draft/2020-12/schema"
+COMMON = "common.json"
+_NAMES: Mapping[Any, str] = {str: "string", int: "integer", float: "number", bool: "boolean"}
+
+
+@dataclass(frozen=True)
+class Shared:
+    """The last note of a type that several answers share: its name among the definitions of common.json."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Other:
+    """A file of evidence is named, or stands here itself: the schema of the evidence."""
+
+    schema: str
+
+
+def schema_of(kind: type, name: str, title: str) -> dict[str, Any]:
+    """The schema of an answer, which the file ``name`` holds."""
+    below = {x.__name__: x for x in _definitions(kind, set()) if x is not kind}
+    made = {"$schema": DRAFT, "$id": name, "title": title, **_object(kind)}
+    if below:
+        made["$defs"] = {_called(x): _object(below[x]) for x in sorted(below)}
+    return made
+
+
+def shared_schemas(kinds: Mapping[str, Any]) -> dict[str, Any]:
+    """The definitions of common.json, of types by name."""
+    return {name: _shared_schema(kind) for name, kind in sorted(kinds.items())}
+
+
+def _shared_schema(kind: Any) -> dict[str, Any]:
+    inner = bare(kind)
+    if not (is_dataclass(inner) and isinstance(inner, type)):
+        return _inline(kind, {})
+    told = [x.text for x in notes_of(kind) if isinstance(x, Doc)]
+    return _object(inner) | ({"description": told[-1]} if told else {})
+
+
+def _definitions(kind: Any, seen: set[Any]) -> Iterator[type]:
+    """A definition and those below it, each once; shared ones are left out."""
+    inner = bare(kind)
+    if is_dataclass(inner) and isinstance(inner, type):
+        if inner in seen:
+            return
+        seen.add(inner)
+        yield inner
+        for x in fields_of(inner):
+            if not _shared(x.notes):
+                yield from _definitions(x.type, seen)
+        return
+    for x in get_args(inner):
+        if not _shared(notes_of(x)):
+            yield from _definitions(x, seen)
+
+
+def _object(kind: type) -> dict[str, Any]:
+    every = fields_of(kind)
+    return {
+        "type": "object",
+        **_told(kind.__doc__ or ""),
+        "required": [x.key for x in every if x.is_written],
+        "additionalProperties": False,
+        "properties": {x.key: _of_field(x) for x in every},
+    }
+
+
+def _told(text: str) -> dict[str, str]:
+    return {"description": " ".join(text.split())} if text else {}
+
+
+def _of_field(field: Field) -> dict[str, Any]:
+    """The schema of a field; one that is left out is never null."""
+    inner = bare(field.type)
+    if field.is_written or get_origin(inner) not in (Union, UnionType):
+        return _schema(field.type)
+    return _schema(next(x for x in get_args(inner) if x is not NoneType))
+
+
+def _schema(kind: Any) -> dict[str, Any]:
+    """The schema of a type: a reference where it is shared, with what is said of it here."""
+    notes = notes_of(kind)
+    shared = _shared(notes)
+    if shared is None:
+        return _inline(kind, {})
+    own = notes[notes.index(shared) + 1 :]
+    told = [x.text for x in own if isinstance(x, Doc)]
+    return {"$ref": f"{COMMON}#/$defs/{shared.name}", **({"description": told[-1]} if told else {})}
+
+
+def _shared(notes: tuple[object, ...]) -> Shared | None:
+    return next((x for x in notes if isinstance(x, Shared)), None)
+
+
+def _inline(kind: Any, made: dict[str, Any]) -> dict[str, Any]:
+    made |= _plain(bare(kind))
+    for note in notes_of(kind):
+        match note:
+            case Doc(text):
+                made["description"] = text
+            case Rule():
+                made |= _facets(note, made.get("type"))
+            case Other(schema):
+                file = {"$ref": "#/$defs/file"}
+                made = {"anyOf": [{"type": "null"}, file, {"$ref": schema}], **made}
+    return made
+
+
+def _facets(rule: Rule, kind: object) -> dict[str, Any]:
+    least = {"array": "minItems", "object": "minProperties"}.get(str(kind), "minLength")
+    found: dict[str, Any] = {"pattern": rule.pattern} if rule.pattern else {}
+    found |= {"minimum": rule.minimum} if rule.minimum is not None else {}
+    return found | ({least: rule.least} if rule.least else {})
+
+
+def _plain(kind: Any) -> dict[str, Any]:
+    if kind in _NAMES:
+        return {"type": _NAMES[kind]}
+    if kind is Any:
+        return {}
+    if is_dataclass(kind) and isinstance(kind, type):
+        return {"$ref": f"#/$defs/{_called(kind.__name__)}"}
+    if isinstance(kind, type) and issubclass(kind, StrEnum):
+        return {"enum": [*map(str, kind)]}
+    origin, inside = get_origin(kind), get_args(kind)
+    if origin is Literal:
+        words = [str(x) if isinstance(x, StrEnum) else x for x in inside]
+        return {"const": words[0]} if len(words) == 1 else {"enum": words}
+    if origin is tuple:
+        return {"type": "array", "items": _schema(inside[0])}
+    if origin in (Union, UnionType):
+        [inner] = [x for x in inside if x is not NoneType]
+        return {"anyOf": [{"type": "null"}, _schema(inner)]}
+    return {"type": "object", "additionalProperties": _schema(inside[1])}
+
+
+def _called(name: str) -> str:
+    """``PairAnswer`` as ``pair_answer``."""
+    return "".join(f"_{x.lower()}" if x.isupper() else x for x in name).lstrip("_")
