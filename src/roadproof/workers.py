@@ -15,7 +15,6 @@ from multiprocessing.connection import wait
 from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
-from roadproof.hands import Hands
 from roadproof.parent import die_with
 from roadproof.stages import Stage, is_heard, listening, pass_on
 
@@ -33,20 +32,16 @@ class Lost:
 
 
 def answers_of(
-    function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Hands, fresh: bool = False
+    function: Callable[[Job], Answer], jobs: Sequence[Job], most: int | None = None, fresh: bool = False
 ) -> Generator[tuple[int, Answer | Lost], None, None]:
     """``function`` of every job, each with its place in ``jobs``, in the order in which they are done.
 
     A job whose process dies is tried again when the others are done, alone. ``fresh`` processes share
     nothing with this one, for libraries whose threads hold locks. The iterator is to be used up or closed.
-    An error that a job raises is raised here, and ends the others.
+    An error that a job raises is raised here, and ends the others. ``most``: processes at once, None for one
+    a core.
     """
-    if hands.cluster is not None:
-        from roadproof import cluster
-
-        yield from cluster.answers_of(function, jobs, hands.cluster)
-        return
-    processes = min(hands.processes or os.cpu_count() or 1, len(jobs))
+    processes = min(most or os.cpu_count() or 1, len(jobs))
     died: dict[int, str] = {}
     yield from _try_once(function, jobs, range(len(jobs)), processes, fresh, died)
     for place in sorted(died):

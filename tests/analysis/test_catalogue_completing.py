@@ -260,7 +260,7 @@ def test_a_range_that_is_not_known_is_a_doubt() -> None:
     assert [(x.tests, x.told) for x in made.doubts] == [
         (("scenario_4",), "how far its drives go is in doubt: cut off")
     ]
-    assert ranges.spans_of({"scenario_4": {"v_lon(SV)": (1, 2)}}, [still_open]) == []
+    assert ranges.spans_of(HOME.specification, {"scenario_4": {"v_lon(SV)": (1, 2)}}, [still_open]) == []
 
 
 # --- pictures -------------------------------------------------------------------------------------

@@ -18,7 +18,6 @@ from roadproof.analysis.claims import Answered, Claims
 from roadproof.cli import supervising
 from roadproof.cli.main import main
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
-from roadproof.hands import Hands
 from roadproof.proving.properties import Task
 from roadproof.study.pool import in_order, work
 from roadproof.workers import Lost, answers_of
@@ -142,14 +141,14 @@ class Dying:
 
 @pytest.mark.parametrize("processes", [1, 2, 5])
 def test_a_job_whose_worker_dies_is_tried_again(processes: int, tmp_path: Path) -> None:
-    found = dict(answers_of(Dying(tmp_path, {1: 1, 3: 1}), range(6), Hands(processes)))
+    found = dict(answers_of(Dying(tmp_path, {1: 1, 3: 1}), range(6), processes))
     assert found == {k: k * k for k in range(6)}
     assert len(list(tmp_path.iterdir())) == 2
 
 
 @pytest.mark.parametrize("processes", [1, 2, 5])
 def test_a_job_that_kills_twice_is_left_out_alone(processes: int, tmp_path: Path) -> None:
-    found = dict(answers_of(Dying(tmp_path, {1: 9, 3: 1}), range(6), Hands(processes)))
+    found = dict(answers_of(Dying(tmp_path, {1: 9, 3: 1}), range(6), processes))
     lost = found.pop(1)
     assert isinstance(lost, Lost)
     assert "SIGKILL" in lost.reason
@@ -159,10 +158,10 @@ def test_a_job_that_kills_twice_is_left_out_alone(processes: int, tmp_path: Path
 
 
 def test_other_deaths_are_named(tmp_path: Path) -> None:
-    [(_, lost)] = answers_of(Dying(tmp_path, {0: 9}, signal.SIGUSR1), [0], Hands(1))
+    [(_, lost)] = answers_of(Dying(tmp_path, {0: 9}, signal.SIGUSR1), [0], 1)
     assert isinstance(lost, Lost)
     assert "SIGUSR1" in lost.reason
-    [(_, lost)] = answers_of(os._exit, [3], Hands(1))  # type: ignore[type-var]
+    [(_, lost)] = answers_of(os._exit, [3], 1)  # type: ignore[type-var]
     assert isinstance(lost, Lost)
     assert "exited with 3" in lost.reason
 
@@ -195,7 +194,7 @@ def test_an_error_in_a_worker_is_raised_as_it_is(job: int) -> None:
     with pytest.raises(Exception, match=r".+") as here:
         fail(job)
     with pytest.raises(type(here.value)) as there:
-        list(answers_of(fail, [job], Hands(1)))
+        list(answers_of(fail, [job], 1))
     assert str(there.value) == str(here.value)
 
 
@@ -205,7 +204,7 @@ def give_back(job: int) -> Callable[[], int]:
 
 def test_what_cannot_be_sent_is_an_error_and_no_hang() -> None:
     with pytest.raises(RuntimeError, match="pickle"):
-        list(answers_of(give_back, [1, 2], Hands(2)))
+        list(answers_of(give_back, [1, 2], 2))
 
 
 def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roadproof.api.row import Row
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import write_whole
@@ -15,8 +16,6 @@ from roadproof.verdict import ExitCode, Verdict
 if TYPE_CHECKING:
     from roadproof.api.checking import Checked, Solver
     from roadproof.formats.table import Frame
-
-Row = dict[str, str | int | float | bool | None]
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from roadproof.analysis.basis import Basis
-from roadproof.api.answer import Row
 from roadproof.api.definitions import Among, Definitions, load
+from roadproof.api.row import Row
 from roadproof.api.settings import Vehicles, basis_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError

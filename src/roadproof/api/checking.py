@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from roadproof.api import kernel as kernels
-from roadproof.api.answer import Row
+from roadproof.api.row import Row
 from roadproof.api.settings import one_of, work_of
 from roadproof.effort import Effort
 from roadproof.evidence.checking import Checker

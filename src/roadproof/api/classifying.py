@@ -14,9 +14,10 @@ from roadproof.analysis.classify.former import make_room
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import Classification, Classified, Decision, classification_of
 from roadproof.analysis.classify.text import claims_text
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Among, Definitions, load
 from roadproof.api.restricting import restricted
+from roadproof.api.row import Row
 from roadproof.api.settings import Vehicles, basis_of
 from roadproof.api.studied import Studied, drawn
 from roadproof.evidence.kinds import Evidence

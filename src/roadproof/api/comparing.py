@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from roadproof.api.answer import Answer, Picture, Row, picture
+from roadproof.api.answer import Answer, Picture, picture
 from roadproof.api.definitions import Definitions, What, load
+from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, one_of, setting, work_of
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import to_json

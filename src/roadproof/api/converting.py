@@ -9,9 +9,9 @@ from roadproof.errors import InputError
 from roadproof.files import hold_folder
 from roadproof.formats.converted import FORMAT, HEAD, SAMPLES, samples_in, write_converted
 from roadproof.formats.large import is_large, write_large
-from roadproof.formats.samples import CSV, PARQUET
 from roadproof.formats.source import RecordingSource
 from roadproof.formats.sources import find_sources
+from roadproof.formats.tabular import CSV, PARQUET
 from roadproof.study import pool
 from roadproof.study.pool import Progress
 

@@ -15,9 +15,10 @@ from roadproof.analysis.coverage.occurring import GapTraffic
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.coverage.surveyed import Surveyed
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, load
 from roadproof.api.restricting import restricted
+from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, as_road, basis_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError

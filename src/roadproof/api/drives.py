@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from roadproof.analysis.witnesses import Witnessing, evidence_files, stems
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, What, load
 from roadproof.api.restricting import restricted
+from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, one_of, searches_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError

@@ -9,10 +9,11 @@ from roadproof.analysis.explore.answer import Explorable, Explored, PointFinding
 from roadproof.analysis.explore.asking import ask_for
 from roadproof.analysis.explore.measure import Sense
 from roadproof.analysis.explore.study import Exploration
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, What, load
 from roadproof.api.phrases import Term
 from roadproof.api.restricting import restricted
+from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, searches_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from roadproof.api.answer import Row
+from roadproof.api.row import Row
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
 from roadproof.evidence.judged import Judged, RejectedError

@@ -10,13 +10,13 @@ from roadproof.analysis.catalogue.examination import Examination, examine
 from roadproof.analysis.catalogue.fact import Fact, read_fact
 from roadproof.analysis.catalogue.meaning import GAPS, AboutGaps, Kept, Meanings
 from roadproof.analysis.catalogue.request import Request, read_request
+from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.coverage.answers import ClassAnswer, names_of
 from roadproof.analysis.coverage.claims import Covered
 from roadproof.analysis.coverage.pieces import name_of
 from roadproof.analysis.explore.measure import Sense
-from roadproof.api.cataloguing import Catalogued
 from roadproof.api.definitions import Definitions
 from roadproof.api.restricting import drivers_of
 from roadproof.api.settings import basis_of
@@ -26,9 +26,9 @@ from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, Told
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.hands import Jobs
+from roadproof.report.catalogue import tables
 from roadproof.spec.library import Library
 from roadproof.spec.scenarios import name_of as scenario_name
-from roadproof.study.frame import Conducted
 from roadproof.study.pool import Progress
 from roadproof.study.shelf import Shelf, inside
 from roadproof.verdict import Verdict
@@ -78,11 +78,11 @@ def compare(told: Told, jobs: Jobs = None, progress: Progress | None = None) -> 
         reason = f"its tests cannot be judged again: {error}; check where the catalogue was asked for"
         return Comparison((Finding(where, "index", Acceptance.UNDECIDED, reason),))
     known: dict[str, Kept] = {"facts": facts, **gaps}
-    again = Catalogued(made.study, Conducted(known, {}), 0.0, None, examination=made)
-    now = inside(again.as_data(), told.folder)
+    again = Result(made, known)
+    now = inside(again.index({}, 0.0), told.folder)
     findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
     compared = ["parameters"]
-    for name, content in again.files(False).items():
+    for name, content in tables(again).items():
         path = told.folder / name
         compared.append(name)
         if path.is_file() and path.read_bytes() != content:

@@ -8,8 +8,9 @@ from typing import Any
 
 from roadproof.analysis.preventable import Answer as Found
 from roadproof.analysis.preventable import Plate, Preventable, Proved
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, load
+from roadproof.api.row import Row
 from roadproof.api.settings import basis_of
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError

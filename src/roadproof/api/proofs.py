@@ -11,8 +11,9 @@ from roadproof.analysis import claims
 from roadproof.analysis.claims import Answered, Claims, name_of
 from roadproof.analysis.proof_folder import former_claims, write_claims
 from roadproof.api import kernel as kernels
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, What, load
+from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, models_of, one_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError

@@ -8,8 +8,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Among, Definitions, load
+from roadproof.api.row import Row
 from roadproof.api.settings import one_of
 from roadproof.errors import UsageError
 from roadproof.evaluation.evaluate import Findings

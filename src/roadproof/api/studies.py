@@ -11,9 +11,10 @@ from roadproof.analysis.order.kinds import kinds_of
 from roadproof.analysis.order.study import Order, Ordering
 from roadproof.analysis.overlap import Overlap, PairVerdict, pairs_of
 from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Among, Definitions, load
 from roadproof.api.restricting import restricted
+from roadproof.api.row import Row
 from roadproof.api.settings import Vehicles, basis_of, one_of, positive
 from roadproof.api.studied import Studied, drawn
 from roadproof.errors import UsageError

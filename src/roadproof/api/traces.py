@@ -7,8 +7,9 @@ from html import escape
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
-from roadproof.api.answer import Picture, Row, picture
+from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, What, load
+from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, as_road, one_of, positive
 from roadproof.errors import InputError, UsageError
 from roadproof.evaluation.observed import Observed, Said, observe_drive, observe_samples

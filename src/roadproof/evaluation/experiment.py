@@ -19,13 +19,14 @@ from roadproof.evaluation.results import (
     save_findings,
     write_results,
 )
+from roadproof.executors import answers_of
 from roadproof.formats.recording import Recording
 from roadproof.formats.source import RecordingSource
 from roadproof.formats.sources import copies_among, find_sources
 from roadproof.formats.windows import Divided
 from roadproof.hands import Hands
 from roadproof.memory import keep_freed_memory
-from roadproof.workers import Lost, answers_of, is_worker
+from roadproof.workers import Lost, is_worker
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,9 @@ from roadproof.formats.plausible import (
     Implausible,
 )
 from roadproof.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
-from roadproof.formats.source import TRACK_FILES, Files, Format, beside, first_line, with_suffix
+from roadproof.formats.source import first_line
 from roadproof.formats.straight import StraightRoad, of_road, place
 from roadproof.formats.table import Kind, Table, count_lines, read_pieces, read_table
-from roadproof.formats.windows import Divided
 from roadproof.signals import RECORDED, SIGNALS, SIZES
 from roadproof.spec.scenarios import vehicle_order
 from roadproof.world.models import load_recorded_road
@@ -266,39 +265,3 @@ def _check_plausible(table: Table, recording: Recording) -> Iterator[str]:
 
     yield from contradictions(table.path, recording, at)
     yield from nowhere(table.path, recording, lambda row: table.cell(row, "vehicle"), "lanelet of the road")
-
-
-def _is_header(line: str) -> bool:
-    """Whether ``line`` may be the header of such a file, if one that has to be put right."""
-    return {"time", "vehicle"} <= set(line.split(","))
-
-
-def _find_csv(path: Path) -> dict[str, Files]:
-    if path.is_dir():
-        found = [x for x in with_suffix(path, ".csv") if _is_header(first_line(x))]
-    else:
-        found = [x for x in with_suffix(path, ".csv") if not TRACK_FILES.fullmatch(x.name)]
-    return {x.stem: (*beside(x, ROAD_ENDING), x) for x in found}
-
-
-def _find_parquet(path: Path) -> dict[str, Files]:
-    found = (x for x in with_suffix(path, ".parquet") if not x.name.endswith(CONVERTED))
-    return {x.stem: (*beside(x, ROAD_ENDING), x) for x in found}
-
-
-def _read(files: Files) -> Recording:
-    return read_recording(files[-1])
-
-
-def _rate_at(files: Files, rate: int) -> str:
-    return f"{files[-1]}, column time in steps of 1/{rate} s"
-
-
-def _divide(files: Files) -> Divided | None:
-    from roadproof.formats.large import divide_large  # it reads files of this format
-
-    return divide_large(files)
-
-
-CSV = Format("CSV", f"NAME.csv with the header {','.join(HEADER)}", _find_csv, _read, _rate_at, _divide)
-PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet, _read, _rate_at, _divide)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.formats import commonroad, converted, exid, highd, openscenario, samples
+from roadproof.formats import commonroad, converted, exid, highd, openscenario, tabular
 from roadproof.formats.source import Format, RecordingSource
 
 FORMATS: tuple[Format, ...] = (
@@ -12,8 +12,8 @@ FORMATS: tuple[Format, ...] = (
     exid.FORMAT,
     commonroad.FORMAT,
     openscenario.FORMAT,
-    samples.CSV,
-    samples.PARQUET,
+    tabular.CSV,
+    tabular.PARQUET,
     converted.FORMAT,
 )
 

@@ -1,7 +1,7 @@
 """What a drive on a side of a boundary has to show, as a formula."""
 
 from fractions import Fraction
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, assert_never
 
 from roadproof.preventing.driving import Reading, is_aided, speeds_of
 from roadproof.preventing.manoeuvres import Manoeuvre, Values, lane_width
@@ -43,12 +43,14 @@ def _numbers(manoeuvre: Manoeuvre, values: Values) -> tuple[str, ...]:
             return (_number(beside + lane, "m"), _number(values["dy0"], "m"), speed)
         case "cut-out":
             return (_number(beside, "m"), speed)
-        case _:
+        case "deceleration":
             numbers = (speed, _number(values["Gx"], "m/s^2"))
             if "dGdt" not in values:
                 return numbers
             other = _number(values["Ve0"] - values["dV0"], "m/s")
             return (speed, other, numbers[1], _number(values["dGdt"], "m/s^3"))
+        case _:
+            assert_never(manoeuvre.name)
 
 
 def _number(value: Fraction, unit: str) -> str:

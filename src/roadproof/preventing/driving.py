@@ -71,7 +71,7 @@ def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: Reading)
                     SECOND: motion_of(box, *obstacle, ()),
                 }
             )
-        case _:
+        case "deceleration":
             other = speed - values["dV0"]
             pieces = _braking(other, values)
             return Drive(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
+from roadproof.preventing.manoeuvres import ManoeuvreName
 from roadproof.preventing.models import Model
 
 AT_ONCE = "0 s"
@@ -36,7 +37,7 @@ class Lemma:
     parameters: tuple[str, ...]
 
 
-def lemmas_for(manoeuvre: str, models: Sequence[Model], aeb: str = "none") -> list[Lemma]:
+def lemmas_for(manoeuvre: ManoeuvreName, models: Sequence[Model], aeb: str = "none") -> list[Lemma]:
     """The lemmas on which the boundaries of these models rest, each model with its own braking.
 
     ``aeb``: what AEB does in a cut-in of the careful driver, as the option ``cc_aeb``.

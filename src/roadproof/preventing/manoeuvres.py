@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias, assert_never
 
 from roadproof.errors import UsageError
 from roadproof.judge.piecewise import Pieces, constant
@@ -20,6 +20,9 @@ KMH = Fraction(5, 18)
 OTHER, FIRST, SECOND = PAIR[1], *TRIPLE[1:]
 BESIDE = Fraction("1.6")  # m between vehicles in the middles of lanes beside each other
 
+ManoeuvreName: TypeAlias = Literal["cut-in", "cut-out", "deceleration"]
+Course: TypeAlias = Literal[ManoeuvreName, "gradual-deceleration"]
+"""A manoeuvre as formulas about driver models name it."""
 # Initial values by name, SI units.
 Values: TypeAlias = Mapping[str, Fraction]
 
@@ -53,7 +56,7 @@ class Manoeuvre:
     ``sheet``: the values that plates differ in where nothing else is asked for.
     """
 
-    name: str
+    name: ManoeuvreName
     vehicles: tuple[str, ...]
     quantities: Mapping[str, Quantity]
     line: str
@@ -153,7 +156,9 @@ DECELERATION = Manoeuvre(
     (Fraction("0.1"), Fraction("9.81")),
     {"Ve0": (30 * KMH, 60 * KMH, 90 * KMH, 130 * KMH)},
 )
-MANOEUVRES: Mapping[str, Manoeuvre] = MappingProxyType({x.name: x for x in (CUT_IN, CUT_OUT, DECELERATION)})
+MANOEUVRES: Mapping[ManoeuvreName, Manoeuvre] = MappingProxyType(
+    {x.name: x for x in (CUT_IN, CUT_OUT, DECELERATION)}
+)
 
 
 def is_possible(manoeuvre: Manoeuvre, values: Values) -> bool:
@@ -209,9 +214,11 @@ def signals_of(manoeuvre: Manoeuvre, values: Mapping[str, Any]) -> dict[tuple[st
             second = first + values["dx0_f"] + length
             signals |= _vehicle(FIRST, first, still + left, ego, values["Vy"], still)
             signals |= _vehicle(SECOND, second, still + left, values["Vf0"], still, still)
-        case _:
+        case "deceleration":
             place, speed = values["dx0"] + length, ego - values["dV0"]
             signals |= _vehicle(OTHER, place, still + left, speed, still, -values["Gx"])
+        case _:
+            assert_never(manoeuvre.name)
     return signals
 
 

@@ -21,7 +21,7 @@ from roadproof.logic.terms import Own, Parameter, Signal, Size, Term
 from roadproof.logic.terms import children as terms_in
 from roadproof.logic.terms import with_children as with_terms
 from roadproof.preventing import stepped
-from roadproof.preventing.manoeuvres import MANOEUVRES
+from roadproof.preventing.manoeuvres import MANOEUVRES, ManoeuvreName
 
 _DELAYS: Mapping[str, str] = {
     "careful": "cc_delay",
@@ -54,11 +54,11 @@ class State:
         right = self.signals["d", one] - self.sizes["width", one] - self.signals["d", other]
         return max(left, right)
 
-    def start(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, float]:
+    def start(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> dict[str, float]:
         """As the sheets of UN R157 name it, in SI units."""
         return {name: round(float(x), 4) for name, x in self.values(manoeuvre, vehicles).items()}
 
-    def values(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, Fraction]:
+    def values(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> dict[str, Fraction]:
         """The initial values of a manoeuvre that say this state; ``length`` is that of a middling vehicle."""
         first, other, last = vehicles[0], vehicles[1], vehicles[-1]
         speed = self.signals["v_lon", first]
@@ -84,7 +84,7 @@ class State:
                     "dx0_f": ahead,
                     **sizes,
                 }
-            case _:
+            case "deceleration":
                 return {
                     "Ve0": speed,
                     "dV0": speed - self.signals["v_lon", other],
@@ -188,7 +188,7 @@ class _Varied:
 
 
 def controller_hits(
-    state: State, manoeuvre: str, vehicles: tuple[str, ...], more: Fraction = Fraction(0)
+    state: State, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...], more: Fraction = Fraction(0)
 ) -> bool:
     """Whether the fuzzy safety model collides from this state on, with so much ``more`` gap (m).
 
@@ -203,7 +203,9 @@ def controller_hits(
     return stepped.course_of(kind, {**values, kind.line: values[kind.line] + more}, False).touches
 
 
-def controller_margin(state: State, manoeuvre: str, vehicles: tuple[str, ...], hit: bool) -> float | None:
+def controller_margin(
+    state: State, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...], hit: bool
+) -> float | None:
     """How far it is to the nearest gap with the other answer, tried 1, 2, 4 … 64 m away."""
     room = state.gap(vehicles[-2], vehicles[-1])
 

@@ -4,8 +4,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
+from typing import Final
 
 from roadproof.errors import UsageError
+from roadproof.preventing.manoeuvres import Course, ManoeuvreName
 from roadproof.spec.library import Specification, unknown
 from roadproof.spec.scenarios import LANE, disturbance_name, name_of, number_in
 
@@ -16,12 +18,12 @@ PREVENTION = "prevention"
 DRIVEN_BY, BEGINS = "driver", "prevention_of"
 """Its options for the model of the driver, and for what begins so."""
 # The scenario of the library that each manoeuvre is the course of.
-SCENARIOS: Mapping[str, int] = MappingProxyType({"cut-in": 1, "cut-out": 2, "deceleration": 4})
-_CHANGING: Mapping[str, int] = MappingProxyType({"cut-in": 5, "cut-out": 6, "deceleration": 8})
+SCENARIOS: Mapping[ManoeuvreName, int] = MappingProxyType({"cut-in": 1, "cut-out": 2, "deceleration": 4})
+_CHANGING: Mapping[ManoeuvreName, int] = MappingProxyType({"cut-in": 5, "cut-out": 6, "deceleration": 8})
 """The scenario in which the same happens while SV changes lanes, of which models have no drive."""
 _SECTORS = (0, 8, 16)
 """How much later in the library's list a scenario of the main road stands for each road sector."""
-_FORESEEN: Mapping[str, str] = MappingProxyType(
+_FORESEEN: Mapping[Course, str] = MappingProxyType(
     {
         "cut-in": "cutsIn",
         "cut-out": "cutsOut",
@@ -40,7 +42,7 @@ class Model:
 
     name: str
     title: str
-    manoeuvres: tuple[str, ...]
+    manoeuvres: tuple[ManoeuvreName, ...]
     source: str
     is_stepped: bool = False
 
@@ -75,7 +77,7 @@ MODELS: Mapping[str, Model] = MappingProxyType(
 )
 
 
-def models_for(manoeuvre: str, names: tuple[str, ...] = ()) -> tuple[Model, ...]:
+def models_for(manoeuvre: ManoeuvreName, names: tuple[str, ...] = ()) -> tuple[Model, ...]:
     """The models of that name, or all with a formula for a manoeuvre. Raises ``UsageError``."""
     for name in names:
         if name not in MODELS:
@@ -90,7 +92,7 @@ def models_for(manoeuvre: str, names: tuple[str, ...] = ()) -> tuple[Model, ...]
     )
 
 
-def course_in(number: int) -> str | None:
+def course_in(number: int) -> ManoeuvreName | None:
     """The manoeuvre that a scenario is the course of, on any road sector; None where it is of none."""
     return next((x for x, first in SCENARIOS.items() if number - first in _SECTORS), None)
 
@@ -129,15 +131,15 @@ def check_courses(name: str, numbers: Collection[int], said: str) -> None:
         )
 
 
-def manoeuvre_of(name: str) -> tuple[str, int | None]:
+def manoeuvre_of(name: str) -> tuple[ManoeuvreName, int | None]:
     """``cut-in``, or the number of a scenario in which it happens, as manoeuvre and number.
 
     Raises ``UsageError``.
     """
     numbers = {number: manoeuvre for said in (SCENARIOS, _CHANGING) for manoeuvre, number in said.items()}
     number = int(name) if name.isdecimal() else number_in(name)
-    found = name if number is None else numbers.get(number, name)
-    if found not in SCENARIOS:
+    found = next((x for x in SCENARIOS if x == name), None) if number is None else numbers.get(number)
+    if found is None:
         known = ", ".join(f"{x} (scenarios {SCENARIOS[x]}, {_CHANGING[x]})" for x in SCENARIOS)
         raise UsageError(f"'{name}' is no manoeuvre that driver models speak of; these are: {known}")
     return found, number
@@ -153,13 +155,13 @@ def parts_of(number: int, vehicles: tuple[str, ...]) -> tuple[str, str]:
     return f"{name_of(number)}({said})", f"{disturbance_name(number)}({said})"
 
 
-def _word(manoeuvre: str) -> str:
+def _word(manoeuvre: Course) -> str:
     """``cut-in`` as the middle of a name."""
     first, *others = manoeuvre.split("-")
     return first + "".join(x.capitalize() for x in others)
 
 
-def unpreventable(manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> str:
+def unpreventable(manoeuvre: Course, model: str, vehicles: tuple[str, ...]) -> str:
     """The formula: the manoeuvre, from this state on, ends in a collision though SV is driven so."""
     return f"unpreventable_{_word(manoeuvre)}_{model}({', '.join(vehicles)})"
 
@@ -169,7 +171,7 @@ def touched(vehicles: tuple[str, ...]) -> str:
     return f"F touches({vehicles[0]}, {vehicles[-1]})"
 
 
-GRADUAL = "gradual-deceleration"
+GRADUAL: Final = "gradual-deceleration"
 """What a deceleration is called in definitions where the braking of POV grows at a finite rate."""
 
 
@@ -178,17 +180,17 @@ def untouched(vehicles: tuple[str, ...]) -> str:
     return f"G not touches({vehicles[0]}, {vehicles[-1]})"
 
 
-def boundary_of(manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> str:
+def boundary_of(manoeuvre: Course, model: str, vehicles: tuple[str, ...]) -> str:
     """What is true where a collision is unpreventable: of the state, or, for want of that, of the drive."""
     return touched(vehicles) if MODELS[model].is_stepped else unpreventable(manoeuvre, model, vehicles)
 
 
-def foreseen(manoeuvre: str, vehicles: tuple[str, ...]) -> str:
+def foreseen(manoeuvre: Course, vehicles: tuple[str, ...]) -> str:
     """The formula: the manoeuvre begins in this state."""
     return f"{_FORESEEN[manoeuvre]}({', '.join(vehicles)})"
 
 
-def follows(manoeuvre: str, model: str, vehicles: tuple[str, ...], numbers: tuple[str, ...]) -> str:
+def follows(manoeuvre: Course, model: str, vehicles: tuple[str, ...], numbers: tuple[str, ...]) -> str:
     """The formula: SV drives as the model does; ``numbers`` are of the start, with units."""
     return f"follows_{_word(manoeuvre)}_{model}({', '.join((*vehicles, *numbers))})"
 

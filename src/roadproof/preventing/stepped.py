@@ -10,6 +10,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import groupby
 from math import ceil
+from typing import assert_never
 
 from roadproof.errors import InputError
 from roadproof.preventing.boundary import Plane
@@ -84,8 +85,10 @@ def _other(manoeuvre: Manoeuvre, values: Values) -> tuple[_Other, int]:
             gap = values["headway"] * speed + values["length"] + values["dx0_f"]
             other = values["Vf0"]
             seen = int(_WANDER / values["Vy"] * HERTZ) + 1
-        case _:
+        case "deceleration":
             gap, other, braking = values["dx0"], speed - values["dV0"], values["Gx"]
+        case _:
+            assert_never(manoeuvre.name)
     stops = other**2 / (2 * braking) if braking else Fraction(0)
     lengths = 2 * values["length"]
     scale = scale_of(gap, speed, other, lateral, beside, braking, stops, lengths)

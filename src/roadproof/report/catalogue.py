@@ -11,7 +11,9 @@ from xml.etree import ElementTree as xml
 from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, Figure, kind_of
 from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.ranges import Span
+from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.tested import Remark, Target, Tested
+from roadproof.report import catalogue_drivers
 from roadproof.report.figures import as_bytes, count_axis, make_figure
 from roadproof.spec.scenarios import number_in
 
@@ -72,9 +74,21 @@ def range_lines(spans: Sequence[Span], horizon: Fraction) -> Iterator[str]:
     for name in dict.fromkeys(x.target for x in spans):
         yield f"  {name}"
         for x in (y for y in spans if y.target == name):
-            unit = "m/s" if x.term.startswith("v") else "m"
             tested, can = (f"{low:.4g} to {high:.4g}" for low, high in (x.tested, x.reached))
-            yield f"    {x.term}: {tested} of {can} {unit}; {x.share:.0%} is not tested"
+            yield f"    {x.term}: {tested} of {can} {x.unit}; {x.share:.0%} is not tested"
+
+
+def tables(result: Result) -> dict[str, bytes]:
+    """The tables beside an index, by file name."""
+    tests = tuple(x.id for x in result.catalogue.entries)
+    found, in_force = result.tested, result.in_force
+    made = {
+        "matrix.csv": as_csv(tests, found, in_force),
+        "figures.csv": figures_csv(result.figures),
+        "drivers.csv": catalogue_drivers.as_csv(result.decisions),
+        "junit.xml": as_junit(tests, found, in_force),
+    }
+    return {name: text.encode() for name, text in made.items()}
 
 
 def figures_csv(counted: Sequence[Figure]) -> str:

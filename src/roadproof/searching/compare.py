@@ -8,7 +8,6 @@ from typing import Any, Literal, TypeAlias
 from roadproof.effort import Effort, Late
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.judged import Judged
-from roadproof.hands import Hands
 from roadproof.logic.formula import is_state
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
@@ -116,7 +115,7 @@ def answers(search: Search, other: Query, jobs: int = 1) -> Iterator[tuple[str, 
     if jobs < 2 or is_worker():
         yield from ((x.name, _imply(x)) for x in questions)
         return
-    with closing(answers_of(_imply, questions, Hands(jobs))) as found:
+    with closing(answers_of(_imply, questions, jobs)) as found:
         for place, answer in found:
             question = questions[place]
             yield question.name, question.doubt(answer.reason) if isinstance(answer, Lost) else answer

@@ -35,7 +35,8 @@ def work(
     """
     who = hands_of(hands)
     if len(jobs) > 1:
-        from roadproof.workers import Lost, answers_of, is_worker
+        from roadproof.executors import answers_of
+        from roadproof.workers import Lost, is_worker
     if len(jobs) <= 1 or is_worker():
         yield from enumerate(map(function, jobs))
         return

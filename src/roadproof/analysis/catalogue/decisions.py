@@ -22,6 +22,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
 from roadproof.monitoring.compiled import compile
+from roadproof.preventing.manoeuvres import ManoeuvreName
 from roadproof.preventing.margins import (
     Boundary,
     State,
@@ -78,7 +79,7 @@ class Drivers:
     _bound: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
     _boundaries: dict[str, Boundary] = field(default_factory=dict, repr=False, compare=False)
 
-    def of(self, manoeuvre: str) -> tuple[str, ...]:
+    def of(self, manoeuvre: ManoeuvreName) -> tuple[str, ...]:
         """The models that speak of a manoeuvre."""
         return tuple(x for x in self.models if manoeuvre in MODELS[x].manoeuvres)
 
@@ -88,7 +89,7 @@ class Drivers:
             self._read[text] = read_claim(self.specification, text).formula
         return self._read[text]
 
-    def begins(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, Formula]:
+    def begins(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> dict[str, Formula]:
         """What is asked of a drive: that the manoeuvre begins, and that danger is there."""
         first, last = endangered(vehicles)
         return {
@@ -96,7 +97,7 @@ class Drivers:
             DANGER: self._at_values(danger(self.specification, first, last).text),
         }
 
-    def collides(self, manoeuvre: str, vehicles: tuple[str, ...]) -> dict[str, Formula]:
+    def collides(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> dict[str, Formula]:
         """What is asked of a state: that a collision is unpreventable, for each model with a formula."""
         return {
             x: self._at_values(unpreventable(manoeuvre, x, vehicles))
@@ -104,7 +105,7 @@ class Drivers:
             if not MODELS[x].is_stepped
         }
 
-    def boundary(self, manoeuvre: str, model: str, vehicles: tuple[str, ...]) -> Boundary:
+    def boundary(self, manoeuvre: ManoeuvreName, model: str, vehicles: tuple[str, ...]) -> Boundary:
         """Where a collision is unpreventable for a model, to be varied."""
         text = unpreventable(manoeuvre, model, vehicles)
         if text not in self._boundaries:
@@ -117,7 +118,7 @@ class Drivers:
         return self._bound[text]
 
 
-def course_of(scenario: str) -> str | None:
+def course_of(scenario: str) -> ManoeuvreName | None:
     """The manoeuvre of a scenario by name; None for classes, and for scenarios that no model speaks of."""
     number = number_in(scenario)
     return None if number is None else course_in(number)
@@ -240,7 +241,7 @@ def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]
 
 
 def _not_foreseen(
-    drivers: Drivers, manoeuvre: str, scenario: str, vehicles: tuple[str, ...]
+    drivers: Drivers, manoeuvre: ManoeuvreName, scenario: str, vehicles: tuple[str, ...]
 ) -> Iterator[Decision]:
     reason = f"no {manoeuvre} begins before danger does"
     for model in drivers.of(manoeuvre):
@@ -249,7 +250,7 @@ def _not_foreseen(
 
 def _decided(
     drivers: Drivers,
-    manoeuvre: str,
+    manoeuvre: ManoeuvreName,
     scenario: str,
     vehicles: tuple[str, ...],
     at: float,
@@ -279,7 +280,9 @@ def _slight(start: Mapping[str, float]) -> str:
     return ""
 
 
-def _of_controller(made: Decision, state: State, manoeuvre: str, vehicles: tuple[str, ...]) -> Decision:
+def _of_controller(
+    made: Decision, state: State, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]
+) -> Decision:
     try:
         hit = controller_hits(state, manoeuvre, vehicles)
         metres = None if made.reason else controller_margin(state, manoeuvre, vehicles, hit)

@@ -5,9 +5,10 @@ from fractions import Fraction
 
 from roadproof.searching.variety import CLEARLY
 from roadproof.spec.compose import both
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
+from roadproof.units import unit_text
 
 FACTORS = (Fraction(6), Fraction(3), Fraction(3, 2), Fraction(3, 4))
 """How far is tried, from the farthest on."""
@@ -33,15 +34,15 @@ def far_from(
     points: Sequence[Mapping[str, float]], factor: Fraction, specification: Specification
 ) -> Query | None:
     """That a drive begins ``factor`` or more from each of the points; None where there are none."""
-    parts = [read_claim(specification, _apart(point, factor)) for point in _spread(points)]
+    parts = [read_claim(specification, _apart(specification, point, factor)) for point in _spread(points)]
     return both(*parts) if parts else None
 
 
-def _apart(point: Mapping[str, float], factor: Fraction) -> str:
+def _apart(specification: Specification, point: Mapping[str, float], factor: Fraction) -> str:
     """That one of the numbers differs by ``factor`` times what is clearly different, as text."""
     either_side = []
     for name, value in point.items():
-        by, unit = factor * _clearly(name), "m/s" if name.startswith("v") else "m"
+        by, unit = factor * _clearly(name), unit_text(read_term(specification, name)[1])
         middle = Fraction(value).limit_denominator(1000)
         either_side.append(f"{name} - ({_number(middle + by)}) * 1 {unit} >= 0 {unit}")
         either_side.append(f"({_number(middle - by)}) * 1 {unit} - ({name}) >= 0 {unit}")

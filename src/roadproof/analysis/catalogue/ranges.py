@@ -21,11 +21,14 @@ from roadproof.effort import Late
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import Judged
 from roadproof.spec.compose import both
+from roadproof.spec.elaborate import read_term
+from roadproof.spec.library import Specification
 from roadproof.spec.query import Query
+from roadproof.units import unit_text
 
 EFFORT = 6.0
 """Most units of work for one search."""
-_PRECISION = {"s": Fraction(2), "d": Fraction(1, 4), "v": Fraction(1)}  # m, m, m/s
+_PRECISION = {"s": Fraction(2), "d": Fraction(1, 4), "v_lon": Fraction(1)}  # m, m, m/s
 
 
 @dataclass(frozen=True)
@@ -45,11 +48,12 @@ class Reach:
 class Span:
     """Of one number at the start of drives that show ``target``: where tests are, and how far drives go.
 
-    Low and high, in m or m/s. ``beyond``: what is known of lower and of higher values.
+    Low and high, in ``unit``. ``beyond``: what is known of lower and of higher values.
     """
 
     target: str
     term: str
+    unit: str
     tested: tuple[float, float]
     reached: tuple[float, float]
     beyond: tuple[str, str]
@@ -80,7 +84,9 @@ def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
     told = f"the {sense} {reach.term}"
     still_open = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
     try:
-        found = find_extreme(Sought(search, measure, _PRECISION[reach.term[0]], seeds=reach.known))
+        found = find_extreme(
+            Sought(search, measure, _PRECISION[reach.term.partition("(")[0]], seeds=reach.known)
+        )
     except Late as late:
         return replace(still_open, reason=f"{told}: {late}")
     beyond = "" if found.missed is None else found.missed.reason
@@ -92,24 +98,33 @@ def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
     return replace(made, drive=found.best.drive)
 
 
-def spans_of(targets: Mapping[str, Mapping[str, tuple[float, float]]], facts: Sequence[Fact]) -> list[Span]:
+def spans_of(
+    specification: Specification,
+    targets: Mapping[str, Mapping[str, tuple[float, float]]],
+    facts: Sequence[Fact],
+) -> list[Span]:
     """The ranges of targets whose both ends are known; ``targets``: by name and number where tests are."""
     ends: dict[tuple[str, str], dict[str, Fact]] = {}
     for fact in facts:
         if fact.relation == "reaches":
             ends.setdefault((fact.other, fact.term), {})[fact.sense] = fact
     return [
-        _span(name, term, tested, ends[name, term]["least"], ends[name, term]["greatest"])
+        _span(name, term, _unit(specification, term), tested, ends[name, term])
         for name, covered in targets.items()
         for term, tested in covered.items()
         if len(ends.get((name, term), {})) == 2
     ]
 
 
-def _span(target: str, term: str, tested: tuple[float, float], low: Fact, high: Fact) -> Span:
+def _unit(specification: Specification, term: str) -> str:
+    return unit_text(read_term(specification, term)[1])
+
+
+def _span(target: str, term: str, unit: str, tested: tuple[float, float], ends: Mapping[str, Fact]) -> Span:
     """With the values of tests, which may go farther than the drives that were looked for."""
+    low, high = ends["least"], ends["greatest"]
     reached = min(float(low.at or 0), tested[0]), max(float(high.at or 0), tested[1])
-    return Span(target, term, tested, reached, (low.reason, high.reason))
+    return Span(target, term, unit, tested, reached, (low.reason, high.reason))
 
 
 def reaches_of(

@@ -13,8 +13,9 @@ from roadproof.evidence.strict import Fields, rational
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.terms import constant_value
 from roadproof.spec.compose import both, implication, negation
-from roadproof.spec.elaborate import read_claim
+from roadproof.spec.elaborate import read_claim, read_term
 from roadproof.spec.scenarios import Scenario, applied, number_in
+from roadproof.units import unit_text
 
 SCHEMA = "roadproof/catalogue/1"
 _FACT = ("test", "other", "relation", "premise", "conclusion", "formula", "verdict", "reason")
@@ -60,7 +61,7 @@ def _bounds(line: Fields, common: Common, conclusion: Formula) -> bool:
     """Whether a formula says that the term of a line is at its value, or beyond, as its sense is."""
     term, value = line.text("term"), rational(line.get("at"), f"{line.where}, at")
     sign = {"least": "<=", "greatest": ">="}.get(line.text("sense"), "=")
-    unit = "m/s" if term.startswith("v") else "m"
+    unit = unit_text(read_term(common.specification, term)[1])
     bare = common.formula(f"{term} {sign} 0 {unit}")
     return (
         isinstance(conclusion, Compare)

@@ -17,7 +17,7 @@ from roadproof.preventing.driving import Reading
 from roadproof.preventing.idle import idle
 from roadproof.preventing.lemmas import lemmas_for
 from roadproof.preventing.lines import End, Line, line_data, sides_in, told_line, truths
-from roadproof.preventing.manoeuvres import MANOEUVRES, Manoeuvre, signals_of
+from roadproof.preventing.manoeuvres import MANOEUVRES, Manoeuvre, ManoeuvreName, signals_of
 from roadproof.preventing.models import MODELS, boundary_of, manoeuvre_of, models_for, parts_of, touched
 from roadproof.signals import STARTING
 from roadproof.spec.bind import values_with
@@ -198,7 +198,7 @@ def _lemma(content: object, background: Background, number: int) -> Iterator[Ent
     name, verdict, claim = line.text("name"), line.text("verdict"), line.text("claim")
     shows = shows_of(verdict, line.where)
     file, assuming = evidence_name(line, "certificate"), read_assuming(line)
-    manoeuvre = background.said.text("manoeuvre")
+    manoeuvre = _manoeuvre(background.said)
     known = lemmas_for(manoeuvre, models_for(manoeuvre), common.options.get("cc_aeb", "none"))
     named = [x.claim for x in known if x.name == name]
     fault = "" if claim in named else f"{line.where}: the claim of lemma '{name[:60]}' is another"
@@ -259,11 +259,20 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
 
 def _idle(data: Fields, background: Background, models: Set[str]) -> tuple[str, ...]:
     """What was chosen and has no say in the plates. Raises ``InputError``, ``UsageError``."""
-    common, manoeuvre = background.home, data.text("manoeuvre")
-    if manoeuvre not in MANOEUVRES or not models:
-        raise InputError(f"{data.where}: there is no manoeuvre '{manoeuvre[:20]}', or no plate of it")
+    common, manoeuvre = background.home, _manoeuvre(data)
+    if not models:
+        raise InputError(f"{data.where}: there is no plate")
     asked = models_for(manoeuvre, tuple(sorted(models)))
     return idle(common.specification, common.values or {}, MANOEUVRES[manoeuvre], asked)
+
+
+def _manoeuvre(data: Fields) -> ManoeuvreName:
+    """The manoeuvre that the question names. Raises ``InputError``."""
+    said = data.text("manoeuvre")
+    found = next((x for x in MANOEUVRES if x == said), None)
+    if found is None:
+        raise InputError(f"{data.where}: there is no manoeuvre '{said[:20]}'")
+    return found
 
 
 def _plane(said: Fields, plate: _Plate) -> Plane:

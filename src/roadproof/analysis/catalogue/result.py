@@ -1,0 +1,244 @@
+"""All that is known of a catalogue: what its tests show, imply and miss, and the index that says so."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_formula
+from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
+from roadproof.analysis.catalogue.examination import Examination
+from roadproof.analysis.catalogue.figures import Figure, figures, figures_beside
+from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers, scenarios_shown
+from roadproof.analysis.catalogue.ranges import Span, spans_of
+from roadproof.analysis.catalogue.showing import ConcreteAnswer
+from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
+from roadproof.analysis.catalogue.tested import Remark, Target, Tested, all_facts, targets_of, tested
+from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.preventing.restriction import restriction_of
+from roadproof.spec.bind import values_with
+
+
+@dataclass(frozen=True)
+class Result:
+    """What tests show and mean.
+
+    ``examination`` has the tests and what concrete ones show, ``answers`` what is known of abstract ones.
+    """
+
+    examination: Examination
+    answers: Mapping[str, Kept]
+
+    @property
+    def study(self) -> Meanings:
+        """The question that was asked about abstract tests."""
+        return self.examination.study
+
+    @property
+    def concrete(self) -> tuple[ConcreteAnswer, ...]:
+        """What concrete tests show, in order."""
+        return self.examination.concrete
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """The tests."""
+        return self.examination.tests
+
+    @cached_property
+    def tested(self) -> Tested:
+        """What is tested, what is missing, and what is to be said of tests."""
+        facts = all_facts(self.answers)
+        words = targets_of(self.study.asked)
+        gaps = None if self.study.gaps is None else self.gap_answers
+        return tested(
+            self.study.asked,
+            self.concrete,
+            self.study.entries,
+            facts,
+            words,
+            self.examination.request.near,
+            gaps,
+        )
+
+    @cached_property
+    def gap_answers(self) -> dict[str, ClassAnswer | None]:
+        """Where it was asked, what is known of each class of gaps by name: None of those that tests show."""
+        if self.study.gaps is None or self.study.survey is None:
+            return {}
+        known = self.study.survey.classes_in(gap_answers(self.answers))
+        return {n: known(part) for n, part in self.study.gaps.parts.items()}
+
+    @cached_property
+    def figures(self) -> tuple[Figure, ...]:
+        """How much is tested: by spec set, kind and road sector."""
+        facts, set_name = all_facts(self.answers), self.study.basis.specification.set_name
+        found = figures(set_name, self.tested.targets, self.tested.gaps)
+        pairs = zip(self.study.beside, self.examination.beside, strict=True)
+        return (*found, *(x for asked, answers in pairs for x in figures_beside(asked, answers, facts)))
+
+    @cached_property
+    def spans(self) -> tuple[Span, ...]:
+        """Where it was asked, how tests of each class begin, and how drives of it can."""
+        if not self.study.reaches:
+            return ()
+        covered = {x.name: x.covered for x in self.tested.targets}
+        return tuple(spans_of(self.study.basis.specification, covered, all_facts(self.answers)))
+
+    @cached_property
+    def decisions(self) -> tuple[tuple[str, Decision], ...]:
+        """What becomes of each test, by id, under each driver model, in the order of tests."""
+        drivers = self.examination.drivers
+        concrete = {x.entry.id: x.decisions for x in self.concrete}
+        if drivers is None:
+            return ()
+        found: list[tuple[str, Decision]] = []
+        for entry in self.catalogue.entries:
+            made: Iterable[Decision] = concrete.get(entry.id, ())
+            if isinstance(entry, Abstract):
+                made = self._of_formula(entry, drivers)
+            found += [(entry.id, x) for x in made]
+        return tuple(found)
+
+    def _of_formula(self, entry: Abstract, drivers: Drivers) -> Iterator[Decision]:
+        """What becomes of an abstract test by the drives of it that were found, each once."""
+        facts = [x for x in all_facts(self.answers) if x.test == entry.id]
+        drives = {repr(x.drive.file.drive): x.drive for x in facts if x.drive is not None}
+        scenarios = scenarios_shown(facts)
+        sides = [read_side_name(x.other) for x in facts if x.relation == "open"]
+        missed = {(x[0], x[2]) for x in sides if x is not None}
+        return decide_formula(decisions_of(drives.values(), scenarios, self.study.asked, drivers), missed)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What is to be tested, and no test shows: scenarios, classes, with ``gaps`` classes of gaps."""
+        return tuple(x.name for x in self.tested.missing)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """On files that are no tests, samples that contradict themselves, drives made with other values."""
+        doubted: dict[str, list[str]] = {}
+        made: dict[tuple[str, ...], list[str]] = {}
+        for x in self.concrete:
+            for note in x.notes:
+                doubted.setdefault(note, []).append(x.entry.id)
+            if x.made_with:
+                made.setdefault(x.made_with, []).append(x.entry.id)
+        others = (
+            f"made with {', '.join(those)}, and judged with what is asked for: {', '.join(tests)}"
+            for those, tests in made.items()
+        )
+        told = (f"{', '.join(tests)}: {note}" for note, tests in doubted.items())
+        return (*self.catalogue.notes, *told, *others)
+
+    @property
+    def in_force(self) -> tuple[str, ...]:
+        """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
+        basis = self.study.basis
+        home = basis.specification
+        driver = restriction_of(home.options)
+        said = [] if home.set_name == "base" else [f"set {home.set_name}"]
+        known = {} if driver is None else driver.options
+        readings = {k: v for k, v in home.options.items() if k not in known}
+        said += [f"{k} = {v}" for k, v in readings.items() if v != home.library.options[k].values[0]]
+        declared = values_with(home.library, {})
+        said += [f"{k} = {v} (SI)" for k, v in basis.values.items() if v != declared[k]]
+        return (*said, *(() if driver is None else (str(driver),)))
+
+    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+        found = self.tested
+        return {
+            **self.study.question.heading,
+            "view": "dense",
+            "request": self.examination.request.as_data(),
+            "tests": [self._test(x) for x in self.catalogue.entries],
+            "targets": [_target(x) for x in found.targets],
+            "gaps": self._gaps(records),
+            "not_tested": list(self.missing),
+            "figures": [vars(x) for x in self.figures],
+            "decisions": [_decision(test, x) for test, x in self.decisions],
+            "ranges": [_range(x) for x in self.spans],
+            "facts": [fact for record in records.values() for fact in record["facts"]],
+            "faults": _remarks(found.faults),
+            "doubts": _remarks(found.doubts),
+            "alike": _remarks(found.alike),
+            "contradictions": _remarks(found.contradictions),
+            "notes": list(self.notes),
+            "seconds": round(seconds, 1),
+        }
+
+    def _gaps(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        """The classes of gaps: those that tests show, or all with what shows that they are empty or not."""
+        gaps = self.tested.gaps
+        kept = [x for record in records.values() if (x := record.get("gaps"))]
+        return {
+            "asked": gaps.asked,
+            "classes_in_all": gaps.total,
+            "targets": [_target(x) for x in gaps.targets],
+            "empty": [x.name for x in gaps.empty],
+            "open": dict(gaps.open),
+            "claims": [x["claim"] for x in kept if "claim" in x and gaps.asked],
+            "classes": [y for x in kept if gaps.asked for y in x.get("classes", ())],
+        }
+
+    def _test(self, entry: Concrete | Abstract) -> dict[str, Any]:
+        data: dict[str, Any] = {"id": entry.id, "title": entry.title}
+        if isinstance(entry, Abstract):
+            return data | {"formula": entry.query.text, "claims": list(entry.claims)}
+        answer = next(x for x in self.concrete if x.entry == entry)
+        shown = [{**vars(x), "vehicles": list(x.vehicles)} for x in answer.shown]
+        return data | {
+            "file": entry.place,
+            "sha256": answer.sha256,
+            "copy_of": entry.copy_of,
+            "roles": dict(answer.roles),
+            "claims": list(answer.claims),
+            "dense": answer.dense,
+            "shown": shown,
+            "begins": dict(answer.begins),
+            "fault": answer.fault,
+            "why": _why(answer),
+        }
+
+
+def _decision(test: str, decision: Decision) -> dict[str, Any]:
+    return {
+        "test": test,
+        **vars(decision),
+        "vehicles": list(decision.vehicles),
+        "start": dict(decision.start),
+    }
+
+
+def _range(span: Span) -> dict[str, Any]:
+    return {
+        "target": span.target,
+        "term": span.term,
+        "tested": list(span.tested),
+        "reached": list(span.reached),
+        "untested": [list(part) for part in span.untested],
+        "share": round(span.share, 4),
+        "beyond": list(span.beyond),
+    }
+
+
+def _target(target: Target) -> dict[str, Any]:
+    return {
+        "name": target.name,
+        "words": target.words,
+        "sector": target.sector,
+        "tested": list(target.tested),
+        "possible": list(target.possible),
+        "covered": {name: list(bounds) for name, bounds in target.covered.items()},
+    }
+
+
+def _why(answer: ConcreteAnswer) -> dict[str, Any] | None:
+    if answer.why is None:
+        return None
+    sets = {name: [*held] for name, held in answer.why.sets.items()}
+    return {**vars(answer.why), "vehicles": [*answer.why.vehicles], "sets": sets}
+
+
+def _remarks(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
+    return [{"tests": list(x.tests), "told": x.told} for x in remarks]
