@@ -11,8 +11,11 @@ from roadproof.judge.exact import Judgement, judge
 from roadproof.judge.replay import first_overlap
 from roadproof.spec.bind import bind, values_with
 from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library
+from roadproof.spec.library import Library, Specification
+from roadproof.spec.query import Query
 from roadproof.verdict import Verdict
+
+_READ = "read of a file"
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class Ruling:
 def judge_file(file: DriveFile, library: Library) -> Ruling:
     """Judge the drive on the formula in dense and unbounded time, with no look at the file's verdict."""
     try:
-        query = read_claim(library.select(file.set_name, file.options), file.formula, "formula")
+        query = _read(library.select(file.set_name, file.options), file.formula)
     except RoadproofError as error:
         return Ruling(None, str(error), readable=False)
     try:
@@ -58,6 +61,15 @@ def judge_file(file: DriveFile, library: Library) -> Ruling:
         if overlap is not None:
             return Ruling(judgement, str(overlap))
     return Ruling(judgement, "")
+
+
+def _read(specification: Specification, formula: str) -> Query:
+    """A formula of a file, each read once. Raises ``TextError``."""
+    known = specification.worked_out
+    if (_READ, formula) not in known:
+        known[_READ, formula] = read_claim(specification, formula, "formula")
+    query: Query = known[_READ, formula]
+    return query
 
 
 class RejectedError(InputError):

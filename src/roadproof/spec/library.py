@@ -88,10 +88,16 @@ class Library:
         declared = [repr(sorted(getattr(self, part).items())) for part in parts]
         return hashlib.sha256("\0".join(declared).encode()).hexdigest()[:16]
 
+    @cached_property
+    def _selected(self) -> dict[tuple[str, tuple[tuple[str, str], ...]], "Specification"]:
+        """The specifications that were selected, by set and options."""
+        return {}
+
     def select(self, set_name: str = "base", options: Mapping[str, str] | None = None) -> "Specification":
         """The definitions in force for a spec set and option values (defaults where not given).
 
-        Raises ``InputError`` for a set, option or value that does not exist.
+        The same choice gives the same object. Raises ``InputError`` for a set, option or value that does not
+        exist.
         """
         chosen = {name: declared.values[0] for name, declared in self.options.items()}
         for name, value in (options or {}).items():
@@ -101,6 +107,12 @@ class Library:
                 allowed = " or ".join(self.options[name].values)
                 raise InputError(f"option {name}={value}: the value must be {allowed}")
             chosen[name] = value
+        key = (set_name, tuple(chosen.items()))
+        if key not in self._selected:
+            self._selected[key] = self._made(set_name, chosen)
+        return self._selected[key]
+
+    def _made(self, set_name: str, chosen: Mapping[str, str]) -> "Specification":
         definitions = dict(self.definitions)
         for block in self._chain(set_name):
             definitions |= {d.name: d for d in block.definitions}
