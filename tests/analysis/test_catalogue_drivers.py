@@ -349,6 +349,11 @@ def test_drives_are_on_the_sides_that_facts_name(both_sides: tuple[str, Path]) -
         (report / "index.json").write_text(json.dumps(changed), "utf-8")
         found = [x.reason for x in rp.check(report, jobs=1).findings if x.outcome is Acceptance.REJECTED]
         assert any(told in x for x in found), (other, found)
+    changed = deepcopy(index)
+    changed["facts"][place]["test"] = "nobody"
+    (report / "index.json").write_text(json.dumps(changed), "utf-8")
+    found = [x.reason for x in rp.check(report, jobs=1).findings if x.outcome is Acceptance.REJECTED]
+    assert any("there is no such test with a formula" in x for x in found)
     (report / "index.json").write_text(json.dumps(index), "utf-8")
 
 
