@@ -76,3 +76,20 @@ def test_the_version_of_coq(
     else:
         with pytest.raises(MissingSolverError, match=told):
             coq.find()
+
+
+def test_rows_of_an_extreme_number_its_values_from_one() -> None:
+    found = rp.explore("v_lon(SV) >= 30 m/s", greatest="v_lon(SV)", jobs=1)
+    assert [(x["kind"], x["at 1"], x["verdict"]) for x in found.rows()] == [
+        ("greatest v_lon(SV), best", 40.0, "WITNESSED"),
+        ("greatest v_lon(SV), missed", 40.1, "NONE-WITHIN"),
+    ]
+    assert all("at 2" not in x for x in found.rows())
+
+
+@pytest.mark.parametrize(("chosen", "told"), [("base", ()), ("ext", ("set ext",))])
+def test_a_catalogue_names_another_set(chosen: str, told: tuple[str, ...]) -> None:
+    drive = EXAMPLE / "drives" / "braking.json"
+    using = rp.load(chosen)
+    found = rp.catalogue(drive, among="4", using=using, classes=False, drivers=(), jobs=1)
+    assert found.in_force == told
