@@ -17,6 +17,7 @@ from roadproof.spec.scenarios import LANE, Scenario, applied, vehicles_of
 SCHEMA = "roadproof/overlap/1"
 _ENTRY = ("a", "b", "set_a", "set_b", "verdict", "formula", "core", "cores", "certificate", "drive")
 _ENTRY_MORE = ("reason", "seconds")
+_UNCHECKED = ("core", "cores", "reason", "seconds")
 
 
 def read_index(data: Fields, background: Background) -> Iterator[Entry]:
@@ -107,5 +108,6 @@ READER = Reader(
     read_index,
     ("verdict",),
     read_record,
-    unchecked=("seconds", *(f"verdicts[].{x}" for x in ("core", "cores", "reason", "seconds"))),
+    unchecked=("seconds", *(f"verdicts[].{x}" for x in _UNCHECKED)),
+    unchecked_kept=tuple(f"verdict.{x}" for x in _UNCHECKED),
 )
