@@ -299,9 +299,8 @@ def of_coverage(run: Run, out: Path, traffic: Path) -> None:
 
 
 def few_classes(patch: pytest.MonkeyPatch) -> None:
-    """One class, one claim, some of the simple drives."""
+    """One class, some of the simple drives."""
     look_up = study.find_among_simple
-    patch.setattr(study, "claims_of", claims("F danger(SV,POV) -> scenario_1(SV,POV,L)"))
     patch.setattr(Coverage, "groups", components("behaviourPOV_4"))
     patch.setattr(study, "find_among_simple", lambda *x: look_up(x[0], 0, 97, *x[3:]) if x[1] == 0 else [])
 

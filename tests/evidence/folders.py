@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.effort import Effort
+from roadproof.errors import RoadproofError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Finding, exit_code
 from roadproof.evidence.folder import conclude, survey
+from roadproof.evidence.journal import HEAD, seal_of
 from roadproof.proving.properties import find_label
 from roadproof.shipped import shipped
 from roadproof.solve import smt
@@ -127,3 +129,13 @@ def changes(data: Any, at: Place) -> Iterator[tuple[str, Any]]:
         place = place[key]
     del place[last]
     yield "removed", changed
+
+
+def reseal(answer: Path) -> None:
+    """Write the seal of a kept answer anew, as anybody can, over the evidence files that it names and has."""
+    folder, record = answer.parent.parent, read(answer)
+    try:
+        record["seal"] = seal_of(record, read(folder / HEAD)["question"], folder)
+    except (RoadproofError, TypeError, KeyError, OSError):
+        record["seal"] = "none"  # it names evidence that is not there
+    write(answer, record)

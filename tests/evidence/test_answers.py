@@ -3,6 +3,7 @@
 The files that they name are not looked at here.
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from evidence.test_drive_file import FILE
 from roadproof.analysis.coverage.claims import claims_of
 from roadproof.errors import InputError
+from roadproof.evidence.answers.coverage import read_classes
 from roadproof.evidence.answers.entry import Entry, mismatch
 from roadproof.evidence.answers.read import (
     faults_of,
@@ -19,7 +21,7 @@ from roadproof.evidence.answers.read import (
     read_record,
     record_fields,
 )
-from roadproof.evidence.answers.reader import first_set
+from roadproof.evidence.answers.reader import Background, first_set
 from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
 from roadproof.proving.properties import find_label
@@ -248,9 +250,27 @@ def test_a_set_without_gaps(set_name: str) -> None:
     assert found[0].where == "index.json, claim 1"
     assert faults(data) == []
     for less in (data["claims"][1:], data["claims"][:-1], data["claims"][::-1], []):
-        assert "COVERED, but its claims do not say that" in faults({**data, "claims": less})[0]
+        for verdict in ("COVERED", "UNKNOWN"):
+            [fault] = faults({**data, "claims": less, "verdict": verdict})
+            assert fault == "its claims are not those that together say that there is no gap"
     unproved = with_one(data, "claims", verdict="UNKNOWN")
-    assert "or are not all proved" in faults(unproved)[0]
+    assert faults(unproved) == ["COVERED, but its claims are not all proved"]
+
+
+def test_a_gap_is_on_the_road_that_is_said_and_its_class_is_not_proved_empty() -> None:
+    part = {"scenario": 1, "component": "behaviourPOV_1", "description": "", "condition": ""}
+    gap = {"road": "main-2", "formula": "v_lon(SV) > 0 m/s", "first": "", "caught_by": [], "classes": []}
+    gap |= {"drive": "gap.json", "elsewhere": {"main-3": "gap-main-3.json"}}
+    said = {**part, "verdict": "WITNESSED", "gaps": [gap], "claim": "", "certificate": None, "reason": ""}
+    common = Background(Fields(coverage("ext"), "index.json"), LIBRARY, "index.json").at("ext")
+    there, elsewhere = read_classes(common, [said])
+    on = {road: replace(FILE, road=replace(FILE.road, name=road)) for road in ("main-2", "main-3")}
+    for entry, road, other in ((there, "main-2", "main-3"), (elsewhere, "main-3", "main-2")):
+        assert entry.fault_of_drive is not None
+        assert entry.fault_of_drive(on[road]) == ""
+        assert entry.fault_of_drive(on[other]) == f"its road is {road}, but that of its file {other}"
+    for more in ({"claim": "false"}, {"certificate": "empty.json"}):
+        assert "with a claim or a certificate" in next(iter(read_classes(common, [{**said, **more}]))).fault
 
 
 def test_verdicts_on_a_set() -> None:

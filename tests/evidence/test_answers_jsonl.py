@@ -156,6 +156,7 @@ def seals_are_not_compared(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def evidence_is_not_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadproof.evidence.journal.read_record", lambda *_: [])
+    monkeypatch.setattr("roadproof.evidence.journal.faults_of_record", lambda *_: iter(()))
 
 
 def test_the_seal_alone_and_the_evidence_alone_are_not_enough(

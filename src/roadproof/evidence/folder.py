@@ -12,20 +12,23 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.entry import Entry, mismatch, read_evidence, stray_evidence
 from roadproof.evidence.answers.read import (
     faults_of,
+    faults_of_head,
     index_fields,
+    lines_of,
     read_index,
     read_record,
     said_of,
     stands_alone,
     unchecked_fields,
-    unchecked_of_record,
+    unchecked_of_kept,
 )
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.checking import without_place
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.heading import library_of
-from roadproof.evidence.journal import ANSWERS, HEAD, Journal, read_kept
+from roadproof.evidence.journal import ANSWERS, HEAD, Journal, faults_of_line, read_kept
 from roadproof.evidence.journal import NAME as JOURNAL
+from roadproof.evidence.kept import IndexLines
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.traces import judge_trace
@@ -42,8 +45,8 @@ class Told:
 
     ``specs`` are the specification files beside them; ``problems`` are found before any file is checked;
     ``unchecked`` is said of every entry; ``alone``: files that none names stand for themselves. ``others``
-    are files that are no evidence, such as tables and pictures; ``kept_unchecked``: fields of kept answers
-    without an index that nothing is compared with.
+    are files that are no evidence, such as tables and pictures. ``question`` is the head of kept answers,
+    ``kept_in_index`` whether the index says each of these in the same words.
     """
 
     folder: Path
@@ -56,16 +59,17 @@ class Told:
     unchecked: tuple[str, ...] = ()
     alone: bool = False
     others: list[str] = field(default_factory=list)
-    kept_unchecked: tuple[str, ...] = ()
+    question: Fields | None = None
+    kept_in_index: bool = False
 
     @property
     def not_checked(self) -> tuple[str, ...]:
-        """The fields of the index, and the files beside it, that nothing is compared with."""
+        """The fields of index and kept answers, and the files beside, that nothing is compared with."""
         has_drives = any(x.shows in ("drive", "counterexample") for x in self.entries)
-        fields = self.kept_unchecked
-        if self.index is not None:
-            fields = unchecked_fields(self.index, has_drives)
-        return (*fields, *sorted(self.others))
+        fields = () if self.index is None else unchecked_fields(self.index, has_drives)
+        if self.question is not None:
+            fields += unchecked_of_kept(self.question, self.kept_in_index, has_drives)
+        return (*dict.fromkeys(fields), *sorted(self.others))
 
 
 @dataclass(frozen=True)
@@ -134,7 +138,7 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> To
         journal = read_kept(home)
     except RoadproofError as error:
         journal = None
-        told.problems.append(_unreadable(home / (HEAD if (home / HEAD).exists() else JOURNAL), error))
+        told.problems.append(_unreadable(home / (HEAD if (home / HEAD).exists() else JOURNAL), str(error)))
     try:
         if (home / INDEX).exists():
             content = read_json(home / INDEX, LARGEST_INDEX)
@@ -147,17 +151,15 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> To
                 told.unchecked = (OTHER_LIBRARY,)
             told.entries += _without_twins(told, read_index(told.index, told.library, find_label))
     except RoadproofError as error:
-        told.problems.append(_unreadable(home / INDEX, error))
+        told.problems.append(_unreadable(home / INDEX, str(error)))
         told.index = None
-    if journal is not None and told.index is None:
-        told.kept_unchecked = unchecked_of_record(journal.head)
     if journal is not None and told.library is not None:
         _add_journal(told, journal, told.library, find_label)
     return told
 
 
-def _unreadable(path: Path, error: RoadproofError) -> Finding:
-    return Finding(str(path), "index", Acceptance.UNREADABLE, without_place(str(error), path))
+def _unreadable(path: Path, fault: str) -> Finding:
+    return Finding(str(path), "index", Acceptance.UNREADABLE, without_place(fault, path))
 
 
 def _without_twins(told: Told, entries: Sequence[Entry]) -> Iterator[Entry]:
@@ -171,23 +173,41 @@ def _without_twins(told: Told, entries: Sequence[Entry]) -> Iterator[Entry]:
 
 
 def _add_journal(told: Told, journal: Journal, library: Library, find_label: FindLabel) -> None:
-    """The answers of a journal that the index does not hold in the same words; of each the last."""
+    """The answers of a journal that the index does not say in the same words; of one file each the last."""
+    index = None if told.index is None else IndexLines(told.index)
+    try:
+        for fault in () if told.index is None else faults_of_head(journal.head, told.index):
+            told.problems.append(_rejected(journal.path, fault))
+    except RoadproofError as error:
+        told.problems.append(_unreadable(journal.path, str(error)))
+    known = set(map(_words_of, told.entries))
     kept: dict[tuple[object, ...], Entry] = {}
     for line in journal.lines:
-        if line.fault:
-            outcome = Acceptance.UNREADABLE if line.record is None else Acceptance.REJECTED
-            told.problems.append(
-                Finding(str(line.path), "journal", outcome, without_place(line.fault, line.path))
-            )
         if line.record is None:
+            told.problems.append(replace(_rejected(line.path, line.fault), outcome=Acceptance.UNREADABLE))
             continue
+        if line.fault:
+            told.problems.append(_rejected(line.path, line.fault))
         try:
             entries = read_record(journal.head, line.record, library, find_label)
-            kept |= {entry.key: entry for entry in entries}
+            said = index is not None and all(map(index.has, lines_of(journal.head, line.record)))
+            in_index = said and {*map(_words_of, entries)} <= known
+            for fault in faults_of_line(journal, line, line.record, entries, library, in_index):
+                told.problems.append(_rejected(line.path, fault))
+            if not in_index:
+                kept |= {(line.path, *entry.key): entry for entry in entries}
         except RoadproofError as error:
-            told.problems.append(_unreadable(line.path, error))
-    known = {(x.key, x.verdict, x.claim, x.file) for x in told.entries}
-    told.entries += [x for x in kept.values() if (x.key, x.verdict, x.claim, x.file) not in known]
+            told.problems.append(_unreadable(line.path, str(error)))
+    told.entries += kept.values()
+    told.question, told.kept_in_index = journal.head, index is not None and not kept
+
+
+def _rejected(path: Path, fault: str) -> Finding:
+    return Finding(str(path), "journal", Acceptance.REJECTED, without_place(fault, path))
+
+
+def _words_of(entry: Entry) -> tuple[object, ...]:
+    return entry.key, entry.verdict, entry.claim, entry.file
 
 
 def conclude(surveyed: Survey, found: Mapping[Path, Finding]) -> Iterator[Finding]:

@@ -17,7 +17,7 @@ from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.entry import Entry, evidence_name, mismatch, read_evidence, stray_evidence
-from roadproof.evidence.answers.read import read_record, record_fields
+from roadproof.evidence.answers.read import faults_of_record, read_record, record_fields
 from roadproof.evidence.answers.reader import FindLabel, without_labels
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json, read_json
 from roadproof.evidence.traces import judge_trace
@@ -142,9 +142,26 @@ def answers_of(journal: Journal, library: Library, find_label: FindLabel = witho
         try:
             entries = read_record(journal.head, line.record, library, find_label)
             fault = next(filter(None, (_fault_of(entry, journal.path.parent) for entry in entries)), "")
+            fault = fault or next(faults_of_line(journal, line, line.record, entries, library), "")
         except RoadproofError as error:
             fault = str(error)
         yield replace(line, fault=fault)
+
+
+def faults_of_line(
+    journal: Journal,
+    line: Line,
+    record: Fields,
+    entries: Sequence[Entry],
+    library: Library,
+    in_index: bool = False,
+) -> Iterator[str]:
+    """What an answer says otherwise than its name and its entries. Raises ``InputError``.
+
+    ``in_index``: what an index says in the same words is looked at there.
+    """
+    name = None if line.path == journal.path else line.name
+    return faults_of_record(journal.head, record, name, entries, library, in_index)
 
 
 def _fault_of(entry: Entry, folder: Path) -> str:

@@ -6,6 +6,7 @@ folder: ``api.judging_again`` judges them again, and derives all other fields.
 
 from collections.abc import Iterator, Sequence
 
+from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of, shows_of_claim
 from roadproof.evidence.answers.reader import Background, Reader
@@ -80,6 +81,8 @@ def _fault(line: Fields, common: Common, relation: str, other: str, claim: str) 
     verdict = line.text("verdict")
     if _VERDICTS.get(relation) != verdict:
         return f"{line.where}: relation={relation!r} goes with {_VERDICTS.get(relation)}, not with {verdict}"
+    if relation not in ("reaches", "open") and (line.text("term") or line.text("sense") or line.has("at")):
+        return f"{line.where}: relation={relation!r} goes with no term, no sense and no value"
     premise = read_claim(common.specification, line.text("premise"))
     if not line.has("conclusion"):
         expected = premise
@@ -122,8 +125,23 @@ def _read_record(record: Fields, background: Background) -> Iterator[Entry]:
     yield from read(record.items("facts"), background, record.where)
     if record.has("gaps"):
         said = Fields(record.mapping("gaps"), f"{record.where}, gaps", ("claim", "group", "classes"))
+        if said.has("group") and record.text("name") != f"gaps-{coverage.name_of_group(said)}":
+            raise InputError(f"{said.where}: group='{said.text('group')[:60]}' does not go with its name")
         claims = [said.get("claim")] if said.has("claim") else []
         yield from read_gaps(claims, said.items("classes") if said.has("classes") else [], background)
+
+
+def _lines(record: Fields) -> Iterator[object]:
+    """The facts of a kept answer, and what it says of gaps."""
+    yield from record.items("facts")
+    said = record.mapping("gaps") if record.has("gaps") else {}
+    yield from (said["claim"],) if "claim" in said else said.get("classes", ())
+
+
+def _record_faults(record: Fields, background: Background) -> Iterator[str]:
+    """As of a kept answer of ``coverage``."""
+    if record.has("gaps"):
+        yield from coverage.record_faults(Fields(record.mapping("gaps"), record.where), background)
 
 
 READER = Reader(
@@ -148,4 +166,11 @@ READER = Reader(
     record=("name", "facts", "gaps"),
     read_record=_read_record,
     unchecked=("seconds", "facts[].reason"),
+    unchecked_kept=(
+        *("said.scenarios", *(f"facts[].{x}" for x in ("test", "other", "reason", "also"))),
+        *(f"gaps.{x}" for x in coverage.UNCHECKED_KEPT),
+    ),
+    file_name=lambda record: record.text("name"),
+    lines=_lines,
+    record_faults=_record_faults,
 )

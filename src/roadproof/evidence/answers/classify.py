@@ -16,6 +16,8 @@ CLASSES = "classes"  # the spec set of the file that defines them
 _CLASS = ("name", "vehicles", "scenarios", "happens", "where", "description", "formula", "verdict", "reason")
 _CLASS_MORE = ("situations", "traces", "drive")
 _DOUBT = ("about", "reason")
+_OF_CLASS = tuple(f"classes[].{x}" for x in ("happens", "where", "description", "reason"))
+_OF_CLAIM = tuple(f"claims[].{x}" for x in ("reason", "seconds"))
 _CLAIM = ("name", "kind", "claim", "verdict", "reason", "certificate", "seconds")
 
 
@@ -136,7 +138,7 @@ READER = Reader(
     _faults,
     unchecked=(
         *("seconds", "shares", "doubts[].about", "doubts[].reason"),
-        *(f"classes[].{x}" for x in ("happens", "where", "description", "reason", "situations", "traces")),
-        *(f"claims[].{x}" for x in ("reason", "seconds")),
+        *(*_OF_CLASS, "classes[].situations", "classes[].traces", *_OF_CLAIM),
     ),
+    unchecked_kept=("classes[].scenarios", *_OF_CLASS, *_OF_CLAIM, "said.set", "said.scenarios"),
 )

@@ -1,11 +1,13 @@
 """The index and the journal of ``roadproof coverage``: classes of gaps, and claims that there are none."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
@@ -30,6 +32,11 @@ SCHEMA = "roadproof/coverage/1"
 _CLASS = ("scenario", "component", "description", "condition", "verdict", "gaps", "claim", "certificate")
 _CLASS_MORE = ("reason", "none_for", "in_traffic", "trace")
 _GAP = ("number", "road", "formula", "first", "caught_by", "classes", "drive", "elsewhere")
+_OF_CLASS = ("scenario", "component", "condition", "description", "reason", "none_for")
+UNCHECKED_KEPT = (
+    *("claim.reason", *(f"classes[].{x}" for x in _OF_CLASS)),
+    *(f"classes[].gaps[].{x}" for x in ("first", "caught_by", "classes")),
+)
 _NEED = ("definition", "extends", "verdict", "road", "formula", "drive")
 
 
@@ -42,6 +49,8 @@ def read_classes(common: Common, records: Sequence[object]) -> Iterator[Entry]:
         words = [line.text(x) for x in ("component", "condition") if line.text(x)] or ["no single condition"]
         # A class is witnessed by its gaps, which are entries of their own.
         fault = f"{line.where}: {verdict} with {len(gaps)} gaps" if bool(gaps) != (shows == "drive") else ""
+        if shows == "drive" and (line.text("claim") or line.has("certificate")):
+            fault = f"{line.where}: {verdict} with a claim or a certificate that there is no gap"
         if shows != "drive" or fault:
             yield Entry(
                 common,
@@ -73,8 +82,13 @@ def read_gaps(common: Common, records: Sequence[object], where: str) -> Iterator
             told = unchecked if claim else (*unchecked, "that its formula is that of the gap elsewhere")
             yield Entry(
                 common, line.where, ("gap", file), "WITNESSED", f"gap on {road}", "drive", claim, file,
-                unchecked=told, fault_of=_not_compared,
+                unchecked=told, fault_of=_not_compared, fault_of_drive=partial(_on_other_road, road),
             )  # fmt: skip
+
+
+def _on_other_road(road: str, file: DriveFile) -> str:
+    """Why a drive is not on a road, or nothing."""
+    return "" if file.road.name == road else f"its road is {road[:40]}, but that of its file {file.road.name}"
 
 
 def _not_compared(formula: str) -> str:
@@ -91,6 +105,11 @@ def read_record(record: Fields, background: Background) -> Iterator[Entry]:
         yield from read_needs(common, [record.get("need")])
     else:
         yield from read_classes(common, record.items("classes"))
+
+
+def name_of_group(record: Fields) -> str | None:
+    """Under which name the answer on the classes of a component is kept; None of another answer."""
+    return record.text("group").replace(" ", "-") if record.has("group") else None
 
 
 def read_claims(common: Common, records: Sequence[object]) -> Iterator[Entry]:
@@ -159,11 +178,11 @@ def faults(data: Fields, background: Background, formulas: Mapping[str, str]) ->
     common = background.at(data.text("set"))
     verdict = data.text("verdict")
     lines = [Fields(x, data.where) for x in data.items("claims")]
-    proved = all(x.text("verdict") in PROOFS for x in lines)
+    if [common.formula(x.text("claim")) for x in lines] != _claims(common.specification):
+        yield "its claims are not those that together say that there is no gap"
     if verdict == "COVERED":
-        told = [common.formula(x.text("claim")) for x in lines]
-        if not proved or told != _claims(common.specification):
-            yield "COVERED, but its claims do not say that, or are not all proved"
+        if not all(x.text("verdict") in PROOFS for x in lines):
+            yield "COVERED, but its claims are not all proved"
     elif verdict == "GAPS":
         if not data.items("gaps"):
             yield "GAPS, but it has none"
@@ -194,6 +213,15 @@ def _claims(specification: Specification) -> list[Formula]:
     return [*claims, implication(somewhere, some_sector).formula]
 
 
+def record_faults(record: Fields, background: Background) -> Iterator[str]:
+    """Where the claim of a kept answer is none of those that together say that there is no gap."""
+    if record.has("claim"):
+        claim = Fields(record.mapping("claim"), record.where).text("claim")
+        common = background.at(background.said.text("set"))
+        if common.formula(claim) not in _claims(common.specification):
+            yield f"{record.where}: coverage does not rest on this claim: {claim[:120]}"
+
+
 READER = Reader(
     SCHEMA,
     ("set", "wider", "options", "parameters", "specs"),
@@ -204,7 +232,10 @@ READER = Reader(
     faults,
     unchecked=(
         *("seconds", "wider", "traffic", "claims[].reason"),
-        *(f"classes[].{x}" for x in ("description", "reason", "none_for", "in_traffic", "trace")),
+        *(f"classes[].{x}" for x in (*_OF_CLASS, "in_traffic", "trace")),
         *(f"gaps[].{x}" for x in ("number", "first", "caught_by", "classes")),
     ),
+    unchecked_kept=("said.wider", *UNCHECKED_KEPT),
+    file_name=name_of_group,
+    record_faults=record_faults,
 )

@@ -47,7 +47,9 @@ READER = Reader(
     record=("name", "outcome", "asked"),
     read_record=_read,
     alone=True,
-    unchecked=tuple(
-        f"outcome.{x}" for x in ("reason", "road", "natural", "core", "minimal", "seconds", "sizes")
+    unchecked_kept=(
+        *(f"outcome.{x}" for x in ("reason", "road", "natural", "core", "minimal", "seconds", "sizes")),
+        "asked",
     ),
+    file_name=lambda record: record.text("name"),
 )

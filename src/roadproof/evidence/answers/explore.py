@@ -29,6 +29,12 @@ _EXPLORED = ("scenario", "set", "formula", "vary", "values", "boundaries", "sear
 _EXPLORED_MORE = ("seconds", "stem")
 _FINDING = ("at", "verdict", "formula", "reason", "number", "drive", "certificate", "assuming")
 _BOUNDARY = ("held", "missed", "surely")
+_UNCHECKED = (
+    *("searches", "drives", "seconds", "stem", "values[].reason", "values[].number"),
+    *(f"boundaries[].{x}.{y}" for x in _BOUNDARY for y in ("reason", "number")),
+    *(f"extremes[].{x}.{y}" for x in ("best", "missed", "surely") for y in ("reason", "number")),
+    *("extremes[].endless", "extremes[].searches"),
+)
 _SENSES: Mapping[str, BinaryOperator] = {"least": "<=", "greatest": ">="}
 _EXTREME = ("sense", "measure", "when", "unit", "point", "best", "missed", "surely", "endless", "searches")
 
@@ -268,16 +274,6 @@ READER = Reader(
     read_index,
     ("exploration",),
     read_record,
-    unchecked=(
-        "seconds",
-        *(f"explored[].{x}" for x in ("searches", "drives", "seconds", "stem")),
-        *(f"explored[].values[].{x}" for x in ("reason", "number")),
-        *(f"explored[].boundaries[].{x}.{y}" for x in _BOUNDARY for y in ("reason", "number")),
-        *(
-            f"explored[].extremes[].{x}.{y}"
-            for x in ("best", "missed", "surely")
-            for y in ("reason", "number")
-        ),
-        *(f"explored[].extremes[].{x}" for x in ("endless", "searches")),
-    ),
+    unchecked=("seconds", *(f"explored[].{x}" for x in _UNCHECKED)),
+    unchecked_kept=tuple(f"exploration.{x}" for x in _UNCHECKED),
 )

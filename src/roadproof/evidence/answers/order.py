@@ -36,6 +36,8 @@ def read(data: Fields, background: Background) -> Iterator[Entry]:
     for number, content in enumerate(data.items("drives"), 1):
         line = Fields(content, f"{common.where}, drive {number}", ("number", "holds", "fails", "drive"))
         yield _refutation(line, common)
+    for number, content in enumerate(data.items("doubts"), 1):
+        Fields(content, f"{common.where}, doubt {number}", ("from", "to", "reason"))
 
 
 def _implication(line: Fields, common: Common) -> Entry:
@@ -138,6 +140,10 @@ def faults(data: Fields, background: Background, formulas: Mapping[str, str]) ->
     for edge in data.items("edges"):
         if edge not in data.items("proved"):
             yield f"an edge is not among what is proved: {str(edge)[:120]}"
+    drawn = {(x.text("from"), x.text("to")) for x in _lines(data, "edges")}
+    for one, other in sorted(proved):
+        if other not in _reached(one, drawn):
+            yield f"{one} -> {other} is proved, but does not follow from the edges"
     refuted: dict[tuple[str, str], set[Reading]] = {}
     numbers: dict[tuple[str, str], set[int]] = {}
     for drive in _lines(data, "drives"):
@@ -160,6 +166,11 @@ def faults(data: Fields, background: Background, formulas: Mapping[str, str]) ->
     if asked != {*data.texts("sets")}:
         yield f"its sets are not those of its scenarios: {', '.join(sorted(asked))}"
     told = {(x.text("from"), x.text("to")) for field in ("missing", "doubts") for x in _lines(data, field)}
+    known = {name for kind in kinds for name in kind}
+    spoken = {name for names in (proved | told) for name in names}
+    spoken |= {name for x in _lines(data, "drives") for name in (x.text("holds"), *x.texts("fails"))}
+    if spoken - known:
+        yield f"it says something of {', '.join(sorted(spoken - known))}, but no kind has it"
     yield from _unanswered([kind[0] for kind in kinds if kind], proved, told)
 
 
@@ -178,15 +189,21 @@ def _unanswered(
 ) -> Iterator[str]:
     """Pairs of which nothing is said: neither implied, nor missing, nor in doubt."""
     for above in names:
-        reached, waiting = {above}, [above]
-        while waiting:
-            current = waiting.pop()
-            new = {b for a, b in proved if a == current} - reached
-            reached |= new
-            waiting += new
+        reached = _reached(above, proved)
         for below in names:
             if below not in reached and (above, below) not in told:
                 yield f"nothing is said of {above} -> {below}"
+
+
+def _reached(above: str, steps: Collection[tuple[str, str]]) -> set[str]:
+    """What follows from ``above`` by steps, itself included."""
+    reached, waiting = {above}, [above]
+    while waiting:
+        current = waiting.pop()
+        new = {b for a, b in steps if a == current} - reached
+        reached |= new
+        waiting += new
+    return reached
 
 
 def _count_readings(common: Common, above: str, below: str) -> int:
@@ -211,4 +228,6 @@ READER = Reader(
     read,
     faults,
     unchecked=("seconds", "doubts[].reason"),
+    unchecked_kept=("doubts", "said.sets"),
+    file_name=lambda record: record.text("family"),
 )

@@ -27,7 +27,6 @@ DRIVERS = "driver.spec"
 _PLATE = ("name", "model", "fixed", "verdict", "formula", "stepped", "motion", "lines", "shown", "reason")
 _SHOWN = ("side", "at", "verdict", "formula", "scenario", "drive", "reason")
 _LEMMA = ("name", "title", "claim", "assuming", "verdict", "certificate", "reason")
-_LINES = "that the lines of the plate are what its formula or its motion says"
 _PLACES = "that the places of the plate are where it holds of the controller's drives"
 _CONTROLLER = "that the accelerations of SV are what the controller of its model computes"
 
@@ -97,8 +96,8 @@ def _read_plate(content: object, background: Background, number: int) -> _Plate:
     return _Plate(line, line.text("name"), model, MANOEUVRES[said], fixed)
 
 
-def _plate(content: object, background: Background, number: int, beyond: tuple[str, ...]) -> Iterator[Entry]:
-    """The entries of a plate; ``beyond``: what is not checked of its lines where they are exact."""
+def _plate(content: object, background: Background, number: int) -> Iterator[Entry]:
+    """The entries of a plate."""
     common, plate = background.home, _read_plate(content, background, number)
     plane = _plane(background.said, plate)
     lines = [_read_line(x, plate.line.where) for x in plate.line.items("lines")]
@@ -115,7 +114,7 @@ def _plate(content: object, background: Background, number: int, beyond: tuple[s
             fault = f"{line.where}: {verdict} with initial values or a formula"
         yield Entry(
             common, line.where, ("drive", plate.name, side), verdict, f"{plate.name}, {side}", shows, claim,
-            evidence_name(line, "drive"), unchecked=(_PLACES, _CONTROLLER) if plate.is_stepped else beyond,
+            evidence_name(line, "drive"), unchecked=(_PLACES, _CONTROLLER) if plate.is_stepped else (),
             fault=fault, fault_of_drive=partial(_begins_otherwise, plate.manoeuvre, at),
         )  # fmt: skip
 
@@ -211,7 +210,7 @@ def _lemma(content: object, background: Background, number: int) -> Iterator[Ent
 def _index(data: Fields, background: Background) -> Iterator[Entry]:
     _scenarios(data)
     for number, plate in enumerate(data.items("plates"), 1):
-        yield from _plate(plate, background, number, ())
+        yield from _plate(plate, background, number)
     for number, lemma in enumerate(data.items("lemmas"), 1):
         yield from _lemma(lemma, background, number)
 
@@ -220,7 +219,13 @@ def _record(record: Fields, background: Background) -> Iterator[Entry]:
     if record.has("lemma"):
         yield from _lemma(record.get("lemma"), background, 1)
     else:
-        yield from _plate(record.get("plate"), background, 1, (_LINES,))
+        yield from _plate(record.get("plate"), background, 1)
+
+
+def _record_faults(record: Fields, background: Background) -> Iterator[str]:
+    """As of an index with this plate alone."""
+    if not record.has("lemma"):
+        yield from _line_fault(record.get("plate"), background, 1)
 
 
 def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
@@ -235,20 +240,22 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
         if tuple(data.texts("idle")) != found:
             yield f"what no boundary depends on is {', '.join(found) or 'nothing that was chosen'}"
     for number, content in enumerate(data.items("plates"), 1):
-        plate = _read_plate(content, background, number)
-        told = plate.line.items("lines")
-        if not told:
-            continue
-        plane = _plane(data, plate)
-        if len(told) != len(plane.rows):
-            yield f"plate {plate.name} has {len(told)} lines, but {len(plane.rows)} are asked for"
-            continue
-        rows = [Fields(x, plate.line.where).rational("at") for x in told]
-        if rows != [*plane.rows]:
-            yield f"plate {plate.name}: its lines are at other values of {plane.manoeuvre.across}"
-            continue
-        if plate.is_stepped:
-            continue
+        yield from _line_fault(content, background, number)
+
+
+def _line_fault(content: object, background: Background, number: int) -> Iterator[str]:
+    """Where the lines of a plate are not those of its plane, or say otherwise than its formula or motion."""
+    common, plate = background.home, _read_plate(content, background, number)
+    told = plate.line.items("lines")
+    if not told:
+        return
+    plane = _plane(background.said, plate)
+    rows = [Fields(x, plate.line.where).rational("at") for x in told]
+    if len(told) != len(plane.rows):
+        yield f"plate {plate.name} has {len(told)} lines, but {len(plane.rows)} are asked for"
+    elif rows != [*plane.rows]:
+        yield f"plate {plate.name}: its lines are at other values of {plane.manoeuvre.across}"
+    elif not plate.is_stepped:
         true = truths(common.specification, plane, plate.model, common.values or {})
         known = map(line_data, map(told_line, plane.rows, true))
         wrong = next((x for said, x in zip(told, known, strict=True) if said != x), None)
@@ -299,4 +306,6 @@ READER = Reader(
     unchecked=(
         *("seconds", "plates[].reason", "plates[].shown[].reason", "lemmas[].title", "lemmas[].reason"),
     ),
+    unchecked_kept=("plate.reason", "plate.shown[].reason", "lemma.title", "lemma.reason"),
+    record_faults=_record_faults,
 )

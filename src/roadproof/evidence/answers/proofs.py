@@ -75,6 +75,7 @@ READER = Reader(
     ("claims",),
     read,
     record=("claim", "reason", "seconds", "asked"),
+    unchecked_kept=("reason", "seconds", "asked"),
     read_record=lambda record, background: [
         _entry(Fields(record.get("claim"), f"{record.where}, claim", _ENTRY), background)
     ],

@@ -3,7 +3,7 @@
 A reader is the ``READER`` of a module in this folder; modules of no other folder are looked at.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
@@ -74,9 +74,50 @@ def unchecked_fields(data: Fields, has_drives: bool) -> tuple[str, ...]:
     return tuple(x for x in every if any(path == x or path.startswith((f"{x}.", f"{x}[")) for path in there))
 
 
-def unchecked_of_record(head: Fields) -> tuple[str, ...]:
-    """The fields of kept answers that nothing is compared with, where there is no index beside them."""
-    return _keeping(head.text("of"), head.where).unchecked
+def unchecked_of_kept(head: Fields, in_index: bool, has_drives: bool) -> tuple[str, ...]:
+    """The fields of kept answers, and of their question, that nothing is compared with.
+
+    ``in_index``: an index beside them says all of them, so that their objects are compared with it.
+    """
+    reader = _keeping(head.text("of"), head.where)
+    if in_index:
+        beside = (x for x in reader.unchecked_kept if x in reader.record and x not in reader.index)
+        return (*beside, "question")
+    values = ("said.parameters",) if "parameters" in reader.said and not has_drives else ()
+    return (*reader.unchecked_kept, "question", *values)
+
+
+def faults_of_head(head: Fields, index: Fields) -> Iterator[str]:
+    """What the question of kept answers says otherwise than the index beside them."""
+    if head.text("of") != index.text("schema"):
+        yield f"{head.where}: of='{head.text('of')[:60]}', but the index beside it is {index.text('schema')}"
+    said = said_of(head).content
+    for name in _keeping(head.text("of"), head.where).said:
+        if said.get(name) != index.content.get(name):
+            yield f"{head.where}: {name} is not that of the index beside it"
+
+
+def lines_of(head: Fields, record: Fields) -> Iterable[object]:
+    """The objects of a kept answer as an index holds them."""
+    return _keeping(head.text("of"), head.where).lines(record)
+
+
+def faults_of_record(
+    head: Fields, record: Fields, name: str | None, entries: Sequence[Entry], library: Library, in_index: bool
+) -> Iterator[str]:
+    """What a kept answer says otherwise than its file, whose ``name`` is None in a journal, and its entries.
+
+    ``in_index``: what an index says in the same words is looked at there.
+    """
+    reader = _keeping(head.text("of"), head.where)
+    told = reader.file_name(record)
+    if None not in (told, name) and told != name:
+        yield f"{record.where}: it is kept as '{name}', but says that it is '{str(told)[:60]}'"
+    files = {x.file for x in entries if x.file is not None}
+    if {*record.texts("evidence")} != files:
+        yield f"{record.where}: the files that it lists are not those that its answer names"
+    if not in_index:
+        yield from reader.record_faults(record, Background(said_of(head), library, record.where))
 
 
 def leaves_of(content: object, path: str = "") -> Iterator[tuple[str, object]]:

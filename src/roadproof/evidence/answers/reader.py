@@ -78,6 +78,25 @@ def _without_faults(data: Fields, background: Background, formulas: Mapping[str,
     yield from ()
 
 
+def _without_name(record: Fields) -> str | None:
+    """Of answers that do not say their name."""
+    return None
+
+
+def _lines(record: Fields) -> Iterator[object]:
+    """The objects of a kept answer; texts and numbers beside them are in no index."""
+    for value in record.content.values():
+        if isinstance(value, dict):
+            yield value
+        elif isinstance(value, list):
+            yield from (x for x in value if not isinstance(x, str))
+
+
+def _without_record_faults(record: Fields, background: Background) -> Iterator[str]:
+    """Of a kept answer that says nothing but its entries."""
+    yield from ()
+
+
 @dataclass(frozen=True)
 class Reader:
     """How an index of one ``schema`` is read, and each of the answers that are kept before it is written.
@@ -88,7 +107,11 @@ class Reader:
     and its entries do not show, given the formulas of its accepted drives by file. All raise ``InputError``.
 
     ``unchecked`` are the fields of the index that nothing is compared with, as paths such as
-    ``verdicts[].seconds``; ``check`` lists them. A test changes every other field and expects a rejection.
+    ``verdicts[].seconds``, ``unchecked_kept`` those of a kept answer without an index, and of its question;
+    ``check`` lists them. A test changes every other field and expects a rejection.
+
+    ``file_name``: under which name a kept answer says that it is kept; ``lines``: its objects as an index
+    holds them; ``record_faults``: what it says and its entries do not show.
     """
 
     schema: str
@@ -100,6 +123,10 @@ class Reader:
     faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = _without_faults
     alone: bool = False
     unchecked: tuple[str, ...] = ()
+    unchecked_kept: tuple[str, ...] = ()
+    file_name: Callable[[Fields], str | None] = _without_name
+    lines: Callable[[Fields], Iterable[object]] = _lines
+    record_faults: Callable[[Fields, Background], Iterable[str]] = _without_record_faults
 
     @staticmethod
     def of(index: type, said: type, read_index: Read, record: type, read_record: Read) -> "Reader":
@@ -109,4 +136,14 @@ class Reader:
         left = tuple(x for x in every if x not in (*HEADING, *once))
         kept = tuple(x.key for x in fields_of(record))
         [schema] = get_args(every["schema"].type)
-        return Reader(schema, once, left, read_index, kept, read_record, unchecked=unchecked(index))
+        of_record = unchecked(record)
+        return Reader(
+            schema,
+            once,
+            left,
+            read_index,
+            kept,
+            read_record,
+            unchecked=unchecked(index),
+            unchecked_kept=of_record,
+        )

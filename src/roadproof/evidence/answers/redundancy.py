@@ -14,6 +14,7 @@ from roadproof.spec.scenarios import Scenario, applied, leaves_at_once, vehicles
 SCHEMA = "roadproof/redundancy/1"
 _ENTRY = ("scenario", "part", "where", "as", "changed", "redundant", "verdict", "assuming", "claim")
 _ENTRY_MORE = ("certificate", "drive", "trace", "reason", "late")
+_UNCHECKED = tuple(f"verdicts[].{x}" for x in ("part", "where", "as", "reason", "late"))
 
 
 def read(data: Fields, background: Background) -> Iterator[Entry]:
@@ -86,5 +87,7 @@ READER = Reader(
     read,
     ("scenario", "verdicts"),
     read,
-    unchecked=("seconds", *(f"verdicts[].{x}" for x in ("part", "where", "as", "reason", "late"))),
+    unchecked=("seconds", *_UNCHECKED),
+    unchecked_kept=_UNCHECKED,
+    file_name=lambda record: f"scenario-{record.whole('scenario'):02}",
 )
