@@ -292,7 +292,10 @@ def test_wrong_settings() -> None:
 
 
 def test_each_claim_is_elaborated_once_and_no_text_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Claims of the settings' specifications, and of the bundled one that they are compared with."""
+    """Claims of the settings' specifications, and of the bundled one that they are compared with.
+
+    Of a specification that is both a claim is elaborated for each.
+    """
     settings = default_settings()
     asked: Counter[tuple[int, str]] = Counter()
     kept: list[Specification] = []
@@ -307,8 +310,8 @@ def test_each_claim_is_elaborated_once_and_no_text_is_read(monkeypatch: pytest.M
         monkeypatch.setattr(user, "elaborate", counted)
     monkeypatch.delattr(elaborating, "parse_claim")
     ask(replace(settings, detectors=scenarios.COMPARISON), 25)
-    assert set(asked.values()) == {1}
-    assert len(asked) == 110
+    assert {*asked.values()} <= {1, 2}
+    assert asked.total() == 110
 
 
 @pytest.mark.parametrize(

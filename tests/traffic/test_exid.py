@@ -276,3 +276,13 @@ def test_missing_files_are_named(tmp_path: Path) -> None:
     (tmp_path / "07_tracksMeta.csv").unlink()
     with pytest.raises(InputError, match=r"07_tracksMeta.csv: the file cannot be read"):
         find_source(path).read()
+
+
+def test_samples_that_name_no_lanelet_are_compared_with_none(tmp_path: Path) -> None:
+    """``-1`` and nothing are no lanelets; the lane follows from the position alone."""
+    path = one_car(tmp_path)
+    expected = find_source(path).read()
+    cell("tracks", 0, "laneletId", "-1")(tmp_path)
+    found = find_source(path).read()
+    assert found.lane.tolist() == expected.lane.tolist()
+    assert not any("laneletId" in x for x in found.notes)

@@ -193,6 +193,10 @@ def test_a_user_says_otherwise(tmp_path: Path) -> None:
             '[[lanelet]]\nid = 1007\nzone = "merge"\n' * 2,
             "lanelet 2: id=1007: this lanelet has an entry already",
         ),
+        (
+            '[[lanelet]]\nid = 1007\nattribute = "merge"\n' * 2,
+            "lanelet 2: id=1007: this lanelet has an entry already",
+        ),
     ],
 )
 def test_what_a_user_cannot_say(zones: str, said: str, tmp_path: Path) -> None:

@@ -4,7 +4,6 @@ A search among the drives of a restricted scenario (``preventing.restriction``) 
 counts where the judge accepts it for the test and the scenario, and ``decide_drive`` tells its side.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -40,9 +39,6 @@ class Sides:
     drives: tuple[Judged, ...]
 
 
-_NAME = re.compile(r"(scenario_\d+) (preventable|unpreventable) \((\w+)\)")
-
-
 def side_name(scenario: str, side: str, model: str) -> str:
     """How facts name a side of a scenario: ``scenario_1 unpreventable (careful)``."""
     return f"{scenario} {side} ({model})"
@@ -50,8 +46,10 @@ def side_name(scenario: str, side: str, model: str) -> str:
 
 def read_side_name(name: str) -> tuple[str, str, str] | None:
     """Scenario, side and model; None for other names."""
-    found = _NAME.fullmatch(name)
-    return None if found is None else (found[1], found[2], found[3])
+    scenario, _, rest = name.partition(" ")
+    side, _, model = rest.removesuffix(")").partition(" (")
+    is_one = number_in(scenario) is not None and side in get_args(Side) and model in MODELS
+    return (scenario, side, model) if is_one and name == side_name(scenario, side, model) else None
 
 
 def has_sides(drivers: Drivers, scenario: str) -> bool:
