@@ -8,6 +8,8 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -18,7 +20,7 @@ from roadproof.analysis.catalogue import examination, far, gaps, ranges, tested
 from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.completing import complete
 from roadproof.analysis.catalogue.courses import courses_of
-from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import NO_SINGLE
 from roadproof.analysis.catalogue.meaning import Meanings
@@ -354,3 +356,13 @@ def test_doubts_have_the_names_of_the_answers_that_they_stand_for() -> None:
     doubts = study.doubt(piece, "cut off")
     assert study.pieces(doubts) == []
     assert not any(map(study.is_sure, doubts.values()))
+
+
+@pytest.mark.parametrize(("said", "told"), [("too hard", "too hard"), ("", "no drive was found")])
+def test_a_test_without_a_drive_says_why(said: str, told: str) -> None:
+    asked = asked_about(1)
+    entry = Abstract("x", asked.query_of("scenario_1"))
+    study = Meanings(Basis(HOME.specification), (entry,), asked)
+    outcome: Any = SimpleNamespace(drives=(), impossibility=None, told=lambda options: said)
+    found = study._without_drive(entry, outcome)
+    assert (found.relation, found.reason) == ("open", told)

@@ -110,6 +110,7 @@ def test_the_change_makes_the_part_true_and_less_does_not(seed: int) -> None:
     [
         ("v_lon(SV) >= 0 m/s U v_lon(SV) > 100 m/s", 10, 80),
         ("F[0, 1 s] v_lon(POV) < 5 m/s", 1, 15),
+        ("F[0, 1 s] (v_lon(SV) > 9 m/s and v_lon(POV) < 5 m/s and v_lon(POV) < 10 m/s)", 1, 15),
         ("F v_lon(SV) < 5 m/s", 10, 15),
         ("not (F[0, 1 s] v_lon(POV) > 5 m/s)", 0, 15),
     ],

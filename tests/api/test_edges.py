@@ -10,6 +10,7 @@ from roadproof.api.completing import _free
 from roadproof.api.kernel import Asked, write
 from roadproof.api.restricting import drivers_of
 from roadproof.errors import MissingSolverError, UsageError
+from roadproof.evidence.drive_file import load_drive
 from roadproof.kernel import coq
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
@@ -30,6 +31,15 @@ def test_lanes_of_samples_are_those_that_are_asked_for() -> None:
     for lane, holds in ((1, True), (2, False)):
         found = rp.monitor("scenario_4(SV,POV,L)", samples, lanes={"L": f"main-{lane}"})
         assert found.verdict == str(holds).lower()
+
+
+def test_lanes_of_a_drive_are_those_that_are_asked_for() -> None:
+    """As a path, and as a drive that was read."""
+    path = EXAMPLE / "drives" / "braking.json"
+    for on in (path, load_drive(path)):
+        for lane, holds in (("main-1", True), ("main-2", False)):
+            found = rp.monitor("scenario_4(SV,POV,L)", on, lanes={"L": lane})
+            assert found.verdict == str(holds).lower()
 
 
 def test_drivers_are_refused_where_aeb_brakes_less_than_the_driver() -> None:
