@@ -158,6 +158,15 @@ def test_a_state_gives_back_the_values_that_it_was_made_of(name: str) -> None:
     assert found == {x: at[x] for x in found}
 
 
+def test_a_vehicle_that_stands_has_no_headway() -> None:
+    kind = MANOEUVRES["cut-out"]
+    at = {"Ve0": Fraction(0), "Vf0": Fraction(3), "dx0_f": Fraction(20), "headway": Fraction(0)}
+    start = {**kind.values({}), **at}
+    sizes = {(x, v): start[x] for x in ("length", "width") for v in kind.vehicles}
+    found = State(signals_of(kind, start), sizes).values("cut-out", kind.vehicles)
+    assert {x: found[x] for x in at} == at
+
+
 @pytest.mark.parametrize("model", ["careful", "fsm"])
 @pytest.mark.parametrize(("gap", "side"), [(8, "unpreventable"), (60, "preventable")])
 def test_a_drive_is_decided_when_its_manoeuvre_begins(model: str, gap: int, side: str) -> None:
