@@ -359,10 +359,14 @@ def test_doubts_have_the_names_of_the_answers_that_they_stand_for() -> None:
 
 
 @pytest.mark.parametrize(("said", "told"), [("too hard", "too hard"), ("", "no drive was found")])
-def test_a_test_without_a_drive_says_why(said: str, told: str) -> None:
+def test_a_test_without_a_drive_says_why(said: str, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = asked_about(1)
     entry = Abstract("x", asked.query_of("scenario_1"))
     study = Meanings(Basis(HOME.specification), (entry,), asked)
     outcome: Any = SimpleNamespace(drives=(), impossibility=None, told=lambda options: said)
-    found = study._without_drive(entry, outcome)
-    assert (found.relation, found.reason) == ("open", told)
+    monkeypatch.setattr(Meanings, "_search", lambda *_, **__: outcome)
+    for fact in (
+        study._without_drive(entry, outcome),
+        study._looked_for(entry, "scenario_1", asked.query_of("scenario_1")),
+    ):
+        assert (fact.relation, fact.reason) == ("open", told)
