@@ -306,6 +306,9 @@ READER = Reader(
     unchecked=(
         *("seconds", "plates[].reason", "plates[].shown[].reason", "lemmas[].title", "lemmas[].reason"),
     ),
-    unchecked_kept=("plate.reason", "plate.shown[].reason", "lemma.title", "lemma.reason"),
+    unchecked_kept=(
+        *("plate.reason", "plate.shown[].reason", "lemma.title", "lemma.reason"),
+        *("said.along", "said.scenario"),
+    ),
     record_faults=_record_faults,
 )
