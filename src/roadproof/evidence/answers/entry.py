@@ -5,7 +5,7 @@ options, values of parameters. What an entry says beside its claim (numbers of s
 is compared with the claim, on trees; ``fault`` says where that fails.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -57,7 +57,8 @@ class Entry:
 
     ``claim`` None: what the file says, where ``fault_of`` finds no fault in it. ``trace`` is a counterexample
     inside the index. ``fault_of_drive``: what else a drive has to be, beside what its formula
-    says, finds its fault or nothing. ``assuming``: what the claim is said under.
+    says, finds its fault or nothing. ``assuming``: what the claim is said under. ``expected`` returns the
+    formulas of which the evidence has to show one, made of what the entry is about, on trees.
     """
 
     common: Common
@@ -75,6 +76,7 @@ class Entry:
     fault_of: Callable[[str], str] | None = None
     fault_of_drive: Callable[[DriveFile], str] | None = None
     assuming: tuple[str, ...] = ()
+    expected: Callable[[], Sequence[Formula]] | None = None
 
 
 def common_of(data: Fields, library: Library, set_name: str, where: str = "") -> Common:
@@ -144,7 +146,7 @@ def mismatch(entry: Entry, said: Certificate | DriveFile) -> str:
         elif said.assumed.said != entry.assuming:
             there, here = (", ".join(x) or "nothing" for x in (said.assumed.said, entry.assuming))
             return f"{entry.where} assumes {here}, but its file {there}"
-        return _other_claim(entry, said)
+        return _unexpected(entry, said) or _other_claim(entry, said)
     except RoadproofError as error:
         return f"{entry.where}: {error}"
 
@@ -159,6 +161,14 @@ def _other_values(entry: Entry, said: DriveFile) -> str:
         if known[name] != value:
             return f"{entry.where} has {name}={value}, but its file {name}={known[name]}"
     return ""
+
+
+def _unexpected(entry: Entry, said: Certificate | DriveFile) -> str:
+    """Why the evidence shows none of the formulas that it has to show, or nothing."""
+    written = said.claim if isinstance(said, Certificate) else said.formula
+    if entry.expected is None or entry.common.formula(written) in entry.expected():
+        return ""
+    return f"{entry.where} is about {entry.label}, but its file is not: {' '.join(written.split())[:120]}"
 
 
 def _other_claim(entry: Entry, said: Certificate | DriveFile) -> str:

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations, permutations
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.entry import Common, Entry, Shows, file_of, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
 from roadproof.evidence.answers.shared import (
@@ -81,6 +82,14 @@ class Pair:
         """The two, in their sets."""
         return Scenario(self.a, self.set_a), Scenario(self.b, self.set_b)
 
+    def expected(self, common: Common, said: "Said") -> list[Formula]:
+        """What a drive of both satisfies; or the claims that say that no such conjunction ever holds."""
+        one, other = self.scenarios
+        orders = [_conjunctions(common, a, b, said) for a, b in ((one, other), (other, one))]
+        if self.verdict is Verdict.WITNESSED:
+            return [query.formula for queries in orders for query in queries]
+        return [f.conjunction(*(f.negation(query.formula) for query in queries)) for queries in orders]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Said:
@@ -128,7 +137,7 @@ def _entry(pair: Pair, where: str, common: Common, said: Said) -> Entry:
     one, other = pair.scenarios
     shows = shows_of(pair.verdict, where, "proof", "drive")
     fault = ""
-    if shows != "nothing" and common.formula(pair.formula) not in _expected(common, one, other, said, shows):
+    if shows != "nothing" and common.formula(pair.formula) not in pair.expected(common, said):
         fault = f"{where} is about scenarios {one} and {other}, but its formula is not: {pair.formula[:120]}"
     unchecked = ("that the core alone clashes",) if pair.core else ()
     return Entry(
@@ -142,15 +151,8 @@ def _entry(pair: Pair, where: str, common: Common, said: Said) -> Entry:
         file_of(where, shows, pair.certificate, pair.drive),
         unchecked=(*unchecked_of(pair.verdict), *unchecked),
         fault=fault,
+        expected=partial(pair.expected, common, said),
     )
-
-
-def _expected(common: Common, one: Scenario, other: Scenario, said: Said, shows: Shows) -> list[Formula]:
-    """What a drive of both satisfies; or the claims that say that no such conjunction ever holds."""
-    orders = [_conjunctions(common, a, b, said) for a, b in ((one, other), (other, one))]
-    if shows == "drive":
-        return [query.formula for queries in orders for query in queries]
-    return [f.conjunction(*(f.negation(query.formula) for query in queries)) for queries in orders]
 
 
 def _conjunctions(common: Common, one: Scenario, other: Scenario, said: Said) -> list[Query]:
