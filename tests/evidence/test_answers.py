@@ -150,7 +150,7 @@ def test_a_part_that_could_be_left_out() -> None:
         ({"scenario": 5}, "but its claim is not"),
         ({"changed": "true"}, "but its claim is not"),
         ({"assuming": "G p"}, "but its claim is not"),
-        ({"verdict": "WITNESSED", "certificate": None, "drive": "d.json"}, "redundant=True, but WITNESSED"),
+        ({"verdict": "REFUTED", "certificate": None, "drive": "d.json"}, "redundant=True, but REFUTED"),
     ],
 )
 def test_a_part_of_which_an_entry_says_what_is_not_shown(changed: dict[str, Any], fault: str) -> None:

@@ -94,9 +94,12 @@ def test_what_does_not_stand_is_said_on_the_page(tmp_path, drives):
     assert "the formula is false on this drive" in made(tmp_path / "inline.json", out=tmp_path / "b.html")[1]
 
 
+SAID = {"options": {HOSTILE: CLOSED}, "parameters": {HOSTILE: "1"}, "specs": [HOSTILE]}
+
+
 def hostile_overlap() -> dict:
-    said = {"set": HOSTILE, "lanes": "same", "roles": "any", "start": "same", "options": {HOSTILE: CLOSED}}
-    said |= {"parameters": {HOSTILE: "1"}, "specs": [HOSTILE], "view": "dense", "seconds": 1}
+    said = {"set": HOSTILE, "lanes": "same", "roles": "any", "start": "same", **SAID}
+    said |= {"view": "dense", "seconds": 1}
     pair = {"set_a": HOSTILE, "set_b": CLOSED, "formula": HOSTILE, "reason": CLOSED, "certificate": HOSTILE}
     pair |= {"drive": None, "cores": [{"formula": CLOSED, "parts": [HOSTILE]}]}
     verdicts = [
@@ -109,6 +112,9 @@ def hostile_overlap() -> dict:
 def hostile_answers(drive: dict) -> dict[str, dict]:
     named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
     entry = {"verdict": "WITNESSED", "formula": HOSTILE, "reason": CLOSED, "name": HOSTILE, "scenario": 1}
+    implied = {"from": "1@base", "to": "3@base", "claim": HOSTILE, "certificate": CLOSED}
+    change = {"scenario": 1, "where": [CLOSED], "part": HOSTILE, "as": True, "changed": HOSTILE}
+    change |= {"redundant": None, "verdict": "UNKNOWN", "assuming": HOSTILE, "claim": CLOSED}
     return {
         "overlap": hostile_overlap(),
         "witness": {"verdicts": [entry | {"drives": [named]}]},
@@ -142,15 +148,15 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
         "preventable": hostile_plates(named),
         "explore": {"explored": [explored(named)]},
         "order": {
-            "kinds": [["1@base", f"2@{HOSTILE}"], ["3@base"]],
-            "proved": [{"from": "1@base", "to": "3@base", "claim": HOSTILE, "certificate": CLOSED}],
+            **{"sets": ["base"], **SAID, "view": "dense", "seconds": 1},
+            "kinds": [["1@base", "2@base"], ["3@base"]],
+            "proved": [implied],
+            "edges": [implied],
             "missing": [{"from": "3@base", "to": "1@base", "drives": [1]}],
-            "drives": [{"number": 1, "holds": HOSTILE, "fails": [CLOSED], "drive": named}],
-            "doubts": [{"from": HOSTILE, "to": CLOSED, "reason": HOSTILE}],
+            "drives": [{"number": 1, "holds": "3@base", "fails": ["1@base"], "drive": named}],
+            "doubts": [{"from": "1@base", "to": "2@base", "reason": HOSTILE}],
         },
-        "redundancy": {
-            "verdicts": [entry | {"where": [CLOSED], "part": HOSTILE, "claim": CLOSED, "assuming": HOSTILE}]
-        },
+        "redundancy": {**{"set": HOSTILE, **SAID, "view": "dense", "seconds": 1}, "verdicts": [change]},
         "monitor": {
             **{"verdict": HOSTILE, "formula": CLOSED, "end": HOSTILE, "trace": CLOSED, "start": HOSTILE},
             **{"seconds": 3, "road": HOSTILE, "view": CLOSED, "robustness": [None, 1], "overruled": [CLOSED]},

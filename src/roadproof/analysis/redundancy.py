@@ -14,7 +14,9 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import judged_as, placed
 from roadproof.effort import Late
 from roadproof.errors import InputError
+from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel, trace_data
 from roadproof.evidence.traces import read_trace
@@ -43,7 +45,6 @@ from roadproof.spec.scenarios import (
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
 
-SCHEMA = "roadproof/redundancy/1"
 # How many drives are tried on other roads for a change inside a road sector.
 MOVED = 5
 
@@ -72,7 +73,7 @@ class ChangeFinding:
     """
 
     change: Change
-    verdict: Verdict
+    verdict: Word
     claim: Query
     certificate: Certificate | None = None
     drive: Judged | None = None
@@ -223,63 +224,59 @@ class Redundancy:
 
     def record(self, name: str, answer: ChangeFindings, shelf: Shelf) -> dict[str, Any]:
         number = int(name.rpartition("-")[2])
-        verdicts = [
-            {
-                "scenario": number,
-                "part": x.change.part,
-                "where": list(x.change.where),
-                "as": x.change.value,
-                "changed": x.change.changed.text,
-                "redundant": x.redundant,
-                "verdict": str(x.verdict),
-                "assuming": "" if x.assuming is None else x.assuming.text,
-                "claim": x.claim.text,
-                "certificate": shelf.certificate(f"redundant-{number:02}-{place:03}.json", x.certificate),
-                "drive": shelf.drive(f"needed-{number:02}-{place:03}.json", x.drive),
-                "trace": None if x.trace is None else trace_data(x.trace),
-                "reason": x.reason,
-                "late": x.late,
-            }
+        verdicts = tuple(
+            Finding(
+                scenario=number,
+                part=x.change.part,
+                where=x.change.where,
+                value=x.change.value,
+                changed=x.change.changed.text,
+                redundant=x.redundant,
+                verdict=x.verdict,
+                assuming="" if x.assuming is None else x.assuming.text,
+                claim=x.claim.text,
+                certificate=shelf.certificate(f"redundant-{number:02}-{place:03}.json", x.certificate),
+                drive=shelf.drive(f"needed-{number:02}-{place:03}.json", x.drive),
+                trace=None if x.trace is None else trace_data(x.trace),
+                reason=x.reason,
+                late=x.late,
+            )
             for place, x in enumerate(answer, 1)
-        ]
-        return {"scenario": number, "verdicts": verdicts}
+        )
+        return write(Record(scenario=number, verdicts=verdicts))
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, ChangeFindings]:
-        examining = _Examining(self.basis, self._scenario(record["scenario"]))
+        kept = read(Record, record, "a kept answer")
+        examining = _Examining(self.basis, self._scenario(kept.scenario))
         changes = list(changes_of(self.basis.specification, examining.query, self.whole))
-        verdicts = record["verdicts"]
-        if len(changes) != len(verdicts):
+        if len(changes) != len(kept.verdicts):
             raise InputError(
-                f"{len(verdicts)} findings on the {len(changes)} changes of {examining.scenario}"
+                f"{len(kept.verdicts)} findings on the {len(changes)} changes of {examining.scenario}"
             )
-        findings = (self._recalled(x, y, shelf) for x, y in zip(changes, verdicts, strict=True))
-        return name_of(record["scenario"]), tuple(findings)
+        findings = (self._recalled(x, y, shelf) for x, y in zip(changes, kept.verdicts, strict=True))
+        return name_of(kept.scenario), tuple(findings)
 
-    def _recalled(self, change: Change, said: Mapping[str, Any], shelf: Shelf) -> ChangeFinding:
+    def _recalled(self, change: Change, said: Finding, shelf: Shelf) -> ChangeFinding:
         specification = self.basis.specification
-        if said["changed"] != change.changed.text:
-            raise InputError(f"a finding on {said['changed']}, where one on {change.changed.text} was kept")
+        if said.changed != change.changed.text:
+            raise InputError(f"a finding on {said.changed}, where one on {change.changed.text} was kept")
         return ChangeFinding(
             change,
-            Verdict(said["verdict"]),
-            read_claim(specification, said["claim"]),
-            shelf.read_certificate(said["certificate"]),
-            shelf.read_drive(said["drive"]),
-            None if said["trace"] is None else read_trace(said["trace"], change.part),
-            said["reason"],
-            read_claim(specification, said["assuming"]) if said["assuming"] else None,
-            said["late"],
+            said.verdict,
+            read_claim(specification, said.claim),
+            shelf.read_certificate(said.certificate),
+            shelf.read_drive(said.drive),
+            None if said.trace is None else read_trace(said.trace, change.part),
+            said.reason,
+            read_claim(specification, said.assuming) if said.assuming else None,
+            said.late,
         )
 
     def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
-        names = [name_of(number) for number in self.numbers]
-        return {
-            **self.question.heading,
-            "view": "dense",
-            "seconds": round(seconds, 1),
-            "verdicts": [verdict for name in names for verdict in records[name]["verdicts"]],
-        }
+        kept = (read(Record, records[name_of(number)], "a kept answer") for number in self.numbers)
+        verdicts = tuple(x for record in kept for x in record.verdicts)
+        return write(Index(**self.question.heading, seconds=round(seconds, 1), verdicts=verdicts))
 
 
 def name_of(number: int) -> str:

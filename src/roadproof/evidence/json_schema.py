@@ -15,9 +15,13 @@ _NAMES: Mapping[Any, str] = {str: "string", int: "integer", float: "number", boo
 
 @dataclass(frozen=True)
 class Shared:
-    """The last note of a type that several answers share: its name among the definitions of common.json."""
+    """The last note of a type that several answers share: its name among the definitions of common.json.
+
+    ``by_hand``: whether the definition there is written by hand.
+    """
 
     name: str
+    by_hand: bool = False
 
 
 @dataclass(frozen=True)
@@ -27,9 +31,10 @@ class Other:
     schema: str
 
 
-def schema_of(kind: type, name: str, title: str) -> dict[str, Any]:
-    """The schema of an answer, which the file ``name`` holds."""
-    below = {x.__name__: x for x in _definitions(kind, set()) if x is not kind}
+def schema_of(kind: type, record: type, name: str, title: str) -> dict[str, Any]:
+    """The schema of an answer, which the file ``name`` holds, with what a kept answer is made of."""
+    every = (x for top in (kind, record) for x in _definitions(top, set()))
+    below = {x.__name__: x for x in every if x not in (kind, record)}
     made = {"$schema": DRAFT, "$id": name, "title": title, **_object(kind)}
     if below:
         made["$defs"] = {_called(x): _object(below[x]) for x in sorted(below)}

@@ -17,12 +17,13 @@ from roadproof.analysis.order.deciding import (
 from roadproof.analysis.order.kinds import Kind, families_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
 from roadproof.errors import InputError
+from roadproof.evidence.answers import order as kept
+from roadproof.evidence.answers.order import SCHEMA
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.scenarios import Scenario
 from roadproof.study.shelf import Question, Shelf
-
-SCHEMA = "roadproof/order/1"
 
 
 @dataclass(frozen=True)
@@ -107,41 +108,44 @@ class Ordering:
         return not answer.doubts
 
     def record(self, name: str, answer: Decided, shelf: Shelf) -> dict[str, Any]:
-        proved = [
-            {
-                "from": str(edge.above),
-                "to": str(edge.below),
-                "claim": edge.claim.text,
-                "certificate": shelf.certificate(
+        proved = tuple(
+            kept.Edge(
+                above=str(edge.above),
+                below=str(edge.below),
+                claim=edge.claim.text,
+                certificate=shelf.certificate(
                     f"edge-{_file(edge.above)}-{_file(edge.below)}.json", edge.certificate
                 ),
-            }
+            )
             for edge in answer.edges
-        ]
-        drives = [
-            {
-                "holds": str(x.node),
-                "fails": sorted({str(node) for node in x.others}),
-                "drive": shelf.drive(f"drive-{_file(x.node)}-{number}.json", x.drive),
-            }
+        )
+        drives = tuple(
+            kept.Refutation(
+                holds=str(x.node),
+                fails=tuple(sorted({str(node) for node in x.others})),
+                drive=shelf.drive(f"drive-{_file(x.node)}-{number}.json", x.drive),
+            )
             for number, x in enumerate(answer.drives, 1)
-        ]
-        doubts = [{"from": str(x.above), "to": str(x.below), "reason": x.reason} for x in answer.doubts]
-        return {"family": name, "proved": proved, "drives": drives, "doubts": doubts}
+        )
+        doubts = tuple(
+            kept.Doubt(above=str(x.above), below=str(x.below), reason=x.reason) for x in answer.doubts
+        )
+        return write(kept.Record(family=name, proved=proved, drives=drives, doubts=doubts))
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Decided]:
+        said = _read(record)
         edges: list[Edge] = []
-        for said in record["proved"]:
-            certificate = shelf.read_certificate(said["certificate"])
+        for edge in said.proved:
+            certificate = shelf.read_certificate(edge.certificate)
             assert certificate is not None
-            claim = read_claim(self.basis.specification, said["claim"])
-            edges.append(Edge(_scenario(said["from"]), _scenario(said["to"]), claim, certificate))
+            claim = read_claim(self.basis.specification, edge.claim)
+            edges.append(Edge(_scenario(edge.above), _scenario(edge.below), claim, certificate))
         drives: list[Refuting] = []
-        for said in record["drives"]:
-            drive = shelf.read_drive(said["drive"])
+        for x in said.drives:
+            drive = shelf.read_drive(x.drive)
             assert drive is not None
-            drives.append(Refuting(_scenario(said["holds"]), tuple(map(_scenario, said["fails"])), drive))
-        name: str = record["family"]
+            drives.append(Refuting(_scenario(x.holds), tuple(map(_scenario, x.fails)), drive))
+        name = said.family
         settled = {(x.above, x.below) for x in edges} | {(x.node, y) for x in drives for y in x.others}
         for kind in self.families.get(name, ()):
             for other in self.kinds:
@@ -187,27 +191,32 @@ class Ordering:
 
     def index(self, order: Order, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
-        every = [records[name] for name in self.families]
-        proved = [edge for record in every for edge in record["proved"]]
+        every = [_read(records[name]) for name in self.families]
+        proved = tuple(edge for record in every for edge in record.proved)
         reduced = {(str(edge.above), str(edge.below)) for edge in order.edges}
         doubts = {(str(x.above), str(x.below)) for x in order.doubts}
-        return {
+        drives = (x for record in every for x in record.drives)
+        index = kept.Index(
             **self.question.heading,
-            "view": "dense",
-            "kinds": [[str(node) for node in kind.nodes] for kind in order.kinds],
-            "proved": proved,
-            "edges": [edge for edge in proved if (edge["from"], edge["to"]) in reduced],
-            "missing": [
-                {"from": str(above), "to": str(below), "drives": [place + 1 for place in places]}
+            kinds=tuple(tuple(map(str, kind.nodes)) for kind in order.kinds),
+            proved=proved,
+            edges=tuple(edge for edge in proved if edge.pair in reduced),
+            missing=tuple(
+                kept.Missing(above=str(above), below=str(below), drives=tuple(place + 1 for place in places))
                 for above, below, places in order.missing
-            ],
-            "drives": [
-                {"number": number, **drive}
-                for number, drive in enumerate((x for record in every for x in record["drives"]), 1)
-            ],
-            "doubts": [x for record in every for x in record["doubts"] if (x["from"], x["to"]) in doubts],
-            "seconds": round(seconds, 1),
-        }
+            ),
+            drives=tuple(
+                kept.NumberedRefutation(number=k, holds=x.holds, fails=x.fails, drive=x.drive)
+                for k, x in enumerate(drives, 1)
+            ),
+            doubts=tuple(x for record in every for x in record.doubts if x.pair in doubts),
+            seconds=round(seconds, 1),
+        )
+        return write(index)
+
+
+def _read(record: Mapping[str, Any]) -> kept.Record:
+    return read(kept.Record, record, "a kept answer")
 
 
 def name_of(family: Sequence[Kind]) -> str:

@@ -2,15 +2,35 @@
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from math import perm
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import permutations
+from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError, TextError
-from roadproof.evidence.answers.entry import Common, Entry, evidence_name
-from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields, text
+from roadproof.evidence.answers.entry import Common, Entry, file_of
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.shared import (
+    Dense,
+    Heading,
+    KeptCertificate,
+    KeptDrive,
+    Options,
+    Parameters,
+    Reason,
+    ScenarioName,
+    Seconds,
+    SetNames,
+    Specifications,
+)
+from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.codec import Doc, Key, Rule, read
+from roadproof.evidence.strict import Fields
 from roadproof.logic import syntax
+from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names
+from roadproof.spec.compose import implication
 from roadproof.spec.scenarios import (
     LANE,
     SUBJECT,
@@ -21,55 +41,162 @@ from roadproof.spec.scenarios import (
     vehicles_of,
 )
 
-SCHEMA = "roadproof/order/1"
+SCHEMA: Final = "roadproof/order/1"
 _NODE = re.compile(r"([0-9]{1,6})@(\w+)", re.ASCII)
+Position: TypeAlias = Annotated[int, Rule(minimum=1)]
 
 
-def read(data: Fields, background: Background) -> Iterator[Entry]:
-    """The entries of an index or of a kept answer. Raises ``InputError``."""
-    common = background.home
-    for number, content in enumerate(data.items("proved"), 1):
-        line = Fields(
-            content, f"{common.where}, implication {number}", ("from", "to", "claim", "certificate")
-        )
-        yield _implication(line, common)
-    for number, content in enumerate(data.items("drives"), 1):
-        line = Fields(content, f"{common.where}, drive {number}", ("number", "holds", "fails", "drive"))
-        yield _refutation(line, common)
-    for number, content in enumerate(data.items("doubts"), 1):
-        Fields(content, f"{common.where}, doubt {number}", ("from", "to", "reason"))
+@dataclass(frozen=True, kw_only=True)
+class Implication:
+    """That one scenario implies another."""
+
+    above: Annotated[ScenarioName, Key("from")]
+    below: Annotated[ScenarioName, Key("to")]
+
+    @property
+    def pair(self) -> tuple[str, str]:
+        """The two names."""
+        return self.above, self.below
 
 
-def _implication(line: Fields, common: Common) -> Entry:
-    above, below, claim = line.text("from"), line.text("to"), line.text("claim")
+@dataclass(frozen=True, kw_only=True)
+class Edge(Implication):
+    """A proof that one scenario implies another."""
+
+    claim: FormulaText
+    certificate: KeptCertificate = None
+
+    def expected(self, common: Common) -> list[Formula]:
+        """That the one implies the other, for all ways in which they share vehicles."""
+        home = common.specification
+        one, other = _node(self.above), _node(self.below)
+        return [
+            implication(applied(home, one, mine), applied(home, other, theirs)).formula
+            for mine, theirs in _readings(common, one, other)
+        ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refutation:
+    """A drive on which one scenario holds and others do not."""
+
+    holds: ScenarioName
+    fails: Annotated[
+        tuple[ScenarioName, ...], Rule(least=1), Doc("The scenarios that are false on the drive.")
+    ]
+    drive: KeptDrive = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Numbered:
+    """What has a place among all of its kind."""
+
+    number: Position
+
+
+@dataclass(frozen=True, kw_only=True)
+class NumberedRefutation(Refutation, Numbered):
+    """A drive on which one scenario holds and others do not, by number."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Missing(Implication):
+    """A pair of which the first scenario does not imply the second."""
+
+    drives: Annotated[tuple[Position, ...], Rule(least=1), Doc("The numbers of drives that show so.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Doubt(Implication):
+    """An implication that is neither proved nor refuted."""
+
+    reason: Reason
+
+
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """What an index says once for all implications."""
+
+    sets: SetNames
+    options: Options
+    parameters: Parameters
+    specs: Specifications
+
+
+@dataclass(frozen=True, kw_only=True)
+class Index(Said, Heading):
+    """Which scenarios imply which."""
+
+    schema: Literal["roadproof/order/1"] = SCHEMA
+    view: Dense = "dense"
+    kinds: Annotated[
+        tuple[Annotated[tuple[ScenarioName, ...], Rule(least=1)], ...],
+        Doc("Scenarios that are one formula; the first stands for all."),
+    ]
+    proved: tuple[Edge, ...]
+    edges: Annotated[tuple[Edge, ...], Doc("Those proved that do not follow from others.")]
+    missing: tuple[Missing, ...]
+    drives: tuple[NumberedRefutation, ...]
+    doubts: tuple[Doubt, ...]
+    seconds: Seconds = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A kept answer: what was found about the scenarios of a family."""
+
+    family: str
+    proved: tuple[Edge, ...]
+    drives: tuple[Refutation, ...]
+    doubts: tuple[Doubt, ...]
+
+
+def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
+    index = read(Index, data.content, data.where)
+    return _entries(index.proved, index.drives, background.home)
+
+
+def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
+    kept = read_kept(Record, record)
+    return _entries(kept.proved, kept.drives, background.home)
+
+
+def _entries(proved: Sequence[Edge], drives: Sequence[Refutation], common: Common) -> Iterator[Entry]:
+    for number, edge in enumerate(proved, 1):
+        yield _implication(edge, f"{common.where}, implication {number}", common)
+    for number, drive in enumerate(drives, 1):
+        yield _refutation(drive, f"{common.where}, drive {number}", common)
+
+
+def _implication(edge: Edge, where: str, common: Common) -> Entry:
     fault = ""
-    if [(str(a.scenario), str(b.scenario)) for a, b in _implied(claim, common)] != [(above, below)]:
-        fault = f"{line.where} says {above} -> {below}, but its claim is not that: {claim[:120]}"
+    if common.formula(edge.claim) not in edge.expected(common):
+        fault = f"{where} says {edge.above} -> {edge.below}, but its claim is not that: {edge.claim[:120]}"
     return Entry(
         common,
-        line.where,
-        ("implication", above, below),
+        where,
+        ("implication", edge.above, edge.below),
         "PROVED",
-        f"{above} -> {below}",
+        f"{edge.above} -> {edge.below}",
         "proof",
-        claim,
-        evidence_name(line, "certificate"),
+        edge.claim,
+        file_of(where, "proof", edge.certificate, None),
         fault=fault,
+        expected=partial(edge.expected, common),
     )
 
 
-def _refutation(line: Fields, common: Common) -> Entry:
-    holds, fails = line.text("holds"), line.texts("fails")
+def _refutation(said: Refutation, where: str, common: Common) -> Entry:
     return Entry(
         common,
-        line.where,
-        ("drive", line.content.get("drive")),
+        where,
+        ("drive", said.drive),
         "WITNESSED",
-        f"{holds} without {', '.join(fails)}",
+        f"{said.holds} without {', '.join(said.fails)}",
         "drive",
         None,
-        evidence_name(line, "drive"),
-        fault_of=lambda formula: _misread(formula, holds, fails, common),
+        file_of(where, "drive", None, said.drive),
+        fault_of=lambda formula: _misread(formula, said.holds, said.fails, common),
     )
 
 
@@ -83,15 +210,6 @@ def _misread(formula: str, holds: str, fails: Sequence[str], common: Common) -> 
 
 
 Reading = tuple[Application, Application]
-
-
-def _implied(claim: str, common: Common) -> list[Reading]:
-    """``A -> B`` as the pair A, B; nothing where it is no such claim."""
-    match _body(claim):
-        case syntax.Binary("->", above, below):
-            return _fitting([(above, below)], common)
-        case _:
-            return []
 
 
 def readings_of(formula: str, common: Common) -> list[Reading]:
@@ -135,53 +253,48 @@ def _fit(above: tuple[str, ...], below: tuple[str, ...]) -> bool:
 
 def faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """What a whole index says that its entries do not show; ``formulas`` are those of accepted drives."""
-    common = background.home
-    proved = {(x.text("from"), x.text("to")) for x in _lines(data, "proved")}
-    for edge in data.items("edges"):
-        if edge not in data.items("proved"):
-            yield f"an edge is not among what is proved: {str(edge)[:120]}"
-    drawn = {(x.text("from"), x.text("to")) for x in _lines(data, "edges")}
+    index, common = read(Index, data.content, data.where), background.home
+    proved = {x.pair for x in index.proved}
+    for edge in index.edges:
+        if edge not in index.proved:
+            yield f"an edge is not among what is proved: {edge.above} -> {edge.below}, {edge.claim[:80]}"
+    drawn = {x.pair for x in index.edges}
     for one, other in sorted(proved):
         if other not in _reached(one, drawn):
             yield f"{one} -> {other} is proved, but does not follow from the edges"
-    refuted: dict[tuple[str, str], set[Reading]] = {}
-    numbers: dict[tuple[str, str], set[int]] = {}
-    for drive in _lines(data, "drives"):
-        for above, below in readings_of(formulas.get(drive.text("drive"), ""), common):
-            shown = str(above.scenario), str(below.scenario)
-            refuted.setdefault(shown, set()).add((above, below))
-            numbers.setdefault(shown, set()).add(drive.whole("number"))
-    for line in _lines(data, "missing"):
-        pair = (line.text("from"), line.text("to"))
-        if len(refuted.get(pair, ())) < _count_readings(common, *pair):
-            yield f"that {pair[0]} does not imply {pair[1]} is not shown by its drives"
-        elif set(line.items("drives")) != numbers[pair]:
-            yield f"the drives against {pair[0]} -> {pair[1]} are not those that it names"
-    kinds = [_names(kind, data.where) for kind in data.items("kinds")]
-    for kind in kinds:
+    yield from _unshown(index, common, formulas)
+    for kind in index.kinds:
         meanings = {without_names(applied(common.specification, _node(name)).formula) for name in kind}
         if len(meanings) != 1:
             yield f"{', '.join(kind)} are not one formula"
-    asked = {_node(name).set_name for kind in kinds for name in kind}
-    if asked != {*data.texts("sets")}:
+    known = {name for kind in index.kinds for name in kind}
+    asked = {_node(name).set_name for name in known}
+    if asked != {*index.sets}:
         yield f"its sets are not those of its scenarios: {', '.join(sorted(asked))}"
-    told = {(x.text("from"), x.text("to")) for field in ("missing", "doubts") for x in _lines(data, field)}
-    known = {name for kind in kinds for name in kind}
+    told = {x.pair for x in (*index.missing, *index.doubts)}
     spoken = {name for names in (proved | told) for name in names}
-    spoken |= {name for x in _lines(data, "drives") for name in (x.text("holds"), *x.texts("fails"))}
+    spoken |= {name for x in index.drives for name in (x.holds, *x.fails)}
     if spoken - known:
         yield f"it says something of {', '.join(sorted(spoken - known))}, but no kind has it"
-    yield from _unanswered([kind[0] for kind in kinds if kind], proved, told)
+    yield from _unanswered([kind[0] for kind in index.kinds], proved, told)
 
 
-def _lines(data: Fields, field: str) -> list[Fields]:
-    return [Fields(content, f"{data.where}, {field}") for content in data.items(field)]
-
-
-def _names(content: object, where: str) -> list[str]:
-    if not isinstance(content, list):
-        raise InputError(f"{where}, kinds: {str(content)[:60]!r} is no list")
-    return [text(name, f"{where}, kinds") for name in content]
+def _unshown(index: Index, common: Common, formulas: Mapping[str, str]) -> Iterator[str]:
+    """Missing implications that the drives of the index do not show."""
+    refuted: dict[tuple[str, str], set[Reading]] = {}
+    numbers: dict[tuple[str, str], set[int]] = {}
+    for drive in index.drives:
+        for above, below in readings_of(formulas.get(str(drive.drive), ""), common):
+            shown = str(above.scenario), str(below.scenario)
+            refuted.setdefault(shown, set()).add((above, below))
+            numbers.setdefault(shown, set()).add(drive.number)
+    for line in index.missing:
+        above_name, below_name = line.pair
+        ways = _readings(common, _node(above_name), _node(below_name))
+        if len(refuted.get(line.pair, ())) < len(ways):
+            yield f"that {above_name} does not imply {below_name} is not shown by its drives"
+        elif set(line.drives) != numbers[line.pair]:
+            yield f"the drives against {above_name} -> {below_name} are not those that it names"
 
 
 def _unanswered(
@@ -206,10 +319,16 @@ def _reached(above: str, steps: Collection[tuple[str, str]]) -> set[str]:
     return reached
 
 
-def _count_readings(common: Common, above: str, below: str) -> int:
-    """How many ways there are to read an implication between scenarios of different numbers of vehicles."""
-    sizes = sorted(len(vehicles_of(common.specification, _node(name))) for name in (above, below))
-    return 1 if sizes[0] == sizes[1] else perm(sizes[1] - 1, sizes[0] - 1)
+def _readings(
+    common: Common, one: Scenario, other: Scenario
+) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """The ways in which two scenarios share vehicles: the fewer POVs are any of the others."""
+    mine, theirs = (vehicles_of(common.specification, x) for x in (one, other))
+    if len(mine) == len(theirs):
+        return [(mine, theirs)]
+    most, fewer = max(mine, theirs, key=len), min(mine, theirs, key=len)
+    found = [(most[0], *rest) for rest in permutations(most[1:], len(fewer) - 1)]
+    return [(x, most) if len(mine) < len(theirs) else (most, x) for x in found]
 
 
 def _node(name: str) -> Scenario:
@@ -219,15 +338,8 @@ def _node(name: str) -> Scenario:
     return Scenario(int(read[1]), read[2])
 
 
-READER = Reader(
-    SCHEMA,
-    ("sets", "options", "parameters", "specs"),
-    ("view", "kinds", "proved", "edges", "missing", "drives", "doubts", "seconds"),
-    read,
-    ("family", "proved", "drives", "doubts"),
-    read,
-    faults,
-    unchecked=("seconds", "doubts[].reason"),
+READER = replace(
+    Reader.of(Index, Said, _of_index, Record, _of_record, lambda record: record.text("family")),
+    faults=faults,
     unchecked_kept=("doubts", "said.sets"),
-    file_name=lambda record: record.text("family"),
 )

@@ -129,7 +129,14 @@ class Reader:
     record_faults: Callable[[Fields, Background], Iterable[str]] = _without_record_faults
 
     @staticmethod
-    def of(index: type, said: type, read_index: Read, record: type, read_record: Read) -> "Reader":
+    def of(
+        index: type,
+        said: type,
+        read_index: Read,
+        record: type,
+        read_record: Read,
+        file_name: Callable[[Fields], str | None] = _without_name,
+    ) -> "Reader":
         """The reader of an index that is defined as ``index``, and whose kept answers are ``record``."""
         every = {x.key: x for x in fields_of(index)}
         once = tuple(x.key for x in fields_of(said))
@@ -144,6 +151,7 @@ class Reader:
             read_index,
             kept,
             read_record,
-            unchecked=unchecked(index),
+            unchecked=tuple(sorted(unchecked(index), key=lambda path: "[" in path)),
             unchecked_kept=of_record,
+            file_name=file_name,
         )

@@ -1,93 +1,158 @@
 """The index and the journal of ``roadproof redundancy``: parts of scenarios replaced by true and false."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
-from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.shared import (
+    Dense,
+    Heading,
+    KeptCertificate,
+    KeptDrive,
+    KeptTrace,
+    Number,
+    Options,
+    Parameters,
+    Reason,
+    Seconds,
+    SetName,
+    Specifications,
+)
+from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.codec import UNCHECKED, Doc, Key, read
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
 from roadproof.spec.compose import both, equivalence, implication, negation
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, applied, leaves_at_once, vehicles_of
+from roadproof.verdict import Verdict
 
-SCHEMA = "roadproof/redundancy/1"
-_ENTRY = ("scenario", "part", "where", "as", "changed", "redundant", "verdict", "assuming", "claim")
-_ENTRY_MORE = ("certificate", "drive", "trace", "reason", "late")
-_UNCHECKED = tuple(f"verdicts[].{x}" for x in ("part", "where", "as", "reason", "late"))
-
-
-def read(data: Fields, background: Background) -> Iterator[Entry]:
-    """The entries of an index or a kept answer. Raises ``InputError``."""
-    common = background.at(background.said.text("set"))
-    for number, content in enumerate(data.items("verdicts"), 1):
-        line = Fields(content, f"{common.where}, change {number}", (*_ENTRY, *_ENTRY_MORE))
-        yield _entry(line, common)
+SCHEMA: Final = "roadproof/redundancy/1"
+Word: TypeAlias = Literal[Verdict.PROVED, Verdict.REFUTED, Verdict.UNKNOWN]
 
 
-def _entry(line: Fields, common: Common) -> Entry:
-    scenario = Scenario(line.whole("scenario"), common.set_name)
-    claim, verdict = line.text("claim"), line.text("verdict")
-    by_trace = line.has("trace")
-    shows = shows_of(verdict, line.where, drive="counterexample" if by_trace else "drive")
-    changed, part, assuming = line.text("changed"), line.text("part"), line.text("assuming")
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """What becomes of a scenario where one occurrence of a part is replaced by a truth value."""
+
+    scenario: Number
+    part: Annotated[str, UNCHECKED, Doc("The part that is replaced by a truth value.")]
+    where: Annotated[tuple[str, ...], UNCHECKED, Doc("The definitions around it, from the outside in.")]
+    value: Annotated[bool, Key("as"), UNCHECKED, Doc("The truth value.")]
+    changed: Annotated[str, Doc("The scenario with that put in place of the part.")]
+    redundant: Annotated[bool | None, Doc("Whether the part could be left out; null in doubt.")]
+    verdict: Word
+    assuming: Annotated[
+        str,
+        Doc("Of motion: that a vehicle which leaves L has a first moment outside it; else empty."),
+    ]
+    claim: Annotated[FormulaText, Doc("That the scenario stays what it is.")]
+    certificate: KeptCertificate = None
+    drive: KeptDrive = None
+    trace: KeptTrace | None = None
+    reason: Reason = ""
+    late: Annotated[
+        bool, UNCHECKED, Doc("Whether the clock cut it off, so that the next run asks again.")
+    ] = False
+
+    def expected(self, common: Common) -> list[Formula]:
+        """The claims that the change may be made; or what a drive shows that tells the two apart."""
+        home = common.specification
+        whole, other = applied(home, Scenario(self.scenario, common.set_name)), read_claim(home, self.changed)
+        if self.verdict is Verdict.REFUTED and self.trace is None:
+            return [both(whole, negation(other)).formula, both(other, negation(whole)).formula]
+        if self.verdict is Verdict.PROVED and self.assuming:
+            moving = self.moving(common)
+            there = implication(both(*moving, whole), other)
+            back = implication(both(*moving, other), whole)
+            return [both(there, back).formula]
+        return [equivalence(whole, other).formula]
+
+    def moving(self, common: Common) -> Sequence[Query]:
+        """That each vehicle that leaves L has a first moment outside it."""
+        home = common.specification
+        vehicles = vehicles_of(home, Scenario(self.scenario, common.set_name))
+        return [leaves_at_once(home, vehicle) for vehicle in vehicles]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """What an index says once for all changes."""
+
+    set: SetName
+    options: Options
+    parameters: Parameters
+    specs: Specifications
+
+
+@dataclass(frozen=True, kw_only=True)
+class Index(Said, Heading):
+    """Which parts of scenarios could be left out."""
+
+    schema: Literal["roadproof/redundancy/1"] = SCHEMA
+    view: Dense = "dense"
+    seconds: Seconds = 0.0
+    verdicts: tuple[Finding, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A kept answer: the findings on a scenario."""
+
+    scenario: Number
+    verdicts: tuple[Finding, ...]
+
+
+def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
+    return _entries(read(Index, data.content, data.where).verdicts, background)
+
+
+def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
+    return _entries(read_kept(Record, record).verdicts, background)
+
+
+def _entries(findings: Sequence[Finding], background: Background) -> Iterator[Entry]:
+    common = background.home
+    for number, finding in enumerate(findings, 1):
+        yield _entry(finding, f"{common.where}, change {number}", common)
+
+
+def _entry(said: Finding, where: str, common: Common) -> Entry:
+    scenario = Scenario(said.scenario, common.set_name)
+    shows = shows_of(said.verdict, where, drive="drive" if said.trace is None else "counterexample")
     fault = ""
-    redundant = line.flag("redundant") if line.has("redundant") else None
-    if redundant != {"proof": True, "nothing": None}.get(shows, False):
-        fault = f"{line.where}: redundant={redundant}, but {verdict}"
-    elif shows != "nothing" and common.formula(claim) not in _expected(
-        common, scenario, changed, assuming, shows
-    ):
-        fault = f"{line.where} is about scenario {scenario}, but its claim is not: {claim[:120]}"
-    if assuming and not fault and common.formula(assuming) != both(*_moving(common, scenario)).formula:
-        fault = f"{line.where}: what it assumes is not that vehicles do not jump: {assuming[:120]}"
-    value, places = str(line.flag("as")).lower(), line.texts("where") or ("",)
+    if said.redundant != {"proof": True, "nothing": None}.get(shows, False):
+        fault = f"{where}: redundant={said.redundant}, but {said.verdict}"
+    elif shows != "nothing" and common.formula(said.claim) not in said.expected(common):
+        fault = f"{where} is about scenario {scenario}, but its claim is not: {said.claim[:120]}"
+    elif said.assuming and common.formula(said.assuming) != both(*said.moving(common)).formula:
+        fault = f"{where}: what it assumes is not that vehicles do not jump: {said.assuming[:120]}"
+    value, places = str(said.value).lower(), said.where or ("",)
     return Entry(
         common,
-        line.where,
-        (scenario, part, places, value, changed),
-        verdict,
-        f"scenario {scenario}: {part} in {places[-1]} as {value}",
+        where,
+        (scenario, said.part, places, value, said.changed),
+        said.verdict,
+        f"scenario {scenario}: {said.part} in {places[-1]} as {value}",
         shows,
-        claim,
-        one_of(line, shows),
-        line.content.get("trace"),
+        said.claim,
+        file_of(where, shows, said.certificate, said.drive),
+        said.trace,
         unchecked=("that this part was changed, and no other",) if shows != "nothing" else (),
         fault=fault,
+        expected=partial(said.expected, common),
     )
 
 
-def _expected(common: Common, scenario: Scenario, changed: str, assuming: str, shows: str) -> list[Formula]:
-    """The claims that a change may, or may not, be made."""
-    home = common.specification
-    whole, other = applied(home, scenario), read_claim(home, changed)
-    if shows == "drive":
-        return [both(whole, negation(other)).formula, both(other, negation(whole)).formula]
-    if shows == "proof" and assuming:
-        moving = _moving(common, scenario)
-        there, back = implication(_and(moving, whole), other), implication(_and(moving, other), whole)
-        return [both(there, back).formula]
-    return [equivalence(whole, other).formula]
-
-
-def _moving(common: Common, scenario: Scenario) -> Sequence[Query]:
-    """That each vehicle that leaves L has a first moment outside it."""
-    home = common.specification
-    return [leaves_at_once(home, vehicle) for vehicle in vehicles_of(home, scenario)]
-
-
-def _and(moving: Sequence[Query], query: Query) -> Query:
-    return both(*moving, query)
-
-
-READER = Reader(
-    SCHEMA,
-    ("set", "options", "parameters", "specs"),
-    ("view", "seconds", "verdicts"),
-    read,
-    ("scenario", "verdicts"),
-    read,
-    unchecked=("seconds", *_UNCHECKED),
-    unchecked_kept=_UNCHECKED,
-    file_name=lambda record: f"scenario-{record.whole('scenario'):02}",
+READER = Reader.of(
+    Index,
+    Said,
+    _of_index,
+    Record,
+    _of_record,
+    lambda record: f"scenario-{record.whole('scenario'):02}",
 )

@@ -12,6 +12,18 @@ Formula: TypeAlias = Annotated[
 ]
 Number: TypeAlias = Annotated[int, Rule(minimum=0), Doc("Number of a scenario."), Shared("number")]
 SetName: TypeAlias = Annotated[str, Rule(least=1), Doc("Name of a spec set."), Shared("set")]
+SetNames: TypeAlias = Annotated[
+    tuple[SetName, ...],
+    Rule(least=1),
+    Doc("Spec sets; names without @ are read in the first."),
+    Shared("sets"),
+]
+ScenarioName: TypeAlias = Annotated[
+    str,
+    Rule(pattern="^[0-9]+@[A-Za-z_][A-Za-z0-9_]*$"),
+    Doc("A scenario in a set, such as 4@base."),
+    Shared("scenario_name"),
+]
 Rational: TypeAlias = Annotated[
     str,
     Rule(pattern="^-?[0-9]{1,40}(/[0-9]{1,40})?$"),
@@ -43,6 +55,7 @@ KeptDrive: TypeAlias = Annotated[
     Doc("A judged drive: its file where evidence goes to a folder, else itself; null where there is none."),
     Shared("kept_drive"),
 ]
+KeptTrace: TypeAlias = Annotated[Any, Shared("trace", by_hand=True)]
 Version: TypeAlias = Annotated[
     str,
     Rule(pattern=r"^[0-9]+\.[0-9]+"),
