@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from enum import IntEnum, StrEnum
+from typing import Literal, TypeAlias, get_args
 
 
 class Verdict(StrEnum):
@@ -18,6 +19,27 @@ class Verdict(StrEnum):
     COVERED = "COVERED"  # of a set that misses no disturbance; certificates
     GAPS = "GAPS"  # of a set that misses some; judged drives
     CROSSCHECK_FAILED = "CROSSCHECK-FAILED"  # readers of the same formula disagree
+
+
+ClaimVerdict: TypeAlias = Literal[
+    Verdict.PROVED,
+    Verdict.PROVED_BOUNDED,
+    Verdict.REFUTED,
+    Verdict.VACUOUS,
+    Verdict.UNKNOWN,
+    Verdict.CROSSCHECK_FAILED,
+]
+"""Answers to claims."""
+
+
+DriveVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN, Verdict.UNKNOWN]
+"""Answers to questions for drives."""
+
+
+def claim_verdict(word: str) -> ClaimVerdict:
+    """The answer to a claim that has a name, such as PROVED. Raises ``KeyError``."""
+    found: dict[str, ClaimVerdict] = {str(x): x for x in get_args(ClaimVerdict)}
+    return found[word]
 
 
 class ExitCode(IntEnum):

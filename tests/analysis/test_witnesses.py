@@ -227,7 +227,7 @@ def test_python_takes_up_what_the_command_line_kept(tmp_path: Path, asked: Asked
 def test_planted_neglect_of_how_it_was_asked_is_noticed(
     tmp_path: Path, asked: Asked, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.analysis.witnesses._asked", lambda search: "always")
+    monkeypatch.setattr("roadproof.analysis.witnesses._asked", lambda search: 16 * "0")
     witness(tmp_path, "4")
     witness(tmp_path, "4", "--horizon", "5")
     assert asked.since() == [A4]

@@ -133,7 +133,8 @@ def test_a_no_says_that_there_was_no_jerk_where_a_formula_speaks_of_it() -> None
         outcome = rp.witness(formula, horizon=2, dt=1, jobs=1).outcomes[0]
         assert outcome.verdict is Verdict.NONE_WITHIN
         assert ("accelerations constant between them, so that jerk is 0," in outcome.reason) == told
-        limits = outcome.as_data()["limits"]["accelerations"]
+        assert outcome.limits is not None
+        limits = outcome.limits.as_json()["accelerations"]
         assert limits == "constant between samples, none after the last" + (", no jerk" if told else "")
     assert rp.witness("F j_lon(SV) = 0", horizon=2, dt=1, jobs=1).verdict is Verdict.WITNESSED
 

@@ -89,9 +89,15 @@ def test_what_does_not_stand_is_said_on_the_page(tmp_path, drives):
     found, text = made(tmp_path / "wrong.json", out=tmp_path / "page.html")
     assert "0 of 1 accepted" in body_of(text)
     assert found.exit_code == 10
-    inline = {"schema": "roadproof/witness/1", "verdicts": [{"verdict": "WITNESSED", "drives": [wrong]}]}
+    inline = {"schema": "roadproof/witness/1", "verdicts": [outcome("danger(SV,POV)", wrong)]}
     (tmp_path / "inline.json").write_text(json.dumps(inline), "utf-8")
     assert "the formula is false on this drive" in made(tmp_path / "inline.json", out=tmp_path / "b.html")[1]
+
+
+def outcome(formula: str, drive: dict) -> dict:
+    said = {"scenario": 1, "set": "base", "formula": formula, "road": "main-2", "verdict": "WITNESSED"}
+    said |= {"view": "dense", "reason": "", "natural": False, "drives": [drive]}
+    return said | {"seconds": {}, "sizes": {}}
 
 
 SAID = {"options": {HOSTILE: CLOSED}, "parameters": {HOSTILE: "1"}, "specs": [HOSTILE]}
@@ -112,15 +118,17 @@ def hostile_overlap() -> dict:
 def hostile_answers(drive: dict) -> dict[str, dict]:
     named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
     entry = {"verdict": "WITNESSED", "formula": HOSTILE, "reason": CLOSED, "name": HOSTILE, "scenario": 1}
+    claim = {"property": HOSTILE, "part": CLOSED, "scenario": None, "set": HOSTILE, "claim": HOSTILE}
+    claim |= {"assuming": [CLOSED], "expected": "PROVED", "verdict": "PROVED", "refuted_by": None}
+    claim |= {"beyond_limits": None, "view": "dense", "seconds": 1, "reason": HOSTILE, "assumptions": []}
+    claim |= {"premises": [CLOSED], "certificate": HOSTILE, "counterexample": None}
     implied = {"from": "1@base", "to": "3@base", "claim": HOSTILE, "certificate": CLOSED}
     change = {"scenario": 1, "where": [CLOSED], "part": HOSTILE, "as": True, "changed": HOSTILE}
     change |= {"redundant": None, "verdict": "UNKNOWN", "assuming": HOSTILE, "claim": CLOSED}
     return {
         "overlap": hostile_overlap(),
-        "witness": {"verdicts": [entry | {"drives": [named]}]},
-        "verdicts": {
-            "verdicts": [{"verdict": "PROVED", "claim": HOSTILE, "assuming": [CLOSED], "set": HOSTILE}]
-        },
+        "witness": {"verdicts": [outcome(HOSTILE, named) | {"reason": CLOSED, "road": HOSTILE}]},
+        "verdicts": {"verdicts": [claim]},
         "compare": {"first": {"formula": HOSTILE}, "relation": CLOSED, "forward": {"drive": named}},
         "classify": {"classes": [entry | {"situations": 1}], "text": CLOSED, "claims": [{"kind": HOSTILE}]},
         "coverage": {

@@ -155,13 +155,13 @@ def test_every_limit_is_named_in_text_and_data():
         "rho=1",
     ):
         assert part in outcome.reason
-    told = outcome.as_data()
-    assert told["view"] == "grid"
-    assert told["limits"]["starts"] == ["-1072", "2027/2"]
-    assert told["limits"]["lanes"] == {"L": "main-2"}
-    assert told["limits"]["parameters"]["rho"] == "1"
-    assert told["limits"]["shown"]
-    assert outcome.reason.endswith(f"({', '.join(told['limits']['shown'])})")
+    assert outcome.kept.view == "grid"
+    told = outcome.kept.limits
+    assert told["starts"] == ["-1072", "2027/2"]
+    assert told["lanes"] == {"L": "main-2"}
+    assert told["parameters"]["rho"] == "1"
+    assert told["shown"]
+    assert outcome.reason.endswith(f"({', '.join(told['shown'])})")
     alone = ask_for("v_lon(SV) > 41 m/s", **SHORT)
     assert alone.limits.starts is None
     assert "starts" not in alone.reason

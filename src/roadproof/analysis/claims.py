@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.effort import Effort
 from roadproof.errors import InputError
-from roadproof.evidence.answers.proofs import SCHEMA as INDEX_SCHEMA
-from roadproof.evidence.heading import heading
+from roadproof.evidence.answers import proofs as kept
+from roadproof.evidence.answers.proofs import SCHEMA
+from roadproof.evidence.codec import ABSENT, read, write
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.traces import read_trace
@@ -23,12 +24,11 @@ from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
 from roadproof.stages import about
 from roadproof.study.shelf import Question, Shelf, specification_names
-from roadproof.verdict import Verdict
+from roadproof.verdict import ClaimVerdict, Verdict
 
 if TYPE_CHECKING:
     from roadproof.searching.question import SearchOptions, Setting
 
-SCHEMA = "roadproof/verdicts/1"
 _BY_TRACE, _BY_DRIVE = "trace", "trace or drive"
 
 
@@ -40,39 +40,41 @@ class Answered:
     settled: Settled
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> ClaimVerdict:
         return self.settled.verdict
 
     @property
-    def expected(self) -> Verdict:
+    def expected(self) -> ClaimVerdict:
         """PROVED-BOUNDED is as good as PROVED where the question was about drives up to a horizon."""
         weaker = self.settled.bounded and self.task.expected is Verdict.PROVED
         return Verdict.PROVED_BOUNDED if weaker else self.task.expected
 
-    def as_data(self, file: str | None = None) -> dict[str, Any]:
-        """As plain data; ``file``: where its certificate is."""
+    def as_settled(self, file: str | None = None, kernel: kept.KernelSays | None = None) -> kept.SettledClaim:
+        """As the answer has it; ``file``: where its certificate is; ``kernel``: what Coq says of it."""
         task, settled, result = self.task, self.settled, self.settled.result
-        return {
-            "property": task.id,
-            "part": task.part,
-            "scenario": task.scenario,
-            "set": task.set_name,
-            "claim": task.claim,
-            "assuming": list(task.assuming),
-            "expected": str(self.expected),
-            "verdict": str(settled.verdict),
-            "refuted_by": settled.refuted_by,
-            "beyond_limits": settled.beyond or None,
-            "view": "grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
-            "seconds": result.seconds,
-            "reason": result.reason,
-            **({"doubt": result.doubt.as_data()} if result.doubt is not None else {}),
-            **({"limits": settled.limits.as_json()} if settled.limits is not None else {}),
-            "assumptions": list(result.certificate.assumptions) if result.certificate else [],
-            "premises": list(result.certificate.assumed.premises) if result.certificate else [],
-            "certificate": file if result.certificate is not None else None,
-            "counterexample": _counterexample(settled),
-        }
+        certificate = result.certificate
+        return kept.SettledClaim(
+            property=task.id,
+            part=task.part,
+            scenario=task.scenario,
+            set=task.set_name,
+            claim=task.claim,
+            assuming=task.assuming,
+            expected=self.expected,
+            verdict=settled.verdict,
+            refuted_by=settled.refuted_by,
+            beyond_limits=settled.beyond or None,
+            view="grid" if settled.verdict is Verdict.PROVED_BOUNDED else "dense",
+            seconds=result.seconds,
+            reason=result.reason,
+            doubt=None if result.doubt is None else result.doubt.kept,
+            limits=None if settled.limits is None else settled.limits.as_json(),
+            assumptions=() if certificate is None else tuple(certificate.assumptions),
+            premises=() if certificate is None else tuple(certificate.assumed.premises),
+            certificate=None if certificate is None else file,
+            counterexample=_counterexample(settled),
+            kernel=kernel,
+        )
 
 
 def _counterexample(settled: Settled) -> dict[str, Any] | None:
@@ -124,7 +126,7 @@ class Claims:
         """Definitions and readings: claims that are proved later are kept beside the others."""
         options = dict(next(iter(self.specifications.values())).options)
         said = {"options": options, "specs": specification_names(self.library)}
-        return Question(INDEX_SCHEMA, said, {}, self.library, find_label)
+        return Question(SCHEMA, said, {}, self.library, find_label)
 
     def pieces(self, known: Mapping[str, Answered]) -> Sequence[Task]:
         return [task for name, task in self.named.items() if name not in known]
@@ -168,37 +170,38 @@ class Claims:
 
     def record(self, name: str, answer: Answered, shelf: Shelf) -> dict[str, Any]:
         task, settled, result = answer.task, answer.settled, answer.settled.result
-        entry: dict[str, Any] = {
-            "property": task.id,
-            "part": task.part,
-            "scenario": task.scenario,
-            "set": task.set_name,
-            "claim": task.claim,
-            **({"assuming": list(task.assuming)} if task.assuming else {}),
-            "verdict": str(answer.verdict),
-            "evidence": shelf.certificate(f"{task.name}.json", result.certificate),
-        }
+        evidence = shelf.certificate(f"{task.name}.json", result.certificate)
         if settled.drive is not None and result.certificate is None:
-            entry["evidence"] = shelf.drive(f"{task.name}-drive.json", settled.drive)
-        if entry["evidence"] is None:
-            entry["counterexample"] = _counterexample(settled)
-        return {"claim": entry, "reason": result.reason, "seconds": result.seconds, "asked": self._asked}
+            evidence = shelf.drive(f"{task.name}-drive.json", settled.drive)
+        claim = kept.Claim(
+            property=task.id,
+            part=task.part,
+            scenario=task.scenario,
+            set=task.set_name,
+            claim=task.claim,
+            assuming=task.assuming,
+            verdict=answer.verdict,
+            evidence=evidence,
+            counterexample=ABSENT if evidence is not None else _counterexample(settled),
+        )
+        record = kept.Record(claim=claim, reason=result.reason, seconds=result.seconds, asked=self._asked)
+        return write(record)
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answered]:
-        said = record["claim"]
-        assuming, verdict = tuple(said.get("assuming", ())), Verdict(said["verdict"])
-        name = name_of_claim(said["claim"], said["set"], assuming)
-        told = (said["property"], said["part"], "", said["scenario"], said["set"], said["claim"])
-        task = self.named.get(name) or Task(*told, verdict, assuming)
-        if task.claim.split() != said["claim"].split():
-            raise InputError(f"the answer '{name}' is about another claim: {said['claim'][:120]}")
+        found = read(kept.Record, record, "a kept answer")
+        said, verdict = found.claim, found.claim.verdict
+        name = name_of_claim(said.claim, said.set, said.assuming)
+        told = (said.property, said.part, "", said.scenario, said.set, said.claim)
+        task = self.named.get(name) or Task(*told, verdict, said.assuming)
+        if task.claim.split() != said.claim.split():
+            raise InputError(f"the answer '{name}' is about another claim: {said.claim[:120]}")
         refuted = verdict is Verdict.REFUTED
-        certificate = None if refuted else shelf.read_certificate(said["evidence"])
-        drive = shelf.read_drive(said["evidence"]) if refuted else None
-        trace = read_trace(said["counterexample"], name) if refuted and drive is None else None
+        certificate = None if refuted else shelf.read_certificate(said.evidence)
+        drive = shelf.read_drive(said.evidence) if refuted else None
+        trace = read_trace(said.counterexample, name) if refuted and drive is None else None
         if refuted and name in self.named:
-            self._check_refuted(name, record["asked"], drive)
-        result = Result(verdict, record["reason"], record["seconds"], 0.0, certificate, trace)
+            self._check_refuted(name, found.asked, drive)
+        result = Result(verdict, found.reason, found.seconds, 0.0, certificate, trace)
         return name, Answered(task, Settled(result, drive, None, refuted and self.within is not None))
 
     @property
@@ -222,14 +225,3 @@ class Claims:
 def name_of(task: Task) -> str:
     """Under which name the answer to a claim is kept, whatever the list calls it."""
     return name_of_claim(task.claim, task.set_name, task.assuming)
-
-
-def as_data(
-    answers: Sequence[Answered], library: Library, files: Mapping[str, str] | None = None
-) -> dict[str, Any]:
-    """All answers as plain data; ``files``: where certificates are, by the name of the answer."""
-    known = files or {}
-    return {
-        **heading(SCHEMA, library),
-        "verdicts": [x.as_data(known.get(name_of(x.task))) for x in answers],
-    }

@@ -17,7 +17,7 @@ from roadproof.analysis.placing import placed
 from roadproof.effort import Late
 from roadproof.elapsed import now, since
 from roadproof.evidence.answers import overlap as kept_answers
-from roadproof.evidence.answers.overlap import SCHEMA, Word
+from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
@@ -31,7 +31,7 @@ from roadproof.spec.elaborate import read_claim
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, likes_of, numbers_of
 from roadproof.study.shelf import Question, Shelf
-from roadproof.verdict import Verdict
+from roadproof.verdict import DriveVerdict, Verdict
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class PairVerdict:
 
     a: Scenario
     b: Scenario
-    verdict: Word
+    verdict: DriveVerdict
     query: Query | None = None
     reason: str = ""
     cores: tuple[Core, ...] = ()
@@ -271,7 +271,7 @@ class _Deciding:
             if found is not None:
                 return found
         sure = all(verdict in (Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN) for verdict in verdicts)
-        verdict: Word = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
+        verdict: DriveVerdict = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
         return PairVerdict(*pair, verdict, either(*left), "; ".join(dict.fromkeys(reasons)))
 
     def _core(self, query: Query, proof: Result | None = None) -> Core:

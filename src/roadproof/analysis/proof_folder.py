@@ -10,15 +10,16 @@ from typing import Any
 
 from roadproof.analysis.claims import Claims
 from roadproof.errors import UsageError
-from roadproof.evidence.answers.proofs import SCHEMA
+from roadproof.evidence.answers.proofs import SCHEMA, Claim, Index, Record
 from roadproof.evidence.answers.read import index_fields
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.proving.properties import name_of_claim
 from roadproof.spec.library import read_specification
 from roadproof.study.shelf import INDEX, write_index
 
-Entries = dict[str, Mapping[str, Any]]
+Entries = dict[str, Claim]
 
 
 def former_claims(folder: Path, claims: Claims) -> Entries:
@@ -37,12 +38,8 @@ def former_claims(folder: Path, claims: Claims) -> Entries:
             f"{folder} holds claims that were read with other options or specification files, or under "
             "another library: name another folder with --out"
         )
-    return {name_of_entry(x): x for x in data.items("claims")}
-
-
-def name_of_entry(entry: Mapping[str, Any]) -> str:
-    """Under which name the answer is kept that an entry of an index is about."""
-    return name_of_claim(str(entry["claim"]), str(entry["set"]), entry.get("assuming", ()))
+    known = read(Index, data.content, data.where).claims
+    return {name_of_claim(x.claim, x.set, x.assuming): x for x in known}
 
 
 def _read_alike(data: Fields, folder: Path, claims: Claims) -> bool:
@@ -63,11 +60,16 @@ def write_claims(folder: Path, claims: Claims, records: Mapping[str, Mapping[str
     former = former_claims(folder, claims)
     new = [name for name in claims.named if name in records]
     new += sorted(name for name in records if name not in claims.named)
-    entries: Entries = {**former, **{name: records[name]["claim"] for name in new}}
-    write_index(folder, {**claims.question.heading, "claims": list(entries.values())})
+    entries: Entries = {**former, **{name: claim_in(records[name]) for name in new}}
+    write_index(folder, write(Index(**claims.question.heading, claims=tuple(entries.values()))))
     for name in _files(former) - _files(entries):
         (folder / name).unlink(missing_ok=True)
 
 
 def _files(entries: Entries) -> set[str]:
-    return {Path(x["evidence"]).name for x in entries.values() if x.get("evidence")}
+    return {Path(x.evidence).name for x in entries.values() if x.evidence}
+
+
+def claim_in(record: Mapping[str, Any]) -> Claim:
+    """The entry of an index that a kept answer has."""
+    return read(Record, record, "a kept answer").claim

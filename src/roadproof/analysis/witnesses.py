@@ -8,7 +8,9 @@ from typing import Any
 
 from roadproof.effort import Effort
 from roadproof.errors import InputError
+from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
+from roadproof.evidence.codec import read, write
 from roadproof.logic import syntax
 from roadproof.logic.show import text
 from roadproof.searching import ask
@@ -66,51 +68,52 @@ class Witnessing:
     def record(self, name: str, answer: Outcome, shelf: Shelf) -> dict[str, Any]:
         shown = answer.impossibility
         values = self.named[name].setting.values
-        outcome = {
-            "scenario": answer.scenario,
-            "set": answer.set_name,
-            "formula": answer.query.text,
-            "parameters": {name: str(value) for name, value in sorted(values.items())},
-            "road": answer.road,
-            "verdict": str(answer.verdict),
-            "reason": answer.reason,
-            "natural": answer.natural,
-            "drives": [
+        outcome = kept.KeptOutcome(
+            scenario=answer.scenario,
+            set=answer.set_name,
+            formula=answer.query.text,
+            parameters={name: str(value) for name, value in sorted(values.items())},
+            road=answer.road,
+            verdict=answer.verdict,
+            reason=answer.reason,
+            natural=answer.natural,
+            drives=tuple(
                 shelf.drive(f"{stem}.json", judged)
                 for stem, judged in zip(stems(name, answer), answer.drives, strict=True)
-            ],
-            "certificate": None if shown is None else shelf.certificate(_proof(name), shown.certificate),
-            "core": [] if shown is None else list(shown.told),
-            "minimal": shown is not None and shown.minimal,
-            "seconds": {stage: round(value, 4) for stage, value in answer.seconds.items()},
-            "sizes": dict(answer.sizes),
-        }
-        return {"name": name, "outcome": outcome, "asked": _asked(self.named[name])}
+            ),
+            certificate=None if shown is None else shelf.certificate(_proof(name), shown.certificate),
+            core=() if shown is None else shown.told,
+            minimal=shown is not None and shown.minimal,
+            seconds={stage: round(value, 4) for stage, value in answer.seconds.items()},
+            sizes=dict(answer.sizes),
+        )
+        return write(kept.Record(name=name, outcome=outcome, asked=_asked(self.named[name])))
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Outcome]:
-        name, said = record["name"], record["outcome"]
+        found = read(kept.Record, record, "a kept answer")
+        name, said = found.name, found.outcome
         search = self.named.get(name)
-        if search is not None and record["asked"] != _asked(search):
+        if search is not None and found.asked != _asked(search):
             raise InputError(f"the answer '{name}' is that to another search")
-        home = self.searches[0].specification.in_set(said["set"])
-        query = read_claim(home, said["formula"]) if search is None else search.query
-        certificate = shelf.read_certificate(said["certificate"])
+        home = self.searches[0].specification.in_set(said.set)
+        query = read_claim(home, said.formula) if search is None else search.query
+        certificate = shelf.read_certificate(said.certificate)
         shown = None
         if certificate is not None:
             head = text(syntax.Claim(query.claim.given, syntax.Literal_(True))).removesuffix("true")
-            parts = (read_claim(home, (head if query.claim.given else "") + part) for part in said["core"])
-            shown = Impossibility(tuple(part.formula for part in parts), said["minimal"], certificate)
+            parts = (read_claim(home, (head if query.claim.given else "") + part) for part in said.core)
+            shown = Impossibility(tuple(part.formula for part in parts), said.minimal, certificate)
         return name, Outcome(
-            said["scenario"],
-            said["set"],
+            said.scenario,
+            said.set,
             query,
-            said["road"],
-            Verdict(said["verdict"]),
-            said["reason"],
-            tuple(x for x in map(shelf.read_drive, said["drives"]) if x is not None),
-            said["natural"],
-            said["seconds"],
-            said["sizes"],
+            said.road,
+            said.verdict,
+            said.reason,
+            tuple(x for x in map(shelf.read_drive, said.drives) if x is not None),
+            said.natural,
+            said.seconds,
+            said.sizes,
             shown,
         )
 

@@ -13,6 +13,7 @@ from roadproof.api.row import Row
 from roadproof.api.settings import one_of, work_of
 from roadproof.effort import Effort
 from roadproof.evidence.checking import Checker
+from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Acceptance, Finding, Ruled, exit_code, summary
 from roadproof.evidence.folder import conclude, survey
 from roadproof.evidence.heading import heading
@@ -70,7 +71,7 @@ class Checked:
         """As the plain data of ``--json``."""
         data: dict[str, Any] = {**heading(SCHEMA, self.library), "solver": self.solver}
         if self.kernel is not None:
-            data["kernel"] = self.kernel.as_data()
+            data["kernel"] = write(self.kernel.kept)
         findings = [_entry(x) for x in self.findings]
         return {
             **data,

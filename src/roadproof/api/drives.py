@@ -16,6 +16,8 @@ from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, one_of, searches_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
+from roadproof.evidence.answers.drives import Answer
+from roadproof.evidence.codec import write
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import make_folder, write_whole
@@ -107,7 +109,8 @@ class Witnesses(Studied[Witnessing, Outcome]):
         ]
 
     def as_data(self) -> dict[str, Any]:
-        return {**self.study.question.beginning, "verdicts": [x.as_data() for x in self.outcomes]}
+        beginning = self.study.question.beginning
+        return write(Answer(**beginning, verdicts=tuple(x.kept for x in self.outcomes)))
 
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
         return self.as_data()

@@ -5,11 +5,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from roadproof.deriving.prepare import prepare as prepare_drive
 from roadproof.errors import RoadproofError
 from roadproof.evidence import drive_file
+from roadproof.evidence.answers.shared import Kernel
 from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certificate_data
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Acceptance, Ruled
@@ -64,10 +64,15 @@ class Answered:
     def axioms(self) -> tuple[str, ...]:
         return tuple(sorted({name for x in self.rulings.values() for name in x.axioms}))
 
-    def as_data(self) -> dict[str, Any]:
-        """As plain data of ``--json``."""
-        said = {"coqc": self.version, "seconds": round(self.seconds, 1), "megabytes": round(self.megabytes)}
-        return {**said, "axioms": list(self.axioms)}
+    @property
+    def kept(self) -> Kernel:
+        """As answers have it."""
+        return Kernel(
+            coqc=self.version,
+            seconds=round(self.seconds, 1),
+            megabytes=round(self.megabytes),
+            axioms=self.axioms,
+        )
 
     def __str__(self) -> str:
         held = f"at most {self.megabytes:.0f} MB" if self.megabytes else "nothing asked"

@@ -7,9 +7,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
-from roadproof.analysis import claims
 from roadproof.analysis.claims import Answered, Claims, name_of
-from roadproof.analysis.proof_folder import former_claims, write_claims
+from roadproof.analysis.proof_folder import claim_in, former_claims, write_claims
 from roadproof.api import kernel as kernels
 from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, What, load
@@ -17,10 +16,14 @@ from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, models_of, one_of, setting, work_of
 from roadproof.api.studied import Studied
 from roadproof.errors import UsageError
+from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays
+from roadproof.evidence.codec import write
+from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import hold_if_any
 from roadproof.hands import Jobs, hands_of
 from roadproof.kernel import coq
+from roadproof.kernel.accept import Ruling
 from roadproof.proving.properties import OWN, Task, choose, template_properties
 from roadproof.report import claims as claims_text
 from roadproof.spec.elaborate import read_claim
@@ -30,7 +33,7 @@ from roadproof.spec.scenarios import are_numbers, read_numbers
 from roadproof.spec.values import Number
 from roadproof.stages import Listener, listening
 from roadproof.study.pool import Progress, Say
-from roadproof.verdict import ExitCode, Verdict, exit_code
+from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code
 from roadproof.world.vehicle import Vehicle
 
 _Engine: TypeAlias = Literal["dense", "smt", "milp"]
@@ -129,19 +132,23 @@ class Proofs(Studied[Claims, Answered]):
         ]
 
     def as_data(self) -> dict[str, Any]:
-        files = {name: x["claim"]["evidence"] for name, x in self.found.records.items()}
+        files = {name: claim_in(x).evidence for name, x in self.found.records.items()}
         named = {name: file for name, file in files.items() if isinstance(file, str)}
-        data = claims.as_data(self.answers, self.study.library, named)
-        if self.kernel is None:
-            return data
-        for x, entry in zip(self.answers, data["verdicts"], strict=True):
-            ruling = self.kernel.rulings.get(name_of(x.task))
-            if ruling is not None:
-                entry["kernel"] = ruling.as_data()
-        return {**data, "kernel": self.kernel.as_data()}
+        says = {} if self.kernel is None else self.kernel.rulings
+        answer = Answer(
+            **heading(ANSWER_SCHEMA, self.study.library),
+            verdicts=tuple(
+                x.as_settled(named.get(name), _said(says[name]) if name in says else None)
+                for x in self.answers
+                for name in [name_of(x.task)]
+            ),
+            kernel=None if self.kernel is None else self.kernel.kept,
+        )
+        return write(answer)
 
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-        return {**self.study.question.heading, "claims": [x["claim"] for x in records.values()]}
+        claims = tuple(claim_in(x) for x in records.values())
+        return write(Index(**self.study.question.heading, claims=claims))
 
     def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
         write_claims(folder, self.study, records)
@@ -215,7 +222,7 @@ def prove(
         vehicles if engine == "dense" else None,
         values_put_in(home, declared) if engine == "dense" else {},
     )
-    asked = claims_of(home, what, using.alone.set_name if using else None, Verdict(expect), said)
+    asked = claims_of(home, what, using.alone.set_name if using else None, claim_verdict(expect), said)
     asked = replace(asked, effort=work_of(effort, timeout), seek_drive=drive)
     if engine != "dense":
         if not asked.are_own:
@@ -226,6 +233,10 @@ def prove(
     with listening(stage):
         found = Proofs.asked(asked, out, jobs, progress, say)
     return found if kernel is None else found.put_to_kernel(jobs, progress)
+
+
+def _said(ruling: Ruling) -> KernelSays:
+    return KernelSays(says=str(ruling), reason=ruling.reason, premises=ruling.premises.count)
 
 
 def _premises(answer: Answered) -> str:
@@ -296,7 +307,7 @@ def claims_of(
     home: Definitions,
     what: Sequence[What | Under],
     set_name: str | None,
-    expected: Verdict = Verdict.PROVED,
+    expected: ClaimVerdict = Verdict.PROVED,
     said: Assuming | None = None,
 ) -> Claims:
     """What is claimed: the list's claims in a set, in all where None; or one's own in that of ``home``.
@@ -338,7 +349,7 @@ def _read(home: Definitions, what: What | Under) -> Under:
     return Under(home.read(claim), said)
 
 
-def _own(home: Definitions, claims: list[Under], expected: Verdict) -> list[Task]:
+def _own(home: Definitions, claims: list[Under], expected: ClaimVerdict) -> list[Task]:
     parts = [str(k) if len(claims) > 1 else "" for k in range(1, len(claims) + 1)]
     name = home.specification.set_name
     return [

@@ -143,6 +143,7 @@ def _asked(args: argparse.Namespace) -> "Claims":
     from roadproof.api.proofs import assuming, claims_of, values_put_in, within_limits
     from roadproof.proving.properties import read_claims
     from roadproof.spec.motion import read_under
+    from roadproof.verdict import claim_verdict
 
     home = read_definitions(args, [args.set_name or "base"])
     written = [] if args.file is None else read_claims(args.file)
@@ -152,7 +153,7 @@ def _asked(args: argparse.Namespace) -> "Claims":
     values = values_put_in(home, args.declared) if args.engine == "dense" else {}
     models = dict(named(args.vehicles, ""))
     said = assuming(args.assume, models if args.engine == "dense" else None, values)
-    asked = claims_of(home, what, args.set_name, Verdict(args.expect), said)
+    asked = claims_of(home, what, args.set_name, claim_verdict(args.expect), said)
     asked = replace(asked, effort=read_effort(args), seek_drive=not args.no_drive)
     if args.engine == "dense":
         return asked

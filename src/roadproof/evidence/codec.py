@@ -9,10 +9,21 @@ evidence of earlier versions; it is written all the same, but where it is marked
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
-from enum import StrEnum
+from enum import Enum, StrEnum
 from functools import cache
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, TypeAlias, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import (
+    Annotated,
+    Any,
+    Final,
+    Literal,
+    TypeAlias,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, text
@@ -60,6 +71,15 @@ LEFT_OUT = Mark("left out")
 """The field is left out where it has its default."""
 
 
+class Absent(Enum):
+    """What a field has that an answer leaves out, where null says something else."""
+
+    FIELD = "absent"
+
+
+ABSENT: Final = Absent.FIELD
+
+
 @dataclass(frozen=True)
 class Field:
     """A field of a definition: ``name`` in Python, ``key`` in JSON, ``notes`` from its annotation."""
@@ -92,7 +112,8 @@ def fields_of(kind: type) -> tuple[Field, ...]:
     for x in fields(kind):
         notes = notes_of(hints[x.name])
         key = next((note.name for note in notes if isinstance(note, Key)), x.name)
-        found.append(Field(x.name, key, hints[x.name], notes, x.default))
+        made = x.default if x.default_factory is MISSING else x.default_factory()
+        found.append(Field(x.name, key, hints[x.name], notes, made))
     return tuple(found)
 
 
@@ -233,7 +254,7 @@ def _word(kind: type[StrEnum]) -> Read:
 def _items(kind: Any) -> Read:
     """``kind``: the type of the items; an item of a definition is called by its name."""
     inner = bare(kind)
-    name = inner.__name__.lower() if is_dataclass(inner) and isinstance(inner, type) else "item"
+    name = _told(inner) if is_dataclass(inner) and isinstance(inner, type) else "item"
     readers: list[Read] = []
 
     def make(content: object, where: str) -> Any:
@@ -244,6 +265,11 @@ def _items(kind: Any) -> Read:
         return tuple(readers[0](x, f"{where}, {name} {number}") for number, x in enumerate(content, 1))
 
     return make
+
+
+def _told(kind: type) -> str:
+    """``settled claim`` of SettledClaim."""
+    return re.sub("(?<=.)(?=[A-Z])", " ", kind.__name__).lower()
 
 
 def _named(inner: Read) -> Read:

@@ -6,7 +6,7 @@ from enum import StrEnum
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
-from roadproof.evidence.codec import Doc, Field, Rule, bare, fields_of, notes_of
+from roadproof.evidence.codec import ABSENT, Doc, Field, Rule, bare, fields_of, notes_of
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 COMMON = "common.json"
@@ -27,6 +27,18 @@ class Shared:
 @dataclass(frozen=True)
 class Other:
     """A file of evidence is named, or stands here itself: the schema of the evidence."""
+
+    schema: str
+
+
+@dataclass(frozen=True)
+class File:
+    """A file beside the index is named, or none."""
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Evidence stands here itself: its schema."""
 
     schema: str
 
@@ -89,7 +101,7 @@ def _told(text: str) -> dict[str, str]:
 def _of_field(field: Field) -> dict[str, Any]:
     """The schema of a field; one that is left out is never null."""
     inner = bare(field.type)
-    if field.is_written or get_origin(inner) not in (Union, UnionType):
+    if field.is_written or field.default is ABSENT or get_origin(inner) not in (Union, UnionType):
         return _schema(field.type)
     return _schema(next(x for x in get_args(inner) if x is not NoneType))
 
@@ -117,6 +129,10 @@ def _inline(kind: Any, made: dict[str, Any]) -> dict[str, Any]:
                 made["description"] = text
             case Rule():
                 made |= _facets(note, made.get("type"))
+            case Whole(schema):
+                made = {"$ref": schema, **made}
+            case File():
+                made = {"anyOf": [{"type": "null"}, {"$ref": f"{COMMON}#/$defs/file"}], **made}
             case Other(schema):
                 file = {"$ref": "#/$defs/file"}
                 made = {"anyOf": [{"type": "null"}, file, {"$ref": schema}], **made}

@@ -2,19 +2,26 @@
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
-from roadproof.evidence.answers import order, overlap, redundancy, shared
-from roadproof.evidence.codec import notes_of
+from roadproof.evidence.answers import drives, order, overlap, proofs, redundancy, shared
+from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import COMMON, Shared, schema_of, shared_schemas
 
-ANSWERS = {
-    order: "roadproof order --json, and index.json of its folder: which scenarios imply which",
-    overlap: "roadproof overlap --json, and index.json of its folder: which scenarios hold together",
-    redundancy: "roadproof redundancy --json, and index.json of its folder: which parts could be left out",
+TITLES: Mapping[type, str] = {
+    proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
+    proofs.Answer: "roadproof prove --json: claims, proved or refuted",
+    drives.Answer: "roadproof witness --json: drives for scenarios and formulas",
+    order.Index: "roadproof order --json, and index.json of its folder: which scenarios imply which",
+    overlap.Index: "roadproof overlap --json, and index.json of its folder: which scenarios hold together",
+    redundancy.Index: (
+        "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
+    ),
 }
+RECORDS: Mapping[type, type] = {drives.Answer: drives.Record, order.Index: order.Record}
+"""Kept answers that are made of more than the index."""
 
 
 def shared_types() -> dict[str, Any]:
@@ -27,9 +34,10 @@ def shared_types() -> dict[str, Any]:
 
 def schemas(common: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     """The name and the content of each schema; ``common``: that of shared types, as it stands."""
-    for answer, title in ANSWERS.items():
-        name = f"{title.split()[1]}.json"
-        yield name, schema_of(answer.Index, answer.Record, name, title)
+    for kind, title in TITLES.items():
+        [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
+        name = f"{schema.split('/')[1]}.json"
+        yield name, schema_of(kind, RECORDS.get(kind, kind), name, title)
     definitions = {**common["$defs"], **shared_schemas(shared_types())}
     yield COMMON, {**common, "$defs": definitions}
 

@@ -8,7 +8,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.certificate import Certificate
@@ -57,10 +56,6 @@ class Ruling:
     def told(self) -> str:
         """The word, with the premises."""
         return f"{self} under {self.premises}, as premises" if self.premises.count else str(self)
-
-    def as_data(self) -> dict[str, Any]:
-        """As plain data of ``--json``."""
-        return {"says": str(self), "reason": self.reason, "premises": self.premises.count}
 
     def __str__(self) -> str:
         return f"{self.word} (lemma {self.lemma})" if self.lemma is not None else str(self.word)

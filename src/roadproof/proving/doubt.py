@@ -7,9 +7,10 @@ forms need a kind of reasoning that the prover does not have, so that more work 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 from roadproof.effort import Effort
+from roadproof.evidence.answers import proofs as kept
+from roadproof.evidence.codec import read
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of
@@ -133,15 +134,17 @@ class Doubt:
         more = f" (now {self.units:g})" if self.cause is Cause.WORK else ""
         return f"{self.cause.remedy}{more}"
 
-    def as_data(self) -> dict[str, Any]:
-        """As plain data of ``--json``."""
-        return {
+    @property
+    def kept(self) -> kept.Doubt:
+        """As the answer has it."""
+        said = {
             "cause": str(self.cause),
             "tried": [x.name.lower() for x in self.tried],
             "effort_helps": self.cause.effort_helps,
             "remedy": self.remedy,
             "detail": self.detail,
         }
+        return read(kept.Doubt, said, "a doubt")
 
     def __str__(self) -> str:
         if self.cause is Cause.WORK:

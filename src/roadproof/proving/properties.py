@@ -12,7 +12,7 @@ from pathlib import Path
 from roadproof.errors import UsageError
 from roadproof.spec.library import read_specification, unknown
 from roadproof.spec.motion import statement
-from roadproof.verdict import Verdict
+from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
 
 OWN = "claim"  # the id of claims that users bring
 _RANGE = re.compile(r"\s*(\d+)\s*(?:\.\.\s*(\d+)\s*)?")
@@ -33,7 +33,7 @@ class Task:
     scenario: int | None
     set_name: str
     claim: str
-    expected: Verdict
+    expected: ClaimVerdict
     assuming: tuple[str, ...] = ()
     of_all_values: bool = False
 
@@ -87,7 +87,7 @@ def _tasks(entry: dict[str, str | list[str]]) -> list[Task]:
             scenario,
             set_name,
             _at(str(entry["claim"]), scenario),
-            Verdict(str(entry.get("expected", Verdict.PROVED))),
+            claim_verdict(str(entry.get("expected", Verdict.PROVED))),
             of_all_values=entry.get("values") == "all",
         )
         for set_name in entry["sets"]

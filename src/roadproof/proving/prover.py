@@ -39,7 +39,7 @@ from roadproof.spec.motion import (
 )
 from roadproof.spec.query import Query
 from roadproof.stages import begin
-from roadproof.verdict import Verdict
+from roadproof.verdict import ClaimVerdict, Verdict
 
 # Ways to look, in turns: (ask for few instants, units of work). The last is given what is left.
 TURNS: tuple[tuple[bool, float], ...] = (
@@ -66,7 +66,7 @@ class Result:
     nothing else. Of an UNKNOWN ``stop`` says where the search stopped, and ``doubt`` its cause.
     """
 
-    verdict: Verdict
+    verdict: ClaimVerdict
     reason: str
     seconds: float
     work: float = 0.0
@@ -110,7 +110,7 @@ def prove(
     attempt = _Attempt(query, states, meter, is_moving(assumed.said))
 
     def result(
-        verdict: Verdict,
+        verdict: ClaimVerdict,
         reason: str = "",
         certificate: Certificate | None = None,
         countermodel: Countermodel | None = None,

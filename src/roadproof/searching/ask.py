@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
 
 from roadproof.effort import Late
 from roadproof.elapsed import now, since
+from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
 from roadproof.logic.formula import Formula
@@ -20,7 +20,7 @@ from roadproof.spec.bind import default_values
 from roadproof.spec.library import Library, Specification
 from roadproof.spec.query import Query
 from roadproof.stages import about, begin
-from roadproof.verdict import Verdict
+from roadproof.verdict import DriveVerdict, Verdict
 from roadproof.world.drive import Drive
 
 # Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
@@ -50,7 +50,7 @@ class Outcome:
     set_name: str
     query: Query
     road: str
-    verdict: Verdict
+    verdict: DriveVerdict
     reason: str
     drives: tuple[Judged, ...] = ()
     natural: bool = False
@@ -63,18 +63,26 @@ class Outcome:
         """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
         return self.reason if self.limits is None else self.limits.text(options)
 
-    def as_data(self) -> dict[str, Any]:
-        """The outcome as plain data."""
-        data: dict[str, Any] = {"scenario": self.scenario, "set": self.set_name, "formula": self.query.text}
-        data |= {"road": self.road, "verdict": str(self.verdict)}
-        data |= {"view": "dense" if self.limits is None else "grid", "reason": self.reason}
-        data |= {"natural": self.natural, "drives": [judged.as_data() for judged in self.drives]}
-        if self.limits is not None:
-            data["limits"] = self.limits.as_json()
-        if self.impossibility is not None:
-            data |= self.impossibility.as_data()
-        data |= {"seconds": {k: round(v, 4) for k, v in self.seconds.items()}, "sizes": dict(self.sizes)}
-        return data
+    @property
+    def kept(self) -> kept.Outcome:
+        """As the answer has it."""
+        shown = self.impossibility
+        return kept.Outcome(
+            scenario=self.scenario,
+            set=self.set_name,
+            formula=self.query.text,
+            road=self.road,
+            verdict=self.verdict,
+            view="dense" if self.limits is None else "grid",
+            reason=self.reason,
+            natural=self.natural,
+            drives=tuple(judged.as_data() for judged in self.drives),
+            limits=None if self.limits is None else self.limits.as_json(),
+            core=() if shown is None else shown.told,
+            certificate=None if shown is None else shown.plain,
+            seconds={stage: round(value, 4) for stage, value in self.seconds.items()},
+            sizes=dict(self.sizes),
+        )
 
 
 def answer(search: Search) -> Outcome:

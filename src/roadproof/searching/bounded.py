@@ -7,7 +7,7 @@ from roadproof.evidence.judged import Judged
 from roadproof.searching.ask import Search, ask
 from roadproof.searching.limits import PROVE_OPTIONS, Limits
 from roadproof.spec.compose import negation
-from roadproof.verdict import Verdict
+from roadproof.verdict import ClaimVerdict, Verdict
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class BoundedResult:
     PROVED where the negation is shown to be impossible for all time; ``certificate`` says how.
     """
 
-    verdict: Verdict
+    verdict: ClaimVerdict
     reason: str = ""
     drive: Judged | None = None
     certificate: Certificate | None = None

@@ -37,10 +37,10 @@ class Impossibility:
         """The core as texts."""
         return told_parts(self.core)
 
-    def as_data(self) -> dict[str, Any]:
-        """Core and certificate as plain data."""
-        plain = replace(self.certificate, tableau=None)  # which files alone have
-        return {"core": list(self.told), "certificate": certificate_data(plain)}
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The certificate as plain data."""
+        return certificate_data(replace(self.certificate, tableau=None))  # which files alone have
 
 
 def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:

@@ -28,7 +28,7 @@ from roadproof.solve.bounds import TooNonlinearError
 from roadproof.solve.exact import solve_exactly
 from roadproof.solve.milp import Solution, box_of, solve_mixed
 from roadproof.stages import begin
-from roadproof.verdict import Verdict
+from roadproof.verdict import DriveVerdict, Verdict
 from roadproof.world.drive import Drive
 
 # Units of work: the least for one exact search, and the most for one way to show that there is no drive.
@@ -44,7 +44,7 @@ class Attempt:
     ``seconds`` by stage.
     """
 
-    verdict: Verdict
+    verdict: DriveVerdict
     found: FoundDrive | None
     reason: str
     seconds: Mapping[str, float] = field(default_factory=dict)
@@ -164,7 +164,7 @@ class _Search:
         answer = self.none()
         return replace(answer, reason=doubt) if doubt and answer.verdict is Verdict.UNKNOWN else answer
 
-    def _answer(self, verdict: Verdict, found: FoundDrive | None, reason: str) -> Attempt:
+    def _answer(self, verdict: DriveVerdict, found: FoundDrive | None, reason: str) -> Attempt:
         return Attempt(verdict, found, reason, self.seconds, self.sizes)
 
     def _attempts(self) -> Iterator[tuple[Mapping[str, str], Grid, Assumptions]]:

@@ -23,7 +23,7 @@ from roadproof.searching.steady import steady_drive
 from roadproof.spec.library import Specification
 from roadproof.spec.motion import Assumed, is_moving, under_limits
 from roadproof.spec.query import Query
-from roadproof.verdict import Verdict
+from roadproof.verdict import ClaimVerdict, Verdict
 
 if TYPE_CHECKING:
     from roadproof.searching.ask import Search
@@ -45,7 +45,7 @@ class Settled:
     bounded: bool = False
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> ClaimVerdict:
         """A drive refutes also where no countermodel over points in time was found."""
         return Verdict.REFUTED if self.drive is not None else self.result.verdict
 

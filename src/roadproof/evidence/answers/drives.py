@@ -1,55 +1,165 @@
-"""Kept answers of ``roadproof witness``: drives of scenarios and formulas, or proofs that there is none."""
+"""The answer of ``roadproof witness``, and its kept answers: drives, or proofs that there is none."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Annotated, Any, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
 from roadproof.evidence.answers.proofs import shown
-from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields, rational
-from roadproof.spec.scenarios import Scenario, applied, name_of
-
-SCHEMA = "roadproof/witness/1"
-_OUTCOME = (
-    *("scenario", "set", "formula", "parameters", "road", "verdict", "reason", "natural"),
-    *("drives", "certificate", "core", "minimal", "seconds", "sizes"),
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.answers.shared import (
+    Heading,
+    KeptFile,
+    KeptLimits,
+    OneScenario,
+    Options,
+    Parameters,
+    Reason,
+    Seconds,
+    SetName,
+    Specifications,
 )
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, unchecked
+from roadproof.evidence.json_schema import File, Whole
+from roadproof.evidence.strict import Fields, rational
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.spec.scenarios import Scenario, applied, name_of
+from roadproof.verdict import DriveVerdict, Verdict
+
+SCHEMA: Final = "roadproof/witness/1"
+Road: TypeAlias = Annotated[str, UNCHECKED, Doc("Name of the road on which was searched.")]
+Natural: TypeAlias = Annotated[bool, UNCHECKED, Doc("Whether the first drive was found among natural ones.")]
+Stages: TypeAlias = Annotated[
+    Mapping[str, Seconds], UNCHECKED, Doc("By stage of the search, and all together, in s.")
+]
+Sizes: TypeAlias = Annotated[
+    Mapping[str, Annotated[int, Rule(minimum=0)]],
+    UNCHECKED,
+    Doc("Of the last problem that was solved: columns, rows, nodes, inequalities."),
+]
+Core: TypeAlias = Annotated[tuple[str, ...], UNCHECKED, Doc("Of an IMPOSSIBLE only: parts that clash.")]
 
 
-def _read(record: Fields, background: Background) -> Iterator[Entry]:
+@dataclass(frozen=True, kw_only=True)
+class KeptOutcome:
+    """An outcome that a run has kept, with its evidence in files."""
+
+    scenario: OneScenario
+    set: SetName
+    formula: FormulaText
+    parameters: Parameters
+    road: Road
+    verdict: DriveVerdict
+    reason: Reason
+    natural: Natural
+    drives: tuple[KeptFile, ...]
+    certificate: Annotated[Any, File(), Doc("Of an IMPOSSIBLE only.")]
+    core: Core
+    minimal: Annotated[bool, UNCHECKED, Doc("Whether no part of the core can be left out.")]
+    seconds: Stages
+    sizes: Sizes
+
+    def expected(self, common: Common) -> list[Formula]:
+        """What holds on the drives, or the claim that it never does."""
+        formula = common.formula(self.formula)
+        return [f.negation(formula) if self.verdict is Verdict.IMPOSSIBLE else formula]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A kept answer."""
+
+    name: Annotated[str, Rule(least=1), Doc("How the names of its files begin.")]
+    outcome: KeptOutcome
+    asked: Annotated[
+        str,
+        UNCHECKED,
+        Rule(pattern="^[0-9a-f]{16}$"),
+        Doc("Fingerprint of formula, road, vehicles, limits and options of the search."),
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """What is said once for all kept answers."""
+
+    options: Options
+    specs: Specifications
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What came of a search for drives."""
+
+    scenario: OneScenario
+    set: SetName
+    formula: FormulaText
+    road: Road
+    verdict: DriveVerdict
+    view: Annotated[Literal["dense", "grid"], Doc("grid: on samples up to a horizon, within the limits.")]
+    reason: Reason
+    natural: Natural
+    drives: tuple[Annotated[Any, Whole("drive.json")], ...]
+    limits: Annotated[KeptLimits | None, LEFT_OUT, Doc("Of a NONE-WITHIN only.")] = None
+    core: Annotated[Core, LEFT_OUT] = ()
+    certificate: Annotated[
+        Any, LEFT_OUT, Whole("certificate.json"), Doc("Of an IMPOSSIBLE only: that the formula never holds.")
+    ] = None
+    seconds: Stages = field(default_factory=dict)
+    sizes: Sizes = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(Heading):
+    """Drives for scenarios and formulas."""
+
+    schema: Literal["roadproof/witness/1"] = SCHEMA
+    verdicts: tuple[Outcome, ...]
+
+
+def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
     """An entry for each drive, or one for the proof."""
-    line = Fields(record.get("outcome"), f"{record.where}, outcome", _OUTCOME)
-    common, claim, verdict = background.at(line.text("set")), line.text("formula"), line.text("verdict")
-    scenario = line.whole("scenario") if line.has("scenario") else None
-    shows = shows_of(verdict, line.where, "impossibility", "drive")
-    given = line.mapping("parameters")
-    values = {name: rational(x, f"{line.where}, parameters.{name}") for name, x in given.items()}
-    fault = ""
-    if scenario is not None:
-        told = Scenario(scenario, common.set_name)
-        known = name_of(scenario) in common.specification.definitions
-        if not known or applied(common.specification, told).formula != common.formula(claim):
-            fault = f"{line.where} is called scenario {scenario}, but its formula is another: {claim[:120]}"
-    drives = [evidence_name(Fields({"drive": x}, line.where), "drive") for x in line.texts("drives")]
-    files = drives if shows == "drive" else [evidence_name(line, "certificate")]
-    if (shows == "drive" and line.has("certificate")) or (shows != "drive" and drives):
-        fault = f"{line.where}: {verdict} has evidence of another kind"
-    label = shown(None if scenario is None else ("", "", scenario), common.set_name)
-    for file in files or [None]:
-        key = (line.text("set"), " ".join(claim.split()), file)
-        yield Entry(common, line.where, key, verdict, label, shows, claim, file, values=values, fault=fault)
+    outcome, where = read_kept(Record, record).outcome, f"{record.where}, outcome"
+    common, verdict = background.at(outcome.set), outcome.verdict
+    shows = shows_of(verdict, where, "impossibility", "drive")
+    fault = _misnamed(outcome, common, where)
+    drives = [evidence_name(Fields({"drive": x}, where), "drive") for x in outcome.drives]
+    proof = evidence_name(Fields({"certificate": outcome.certificate}, where), "certificate")
+    if proof if shows == "drive" else drives:
+        fault = f"{where}: {verdict} has evidence of another kind"
+    label = shown(None if outcome.scenario is None else ("", "", outcome.scenario), common.set_name)
+    for file in (drives if shows == "drive" else [proof]) or [None]:
+        yield Entry(
+            common,
+            where,
+            (outcome.set, " ".join(outcome.formula.split()), file),
+            verdict,
+            label,
+            shows,
+            outcome.formula,
+            file,
+            values={x: rational(y, f"{where}, parameters.{x}") for x, y in outcome.parameters.items()},
+            fault=fault,
+            expected=partial(outcome.expected, common),
+        )
 
 
-READER = Reader(
-    SCHEMA,
-    said=("options", "specs"),
-    index=(),
-    read_index=lambda data, background: (),
-    record=("name", "outcome", "asked"),
-    read_record=_read,
+def _misnamed(outcome: KeptOutcome, common: Common, where: str) -> str:
+    """Why a formula is not the scenario that it is called, or nothing."""
+    if outcome.scenario is None:
+        return ""
+    known = name_of(outcome.scenario) in common.specification.definitions
+    told = Scenario(outcome.scenario, common.set_name)
+    if known and applied(common.specification, told).formula == common.formula(outcome.formula):
+        return ""
+    return f"{where} is called scenario {told.number}, but its formula is another: {outcome.formula[:120]}"
+
+
+READER = replace(
+    Reader.of(Said, Said, lambda data, background: (), Record, _of_record, lambda x: x.text("name"), SCHEMA),
     alone=True,
-    unchecked_kept=(
-        *(f"outcome.{x}" for x in ("reason", "road", "natural", "core", "minimal", "seconds", "sizes")),
-        "asked",
-    ),
-    file_name=lambda record: record.text("name"),
+    unchecked_kept=tuple(sorted(unchecked(Record), key=lambda path: path != "outcome.reason")),
 )

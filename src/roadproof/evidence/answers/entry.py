@@ -146,7 +146,7 @@ def mismatch(entry: Entry, said: Certificate | DriveFile) -> str:
         elif said.assumed.said != entry.assuming:
             there, here = (", ".join(x) or "nothing" for x in (said.assumed.said, entry.assuming))
             return f"{entry.where} assumes {here}, but its file {there}"
-        return _unexpected(entry, said) or _other_claim(entry, said)
+        return _other_claim(entry, said) or _unexpected(entry, said)
     except RoadproofError as error:
         return f"{entry.where}: {error}"
 

@@ -33,13 +33,12 @@ from roadproof.logic.formula import Formula
 from roadproof.spec.compose import both, eventually
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import LANE, Scenario, applied, vehicles_of
-from roadproof.verdict import Verdict
+from roadproof.verdict import DriveVerdict, Verdict
 
 SCHEMA: Final = "roadproof/overlap/1"
 Choice: TypeAlias = Annotated[
     Literal["same", "any"], Doc("Whether both have the same, or each its own."), Shared("choice")
 ]
-Word: TypeAlias = Literal[Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN, Verdict.UNKNOWN]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +57,7 @@ class Pair:
     b: Number
     set_a: SetName
     set_b: SetName
-    verdict: Word
+    verdict: DriveVerdict
     formula: Annotated[
         str,
         Doc(

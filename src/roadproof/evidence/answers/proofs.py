@@ -1,49 +1,145 @@
-"""The index that ``roadproof prove`` writes: claims with their verdicts."""
+"""The index that ``roadproof prove`` writes, and its answer: claims with their verdicts."""
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Annotated, Any, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
-from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields, read_assuming
-from roadproof.spec.motion import is_moving
-
-SCHEMA = "roadproof/index/1"
-_ENTRY = (
-    *("property", "part", "scenario", "set", "claim", "assuming", "verdict", "evidence", "counterexample"),
+from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.shared import (
+    Assuming,
+    Heading,
+    KeptKernel,
+    KeptLimits,
+    KeptTrace,
+    KernelWord,
+    OneScenario,
+    Options,
+    Reason,
+    Seconds,
+    SetName,
+    Specifications,
 )
+from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule, read
+from roadproof.evidence.json_schema import File, Shared
+from roadproof.evidence.strict import Fields
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.spec.elaborate import read_claim
+from roadproof.spec.motion import is_moving, under_limits
+from roadproof.verdict import ClaimVerdict, Verdict
+
+SCHEMA: Final = "roadproof/index/1"
+ANSWER_SCHEMA: Final = "roadproof/verdicts/1"
 OWN = "claim"  # what a claim is called that is no template property
+Property: TypeAlias = Annotated[str, Doc("Template property such as P1; claim for one of your own.")]
+Part: TypeAlias = Annotated[
+    str, Doc("Which part of the property, or which of several claims; empty where there is one.")
+]
 
 
-def read(data: Fields, background: Background) -> Iterator[Entry]:
-    """The entries of an index. Raises ``InputError``."""
-    for number, content in enumerate(data.items("claims"), 1):
-        yield _entry(Fields(content, f"{data.where}, claim {number}", _ENTRY), background)
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """A claim, with what shows its verdict."""
+
+    property: Property
+    part: Part
+    scenario: OneScenario
+    set: SetName
+    claim: FormulaText
+    assuming: Annotated[Assuming, LEFT_OUT] = ()
+    verdict: ClaimVerdict
+    evidence: Annotated[Any, File(), Doc("Certificate or drive file beside the index.")]
+    counterexample: Annotated[
+        KeptTrace | None,
+        LEFT_OUT,
+        Doc("Where there is no file: the trace that refutes the claim, or null."),
+    ] = ABSENT
+
+    def expected(self, common: Common) -> list[Formula]:
+        """What is proved; or of a claim that is refuted what holds on the drive."""
+        claim = read_claim(common.specification, self.claim)
+        if self.verdict is not Verdict.REFUTED:
+            return [claim.formula]
+        return [f.negation(under_limits(common.specification, claim, self.assuming).formula)]
 
 
-def _entry(line: Fields, background: Background) -> Entry:
-    claim, set_name, verdict = line.text("claim"), line.text("set"), line.text("verdict")
-    scenario = line.whole("scenario") if line.get("scenario") is not None else None
-    told = (line.text("property"), line.text("part"), scenario)
-    assuming = read_assuming(line) if "assuming" in line.content else ()
-    label = None if is_moving(assuming) else background.find_label(claim, set_name)
-    own = told[0] == OWN and scenario is None and (not told[1] or told[1].isdecimal())
-    fault = "" if told == label or own else misnamed(line.where, told, label)
-    if is_moving(assuming) and line.has("counterexample"):
-        fault = f"{line.where} assumes motion, so that only a drive refutes it: a trace may jump"
+def trace_of(claim: Claim) -> Any:
+    """The trace that refutes a claim, or None."""
+    return None if claim.counterexample is ABSENT else claim.counterexample
+
+
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """What an index says once for all claims; indices of earlier versions do not."""
+
+    options: Options = field(default_factory=dict)
+    specs: Specifications = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Index(Said, Heading):
+    """Claims with the files that show them.
+
+    Folders of earlier versions have no roadproof, library, options, specs.
+    """
+
+    schema: Literal["roadproof/index/1"] = SCHEMA
+    claims: tuple[Claim, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A kept answer."""
+
+    claim: Claim
+    reason: Reason
+    seconds: Seconds
+    asked: Annotated[
+        str,
+        UNCHECKED,
+        Rule(pattern="^(trace|trace or drive|(smt|milp) [0-9a-f]{16})$"),
+        Doc(
+            "What a counterexample was looked for among: traces, also drives, or drives within limits, of "
+            "which this is a fingerprint."
+        ),
+    ]
+
+
+def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
+    for number, claim in enumerate(read(Index, data.content, data.where).claims, 1):
+        yield _entry(claim, f"{data.where}, claim {number}", background)
+
+
+def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
+    yield _entry(read_kept(Record, record).claim, f"{record.where}, claim", background)
+
+
+def _entry(claim: Claim, where: str, background: Background) -> Entry:
+    told = (claim.property, claim.part, claim.scenario)
+    moving = is_moving(claim.assuming)
+    label = None if moving else background.find_label(claim.claim, claim.set)
+    own = told[0] == OWN and claim.scenario is None and (not claim.part or claim.part.isdecimal())
+    fault = "" if told == label or own else misnamed(where, told, label)
+    if moving and trace_of(claim) is not None:
+        fault = f"{where} assumes motion, so that only a drive refutes it: a trace may jump"
+    common = background.at(claim.set)
     return Entry(
-        background.at(set_name),
-        line.where,
-        (" ".join(claim.split()), set_name, assuming),
-        verdict,
-        shown(label, set_name),
-        shows_of(verdict, line.where),
-        claim,
-        evidence_name(line, "evidence"),
-        _trace(line),
-        unchecked=unchecked_of(verdict),
+        common,
+        where,
+        (" ".join(claim.claim.split()), claim.set, claim.assuming),
+        claim.verdict,
+        shown(label, claim.set),
+        shows_of(claim.verdict, where),
+        claim.claim,
+        evidence_name(Fields({"evidence": claim.evidence}, where), "evidence"),
+        trace_of(claim),
+        unchecked=unchecked_of(claim.verdict),
         fault=fault,
-        assuming=assuming,
+        assuming=claim.assuming,
+        expected=partial(claim.expected, common),
     )
 
 
@@ -65,18 +161,98 @@ def misnamed(where: str, told: tuple[str, str, int | None], label: tuple[str, st
     return f"{where} is called {shown(told, '')[:60]}, but its claim is {right}"
 
 
-def _trace(line: Fields) -> Any:
-    return line.content.get("counterexample")
-
-
-READER = Reader(
-    SCHEMA,
-    ("options", "specs"),
-    ("claims",),
-    read,
-    record=("claim", "reason", "seconds", "asked"),
-    unchecked_kept=("reason", "seconds", "asked"),
-    read_record=lambda record, background: [
-        _entry(Fields(record.get("claim"), f"{record.where}, claim", _ENTRY), background)
-    ],
+READER = replace(
+    Reader.of(Index, Said, _of_index, Record, _of_record), unchecked_kept=("reason", "seconds", "asked")
 )
+
+
+# --- the answer ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class Doubt:
+    """Of an UNKNOWN: its cause, what was tried, and the option or premise that helps."""
+
+    cause: Literal[
+        "work",
+        "clock",
+        "process",
+        "solver",
+        "place",
+        "facts",
+        "certificate",
+        "lanes",
+        "induction",
+        "alternation",
+        "first-instant",
+        "second-order",
+    ]
+    tried: tuple[Literal["proof", "traces", "drives"], ...]
+    effort_helps: Annotated[bool, Doc("Whether a higher --effort or --timeout can change the answer.")]
+    remedy: str
+    detail: Annotated[str, Doc("What a solver or process said; else empty.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class KernelSays:
+    """What Coq says of the proof, with --kernel."""
+
+    says: KernelWord
+    reason: Reason
+    premises: Annotated[int, Rule(minimum=0), Doc("How many limits and facts about motion are premises.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SettledClaim:
+    """A claim, with all that is known of it."""
+
+    property: Property
+    part: Part
+    scenario: OneScenario
+    set: SetName
+    claim: FormulaText
+    assuming: Annotated[
+        tuple[FormulaText, ...],
+        Doc("What the claim is said under; empty where it is about all traces."),
+    ]
+    expected: Annotated[ClaimVerdict, Doc("The verdict with which the exit code is 0.")]
+    verdict: ClaimVerdict
+    refuted_by: Annotated[
+        Literal["drive", "trace"] | None,
+        Doc("Of a REFUTED: a drive, or a trace over points in time, which may jump as no vehicle can."),
+    ]
+    beyond_limits: Annotated[
+        str | None,
+        Doc("How a refuting drive leaves the limits of the shipped vehicles; null where it keeps them."),
+    ]
+    view: Annotated[Literal["dense", "grid"], Doc("grid: on samples up to a horizon, within the limits.")]
+    seconds: Seconds
+    reason: Reason
+    doubt: Annotated[Doubt | None, LEFT_OUT] = None
+    limits: Annotated[KeptLimits | None, LEFT_OUT, Doc("Of a PROVED-BOUNDED only.")] = None
+    assumptions: Annotated[tuple[str, ...], Doc("Declared bounds that the proof used.")]
+    premises: Annotated[
+        tuple[str, ...],
+        Doc(
+            "Limits and facts about motion that the certificate has as premises; empty where the proof uses "
+            "none of what is assumed."
+        ),
+    ]
+    certificate: Annotated[
+        str | None, Doc("File with the certificate; null without --out, and where there is none.")
+    ]
+    counterexample: Annotated[
+        Any,
+        Doc("What refutes the claim, judged: a drive, or else a trace; null where nothing does."),
+        Shared("counterexample", by_hand=True),
+    ]
+    kernel: Annotated[KernelSays | None, LEFT_OUT] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(Heading):
+    """Claims, proved or refuted."""
+
+    schema: Literal["roadproof/verdicts/1"] = ANSWER_SCHEMA
+    verdicts: tuple[SettledClaim, ...]
+    kernel: Annotated[KeptKernel | None, LEFT_OUT] = None

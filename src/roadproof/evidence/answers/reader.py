@@ -136,16 +136,19 @@ class Reader:
         record: type,
         read_record: Read,
         file_name: Callable[[Fields], str | None] = _without_name,
+        schema: str = "",
     ) -> "Reader":
-        """The reader of an index that is defined as ``index``, and whose kept answers are ``record``."""
+        """The reader of an index that is defined as ``index``, and whose kept answers are ``record``.
+
+        ``schema``: where there is no index.
+        """
         every = {x.key: x for x in fields_of(index)}
         once = tuple(x.key for x in fields_of(said))
         left = tuple(x for x in every if x not in (*HEADING, *once))
         kept = tuple(x.key for x in fields_of(record))
-        [schema] = get_args(every["schema"].type)
         of_record = unchecked(record)
         return Reader(
-            schema,
+            schema or get_args(every["schema"].type)[0],
             once,
             left,
             read_index,

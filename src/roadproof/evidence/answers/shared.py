@@ -12,6 +12,22 @@ Formula: TypeAlias = Annotated[
 ]
 Number: TypeAlias = Annotated[int, Rule(minimum=0), Doc("Number of a scenario."), Shared("number")]
 SetName: TypeAlias = Annotated[str, Rule(least=1), Doc("Name of a spec set."), Shared("set")]
+KeptFile: TypeAlias = Annotated[Any, Shared("file", by_hand=True)]
+OneScenario: TypeAlias = Annotated[int | None, Shared("scenario", by_hand=True)]
+Assuming: TypeAlias = Annotated[
+    tuple[Formula, ...],
+    Rule(least=1),
+    Doc(
+        "What the claim is said under: motion, and then limits such as a_lon(SV) <= 3 m/s^2; then, or alone, "
+        "values of parameters such as minDanger = 0.6 s. Evidence that assumes nothing does not have it."
+    ),
+    Shared("assuming"),
+]
+KeptLimits: TypeAlias = Annotated[Any, Shared("limits", by_hand=True)]
+
+KernelWord: TypeAlias = Annotated[
+    str, Rule(pattern=r"^(accepted|refused|unknown( \(lemma [0-9]+\))?)$"), Shared("kernel_word")
+]
 SetNames: TypeAlias = Annotated[
     tuple[SetName, ...],
     Rule(least=1),
@@ -36,6 +52,23 @@ Seconds: TypeAlias = Annotated[
     UNCHECKED,
     Doc("How long it took, in s; differs from run to run."),
     Shared("seconds"),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kernel:
+    """What Coq needed, and the axioms that all that it accepted stands on."""
+
+    coqc: Annotated[str, Doc("Its version.")]
+    seconds: Seconds
+    megabytes: Annotated[int, Rule(minimum=0)]
+    axioms: tuple[str, ...]
+
+
+KeptKernel: TypeAlias = Annotated[
+    Kernel,
+    Doc("With --kernel: what Coq needed, and the axioms that all that it accepted stands on."),
+    Shared("kernel"),
 ]
 Reason: TypeAlias = Annotated[
     str,

@@ -2,15 +2,18 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Any
 
+from roadproof.evidence.answers import drives
+from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim, Index, SettledClaim
+from roadproof.evidence.codec import read
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import core, counts, filtered, folded, verdict, words_in
+from roadproof.report.page.pieces import core, counts, filtered, folded, verdict
 from roadproof.report.page.results import Result
 from roadproof.spec.motion import statement
 from roadproof.study.shelf import INDEX
+from roadproof.verdict import Verdict
 
 
 def evidence(findings: Sequence[Finding], book: Book, solver: str) -> Markup:
@@ -44,58 +47,63 @@ def _notes(finding: Finding) -> str:
 
 def claims(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """An index of claims, or the answer of ``prove --json``."""
-    entries = result.data.get("claims") or result.data.get("verdicts") or ()
+    entries = [*_entries_of(result)]
     rows: list[tuple[Content, ...]] = []
     refuted: list[Markup] = []
     accepted = 0
     for number, x in enumerate(entries, 1):
-        finding = book.finding(result.folder, x.get("evidence") or x.get("certificate"))
+        finding = book.finding(result.folder, x.evidence if isinstance(x, Claim) else x.certificate)
         if finding is None and result.folder is not None:
             finding = book.inside.get(f"{result.folder / INDEX}, claim {number}")
         accepted += finding is not None and finding.outcome is Acceptance.ACCEPTED
-        claim = tag("code", statement(tuple(x.get("assuming") or ()), str(x.get("claim", ""))))
+        claim = tag("code", statement(x.assuming, x.claim))
         outcome = "" if finding is None else str(finding.outcome)
-        rows.append((verdict(x.get("verdict")), _label(x), x.get("set"), claim, outcome))
-        if x.get("verdict") == "REFUTED":
+        rows.append((verdict(x.verdict), _label(x), x.set, claim, outcome))
+        if x.verdict is Verdict.REFUTED:
             refuted.append(folded((verdict("REFUTED"), f" {_label(x)} ", claim), _against(x, result, book)))
     told = f"; the evidence of {accepted} was accepted when this page was made" if accepted else ""
     head = ("verdict", "property", "set", "claim", "evidence")
     line = tag(
         "p",
         f"{len(entries)} claim{'s' if len(entries) != 1 else ''}: ",
-        counts(words_in(entries)),
+        counts(x.verdict for x in entries),
         told,
     )
     return joined([line, filtered(table(head, rows)), *refuted])
 
 
-def _label(entry: Mapping[str, Any]) -> str:
-    name, part, scenario = (entry.get(x) for x in ("property", "part", "scenario"))
-    if not isinstance(name, str) or name == "claim":
+def _entries_of(result: Result) -> Sequence[Claim | SettledClaim]:
+    if result.schema == ANSWER_SCHEMA:
+        return read(Answer, result.data, result.name).verdicts
+    return read(Index, result.data, result.name).claims
+
+
+def _label(claim: Claim | SettledClaim) -> str:
+    if claim.property == OWN:
         return ""
-    return f"{name}{f'-{part}' if part else ''}{'' if scenario is None else f' {scenario}'}"
+    scenario = "" if claim.scenario is None else f" {claim.scenario}"
+    return f"{claim.property}{f'-{claim.part}' if claim.part else ''}{scenario}"
 
 
-def _against(entry: Mapping[str, Any], result: Result, book: Book) -> Markup:
-    drive, name = (entry.get("counterexample") or {}).get("drive"), entry.get("evidence")
-    if isinstance(drive, Mapping):
-        return book.drive(drive)
-    if result.folder is not None and isinstance(name, str):
-        return book.drive(result.folder / name)
+def _against(claim: Claim | SettledClaim, result: Result, book: Book) -> Markup:
+    if isinstance(claim, SettledClaim) and claim.refuted_by == "drive":
+        return book.drive(claim.counterexample["drive"])
+    if isinstance(claim, Claim) and claim.evidence is not None and result.folder is not None:
+        return book.drive(result.folder / claim.evidence)
     return tag("p", "Refuted by a trace over points in time, which may jump; it is in the result.")
 
 
 def witnesses(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """The answer of ``witness --json``."""
     made = []
-    for x in result.data.get("verdicts", ()):
-        number = x.get("scenario")
-        called = f"scenario {number} {words.get(number, '')} " if isinstance(number, int) else ""
-        summary = (verdict(x.get("verdict")), " ", tag("b", called), tag("code", x.get("formula")))
-        inside = [tag("p", x["reason"])] if x.get("reason") else []
-        inside += [core(x["core"])] if x.get("core") else []
-        made.append(folded(summary, *inside, *(book.drive(y) for y in x.get("drives", ()))))
-    return joined([tag("p", counts(words_in(result.data.get("verdicts", ())))), *made])
+    outcomes = read(drives.Answer, result.data, result.name).verdicts
+    for x in outcomes:
+        called = "" if x.scenario is None else f"scenario {x.scenario} {words.get(x.scenario, '')} "
+        summary = (verdict(x.verdict), " ", tag("b", called), tag("code", x.formula))
+        inside = [tag("p", x.reason)] if x.reason else []
+        inside += [core(x.core)] if x.core else []
+        made.append(folded(summary, *inside, *(book.drive(y) for y in x.drives)))
+    return joined([tag("p", counts(x.verdict for x in outcomes)), *made])
 
 
 _RELATIONS = {
