@@ -154,7 +154,7 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
             "drivers": [{"min_danger": "3/5", "set": HOSTILE, "driver": CLOSED, "unpreventable": 2}],
         },
         "preventable": hostile_plates(named),
-        "explore": {"explored": [explored(named)]},
+        "explore": {**SAID, "view": "dense", "seconds": 1, "explored": [explored(named)]},
         "order": {
             **{"sets": ["base"], **SAID, "view": "dense", "seconds": 1},
             "kinds": [["1@base", "2@base"], ["3@base"]],
@@ -204,9 +204,11 @@ def explored(drive: dict) -> dict:
         "endless": True,
     }
     return {
-        "scenario": 1,
-        "formula": HOSTILE,
-        "vary": [{"name": HOSTILE, "unit": "s"}, {"name": CLOSED, "unit": "unitless"}],
+        **{"scenario": 1, "set": HOSTILE, "formula": HOSTILE, "searches": 1, "drives": 1, "seconds": 1},
+        "vary": [
+            {"name": HOSTILE, "unit": "s", "low": "0", "high": "1"},
+            {"name": CLOSED, "unit": "unitless", "low": "0", "high": "1"},
+        ],
         "values": [found, none],
         "boundaries": [{"held": found, "missed": none, "surely": {**none, "at": ["2", "1/3"]}}],
         "extremes": [{"sense": "least", "measure": HOSTILE, "when": CLOSED, "unit": HOSTILE, **limits}],

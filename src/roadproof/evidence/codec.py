@@ -50,10 +50,11 @@ class Key:
 @dataclass(frozen=True)
 class Rule:
     """What values of a type have to be: texts match ``pattern`` and have ``least`` characters, numbers are at
-    least ``minimum``, lists have ``least`` items.
+    least ``minimum``, lists have ``least`` items. ``called``: what a text that does not match is not.
     """
 
     pattern: str = ""
+    called: str = ""
     minimum: int | None = None
     least: int = 0
 
@@ -179,8 +180,10 @@ def _ruled(inner: Read, rule: Rule) -> Read:
 
     def make(content: object, where: str) -> Any:
         found = inner(content, where)
-        if isinstance(found, str) and not (pattern.search(found) and len(found) >= rule.least):
-            raise InputError(f"{where}: {_shown(content)} is not as it has to be: {rule.pattern or 'a text'}")
+        if isinstance(found, str) and len(found) < rule.least:
+            raise InputError(f"{where}: the text is empty")
+        if isinstance(found, str) and not pattern.search(found):
+            raise InputError(f"{where}: {_shown(content)} is no {rule.called or f'text like {rule.pattern}'}")
         if rule.minimum is not None and isinstance(found, int | float) and found < rule.minimum:
             raise InputError(f"{where}: {_shown(content)} is below {rule.minimum}")
         if isinstance(found, tuple | dict) and len(found) < rule.least:

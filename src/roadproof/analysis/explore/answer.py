@@ -11,7 +11,7 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.searching.ask import Search
 from roadproof.spec.query import Query
-from roadproof.verdict import Verdict
+from roadproof.verdict import DriveVerdict, Verdict
 
 
 def say_nothing(text: str) -> None:
@@ -51,7 +51,7 @@ class PointFinding:
     """
 
     at: Point
-    verdict: Verdict
+    verdict: DriveVerdict
     query: Query
     reason: str = ""
     drive: Judged | None = None

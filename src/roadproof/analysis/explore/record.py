@@ -1,46 +1,47 @@
-"""An exploration as plain data, and back: the only place where its answers become JSON."""
+"""An exploration as it is kept, and back."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
 
 from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
 from roadproof.analysis.explore.extreme import Sought, soughts_of
 from roadproof.analysis.explore.knobs import Point
 from roadproof.errors import InputError
+from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.certificate import Certificate
 from roadproof.spec.query import Query
 from roadproof.study.shelf import Shelf
 from roadproof.units import unit_text
-from roadproof.verdict import Verdict
 
-_BOUNDARY = ("held", "missed", "surely")
 _EXTREME = ("best", "missed", "surely")
 
 
-def as_data(name: str, asked: Explorable, explored: Explored, shelf: Shelf) -> dict[str, Any]:
+def as_kept(name: str, asked: Explorable, explored: Explored, shelf: Shelf) -> kept.Exploration:
     """What was explored under a ``name``, with which the names of its files begin."""
     search, writing = asked.search, _Writing(shelf)
-    data: dict[str, Any] = {
-        "scenario": search.scenario,
-        "set": search.specification.set_name,
-        "formula": search.query.text,
-        "vary": [
-            {"name": knob.name, "unit": knob.unit, "low": str(knob.low), "high": str(knob.high)}
+    return kept.Exploration(
+        scenario=search.scenario,
+        set=search.specification.set_name,
+        formula=search.query.text,
+        vary=tuple(
+            kept.Varied(name=knob.name, unit=knob.unit, low=str(knob.low), high=str(knob.high))
             for knob in asked.knobs
-        ],
-        "values": [writing.finding(x, f"{name}-value-{k:03}") for k, x in enumerate(explored.findings, 1)],
-        "boundaries": [
-            {side: writing.finding(getattr(x, side), _boundary_file(name, k, side)) for side in _BOUNDARY}
+        ),
+        values=tuple(writing.finding(x, f"{name}-value-{k:03}") for k, x in enumerate(explored.findings, 1)),
+        boundaries=tuple(
+            kept.Boundary(
+                held=writing.finding(x.held, _boundary_file(name, k, "held")),
+                missed=writing.finding(x.missed, _boundary_file(name, k, "missed")),
+                surely=writing.side(x.surely, _boundary_file(name, k, "surely")),
+            )
             for k, x in enumerate(explored.boundaries, 1)
-        ],
-        "searches": explored.searches,
-        "drives": explored.drives,
-        "extremes": [writing.extreme(x, name, k) for k, x in enumerate(explored.extremes, 1)],
-        "seconds": round(explored.seconds, 1),
-    }
-    return data if shelf.folder is None else {**data, "stem": name}
+        ),
+        searches=explored.searches,
+        drives=explored.drives,
+        extremes=tuple(writing.extreme(x, name, k) for k, x in enumerate(explored.extremes, 1)),
+        seconds=round(explored.seconds, 1),
+        stem="" if shelf.folder is None else name,
+    )
 
 
 def ends_of(name: str, explored: Explored) -> list[tuple[str, PointFinding]]:
@@ -66,67 +67,64 @@ class _Writing:
         self.shelf = shelf
         self.certificates: list[tuple[Certificate, object]] = []
 
-    def finding(self, finding: PointFinding | None, file: str) -> dict[str, Any] | None:
-        if finding is None:
-            return None
-        return {
-            "at": [str(value) for value in finding.at],
-            "verdict": str(finding.verdict),
-            "formula": finding.query.text,
-            "reason": finding.reason,
-            "number": finding.number,
-            "drive": self.shelf.drive(f"{file}.json", finding.drive),
-            "certificate": self.certificate(finding.certificate, file),
-            **({"assuming": list(finding.assuming)} if finding.assuming else {}),
-        }
+    def finding(self, finding: PointFinding, file: str) -> kept.Finding:
+        return kept.Finding(
+            at=tuple(map(str, finding.at)),
+            verdict=finding.verdict,
+            formula=finding.query.text,
+            reason=finding.reason,
+            number=finding.number,
+            drive=self.shelf.drive(f"{file}.json", finding.drive),
+            certificate=self.certificate(finding.certificate, file),
+            assuming=finding.assuming,
+        )
+
+    def side(self, finding: PointFinding | None, file: str) -> kept.Finding | None:
+        return None if finding is None else self.finding(finding, file)
 
     def certificate(self, certificate: Certificate | None, file: str) -> object:
         if certificate is None:
             return None
-        for known, kept in self.certificates:
+        for known, file_or_data in self.certificates:
             if known == certificate:
-                return kept
+                return file_or_data
         self.certificates.append((certificate, self.shelf.certificate(f"{file}.json", certificate)))
         return self.certificates[-1][1]
 
-    def extreme(self, extreme: Extreme, name: str, number: int) -> dict[str, Any]:
-        measure = extreme.measure
-        sides = {
-            side: self.finding(getattr(extreme, side), _extreme_file(name, extreme, number, side))
-            for side in _EXTREME
-        }
-        return {
-            "sense": measure.sense,
-            "measure": measure.text,
-            "when": measure.when,
-            "unit": unit_text(measure.dimension),
-            "point": [str(value) for value in extreme.point],
-            **sides,
-            "endless": extreme.endless,
-            "searches": extreme.searches,
-        }
+    def extreme(self, extreme: Extreme, name: str, number: int) -> kept.Extreme:
+        measure, sides = extreme.measure, (extreme.best, extreme.missed, extreme.surely)
+        best, missed, surely = (
+            self.side(x, _extreme_file(name, extreme, number, side))
+            for x, side in zip(sides, _EXTREME, strict=True)
+        )
+        return kept.Extreme(
+            sense=measure.sense,
+            measure=measure.text,
+            when=measure.when,
+            unit=unit_text(measure.dimension),
+            point=tuple(map(str, extreme.point)),
+            best=best,
+            missed=missed,
+            surely=surely,
+            endless=extreme.endless,
+            searches=extreme.searches,
+        )
 
 
-def read_data(asked: Explorable, data: Mapping[str, Any], shelf: Shelf) -> Explored:
-    """The inverse of ``as_data``. Raises ``InputError`` where it is no whole answer to what is asked."""
+def explored_of(asked: Explorable, said: kept.Exploration, shelf: Shelf) -> Explored:
+    """The inverse of ``as_kept``. Raises ``InputError`` where it is no whole answer to what is asked."""
     reading = _Reading(asked, shelf)
-    findings = tuple(reading.at_point(x) for x in data["values"])
+    findings = tuple(reading.at_point(x) for x in said.values)
     if [x.at for x in findings] != asked.points:
         raise InputError(
             f"{len(findings)} findings, not at the {len(asked.points)} values that are asked for"
         )
-    explored = Explored(
-        findings,
-        tuple(reading.boundary(x) for x in data["boundaries"]),
-        (),
-        data["searches"],
-        data["drives"],
-        data["seconds"],
-    )
+    boundaries = tuple(reading.boundary(x) for x in said.boundaries)
+    explored = Explored(findings, boundaries, (), said.searches, said.drives, said.seconds)
     soughts = [x for measure in asked.measures for x in soughts_of(asked, explored, measure)]
-    if len(soughts) != len(data["extremes"]):
-        raise InputError(f"{len(data['extremes'])} extremes of the {len(soughts)} that are asked for")
-    extremes = (reading.extreme(x, y) for x, y in zip(soughts, data["extremes"], strict=True))
+    if len(soughts) != len(said.extremes):
+        raise InputError(f"{len(said.extremes)} extremes of the {len(soughts)} that are asked for")
+    extremes = (reading.extreme(x, y) for x, y in zip(soughts, said.extremes, strict=True))
     return replace(explored, extremes=tuple(extremes))
 
 
@@ -135,42 +133,41 @@ class _Reading:
     asked: Explorable
     shelf: Shelf
 
-    def at_point(self, said: Mapping[str, Any]) -> PointFinding:
+    def at_point(self, said: kept.Finding) -> PointFinding:
         """A finding at a value of the knobs, of the grid or beside it."""
         return self.finding(said, self.asked.query(_at(said)))
 
-    def boundary(self, said: Mapping[str, Any]) -> Boundary:
-        held, missed = self.at_point(said["held"]), self.at_point(said["missed"])
-        return Boundary(held, missed, None if said["surely"] is None else self.at_point(said["surely"]))
+    def boundary(self, said: kept.Boundary) -> Boundary:
+        surely = None if said.surely is None else self.at_point(said.surely)
+        return Boundary(self.at_point(said.held), self.at_point(said.missed), surely)
 
-    def extreme(self, sought: Sought, said: Mapping[str, Any]) -> Extreme:
+    def extreme(self, sought: Sought, said: kept.Extreme) -> Extreme:
         measure = sought.measure
         where = (measure.sense, measure.text, tuple(map(str, sought.point)))
-        if (said["sense"], said["measure"], tuple(said["point"])) != where:
-            raise InputError(f"an extreme of {said['measure']}, where one of {measure.text} was asked for")
-        best, missed, surely = (self.reached(sought, said[side]) for side in _EXTREME)
-        return Extreme(measure, sought.point, best, missed, surely, said["searches"], said["endless"])
+        if (said.sense, said.measure, said.point) != where:
+            raise InputError(f"an extreme of {said.measure}, where one of {measure.text} was asked for")
+        best, missed, surely = (self.reached(sought, x) for x in said.sides.values())
+        return Extreme(measure, sought.point, best, missed, surely, said.searches, said.endless)
 
-    def reached(self, sought: Sought, said: Mapping[str, Any] | None) -> PointFinding | None:
+    def reached(self, sought: Sought, said: kept.Finding | None) -> PointFinding | None:
         """A finding at a value of a measure, or at none."""
         if said is None:
             return None
-        value = next(iter(_at(said)), None)
-        return self.finding(said, sought.query(value))
+        return self.finding(said, sought.query(next(iter(_at(said)), None)))
 
-    def finding(self, said: Mapping[str, Any], query: Query) -> PointFinding:
-        if said["formula"] != query.text:
-            raise InputError(f"a finding on {said['formula']}, where one on {query.text} was asked for")
+    def finding(self, said: kept.Finding, query: Query) -> PointFinding:
+        if said.formula != query.text:
+            raise InputError(f"a finding on {said.formula}, where one on {query.text} was asked for")
         return PointFinding(
             _at(said),
-            Verdict(said["verdict"]),
+            said.verdict,
             query,
-            said["reason"],
-            self.shelf.read_drive(said["drive"]),
-            said["number"],
-            self.shelf.read_certificate(said["certificate"]),
+            said.reason,
+            self.shelf.read_drive(said.drive),
+            said.number,
+            self.shelf.read_certificate(said.certificate),
         )
 
 
-def _at(said: Mapping[str, Any]) -> Point:
-    return tuple(Fraction(value) for value in said["at"])
+def _at(said: kept.Finding) -> Point:
+    return tuple(Fraction(value) for value in said.at)

@@ -8,18 +8,19 @@ from typing import Any
 
 from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, PointFinding, say_nothing
 from roadproof.analysis.explore.extreme import Sought, find_extreme, find_extremes, soughts_of, unsought
-from roadproof.analysis.explore.record import as_data, read_data
+from roadproof.analysis.explore.record import as_kept, explored_of
 from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided, values_of
 from roadproof.analysis.explore.values import explore
 from roadproof.elapsed import now, since
 from roadproof.errors import InputError
+from roadproof.evidence.answers import explore as kept
+from roadproof.evidence.answers.explore import SCHEMA
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.drive_file import road_data
 from roadproof.hands import Jobs
 from roadproof.study.pool import Say, in_order, work
 from roadproof.study.shelf import Question, Shelf, specification_names
 from roadproof.verdict import Verdict
-
-SCHEMA = "roadproof/explore/1"
 
 
 @dataclass(frozen=True)
@@ -87,24 +88,23 @@ class Exploration:
         return not answer.late
 
     def record(self, name: str, answer: Explored, shelf: Shelf) -> dict[str, Any]:
-        return {"exploration": as_data(name, self.named[name], answer, shelf)}
+        return write(kept.Record(exploration=as_kept(name, self.named[name], answer, shelf)))
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Explored]:
-        data = record["exploration"]
-        said = (data["scenario"], data["set"], data["formula"])
+        said = _read(record)
         for name, asked in self.named.items():
-            if said == _asked_of(asked):
-                return name, read_data(asked, data, shelf)
-        raise InputError(f"an exploration of {data['formula']}, which is not asked for")
+            if (said.scenario, said.set, said.formula) == _asked_of(asked):
+                return name, explored_of(asked, said, shelf)
+        raise InputError(f"an exploration of {said.formula}, which is not asked for")
 
     def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
-        return {
-            **self.question.heading,
-            "view": "dense",
-            "seconds": round(seconds, 1),
-            "explored": [records[name]["exploration"] for name in self.named],
-        }
+        explored = tuple(_read(records[name]) for name in self.named)
+        return write(kept.Index(**self.question.heading, seconds=round(seconds, 1), explored=explored))
+
+
+def _read(record: Mapping[str, Any]) -> kept.Exploration:
+    return read(kept.Record, record, "a kept answer").exploration
 
 
 def name_of(number: int, asked: Explorable) -> str:

@@ -3,12 +3,31 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.strict import Fields, rational, read_assuming
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.shared import (
+    Assuming,
+    Dense,
+    Heading,
+    KeptCertificate,
+    KeptDrive,
+    OneScenario,
+    Options,
+    Parameters,
+    Rational,
+    Reason,
+    Seconds,
+    SetName,
+    Specifications,
+)
+from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
+from roadproof.evidence.strict import Fields, rational
+from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
@@ -22,32 +41,133 @@ from roadproof.spec.motion import values_said
 from roadproof.spec.query import Query
 from roadproof.spec.scenarios import Scenario, applied, name_of
 from roadproof.units import UNITS, unit_text
+from roadproof.verdict import DriveVerdict
 from roadproof.world.vehicle import LIMITS
 
-SCHEMA = "roadproof/explore/1"
-_EXPLORED = ("scenario", "set", "formula", "vary", "values", "boundaries", "searches", "drives", "extremes")
-_EXPLORED_MORE = ("seconds", "stem")
-_FINDING = ("at", "verdict", "formula", "reason", "number", "drive", "certificate", "assuming")
-_BOUNDARY = ("held", "missed", "surely")
-_UNCHECKED = (
-    *("searches", "drives", "seconds", "stem", "values[].reason", "values[].number"),
-    *(f"boundaries[].{x}.{y}" for x in _BOUNDARY for y in ("reason", "number")),
-    *(f"extremes[].{x}.{y}" for x in ("best", "missed", "surely") for y in ("reason", "number")),
-    *("extremes[].endless", "extremes[].searches"),
-)
+SCHEMA: Final = "roadproof/explore/1"
 _SENSES: Mapping[str, BinaryOperator] = {"least": "<=", "greatest": ">="}
-_EXTREME = ("sense", "measure", "when", "unit", "point", "best", "missed", "surely", "endless", "searches")
+Count: TypeAlias = Annotated[int, UNCHECKED, Rule(minimum=0)]
 
 
-def read_index(data: Fields, background: Background) -> Iterator[Entry]:
-    """The entries of an index. Raises ``InputError``."""
-    for number, content in enumerate(data.items("explored"), 1):
-        yield from _one(content, f"{data.where}, exploration {number}", background)
+@dataclass(frozen=True, kw_only=True)
+class Varied:
+    """What is varied, from low to high."""
+
+    name: Annotated[str, Doc("A parameter, or a limit such as POV.a_lon.min.")]
+    unit: Annotated[str, Doc("Unit of all its values here.")]
+    low: Rational
+    high: Rational
 
 
-def read_record(record: Fields, background: Background) -> Iterator[Entry]:
-    """The entries of a kept answer. Raises ``InputError``."""
-    return _one(record.get("exploration"), record.where, background)
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """Whether there is a drive at a value."""
+
+    at: Annotated[
+        tuple[Rational, ...],
+        Doc("Values of what is varied, in its units; of an extreme the value of the measure."),
+    ]
+    verdict: DriveVerdict
+    formula: FormulaText
+    reason: Reason = ""
+    number: Annotated[int | None, UNCHECKED, Doc("Tells drives apart; null where there is none.")] = None
+    drive: KeptDrive = None
+    certificate: KeptCertificate = None
+    assuming: Annotated[Assuming, LEFT_OUT] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Boundary:
+    """Where drives end on one side of a value."""
+
+    held: Annotated[Finding, Doc("A value with a drive.")]
+    missed: Annotated[Finding, Doc("The nearest value on one side for which none was found.")]
+    surely: Annotated[
+        Finding | None, Doc("The nearest value there for which it is said that there is none.")
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extreme:
+    """How far a measure can go."""
+
+    sense: Literal["least", "greatest"]
+    measure: Annotated[str, Rule(least=1), Doc("A term.")]
+    when: Annotated[str, Doc("At a moment at which this formula holds; empty is at time 0.")]
+    unit: Annotated[str, Doc("Of the measure, SI; empty where it has none.")]
+    point: Annotated[tuple[Rational, ...], Doc("Values of what is varied.")]
+    best: Annotated[Finding | None, Doc("The value that a drive reaches; null where there is no drive.")] = (
+        None
+    )
+    missed: Annotated[Finding | None, Doc("The nearest value for which none was found.")] = None
+    surely: Annotated[Finding | None, Doc("The nearest value for which it is said that there is none.")] = (
+        None
+    )
+    endless: Annotated[bool, UNCHECKED, Doc("Whether the drive passes any value that is asked for.")] = False
+    searches: Count = 0
+
+    @property
+    def sides(self) -> dict[str, Finding | None]:
+        """What was found, by name."""
+        return {"best": self.best, "missed": self.missed, "surely": self.surely}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exploration:
+    """For which values a formula has a drive, and how far measures can go."""
+
+    scenario: OneScenario
+    set: SetName
+    formula: FormulaText
+    vary: tuple[Varied, ...]
+    values: tuple[Finding, ...]
+    boundaries: tuple[Boundary, ...]
+    searches: Annotated[Count, Doc("How many searches it took.")] = 0
+    drives: Annotated[Count, Doc("How many drives serve the values.")] = 0
+    extremes: tuple[Extreme, ...]
+    seconds: Seconds = 0.0
+    stem: Annotated[
+        str,
+        UNCHECKED,
+        LEFT_OUT,
+        Rule(least=1),
+        Doc("How the names of its files begin; where evidence goes to a folder."),
+    ] = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Said:
+    """What an index says once for all explorations."""
+
+    options: Options
+    parameters: Annotated[Parameters, Doc("All that are not varied, in SI units.")]
+    specs: Specifications
+
+
+@dataclass(frozen=True, kw_only=True)
+class Index(Said, Heading):
+    """For which values there is a drive."""
+
+    schema: Literal["roadproof/explore/1"] = SCHEMA
+    view: Dense = "dense"
+    seconds: Seconds = 0.0
+    explored: tuple[Exploration, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A kept answer."""
+
+    exploration: Exploration
+
+
+def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
+    for number, said in enumerate(read(Index, data.content, data.where).explored, 1):
+        yield from _one(said, f"{data.where}, exploration {number}", background)
+
+
+def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
+    return _one(read_kept(Record, record).exploration, record.where, background)
 
 
 @dataclass(frozen=True)
@@ -77,13 +197,12 @@ class _Knob:
 class _Exploration:
     """One exploration, read: what it is about and what it varies."""
 
-    line: Fields
     common: Common
     base: Query
     knobs: tuple[_Knob, ...]
     fault: str
 
-    def point(self, at: Sequence[object], where: str) -> dict[str, Fraction]:
+    def point(self, at: Sequence[str], where: str) -> dict[str, Fraction]:
         """The value of each knob. Raises ``InputError``."""
         if len(at) != len(self.knobs):
             raise InputError(f"{where}: {len(at)} values of {len(self.knobs)}")
@@ -105,67 +224,59 @@ class _Exploration:
         return both(self.base, *parts).formula if parts else self.base.formula
 
 
-def _one(content: object, where: str, background: Background) -> Iterator[Entry]:
+def _one(said: Exploration, where: str, background: Background) -> Iterator[Entry]:
     """The entries of one exploration."""
-    one = Fields(content, where, (*_EXPLORED, *_EXPLORED_MORE))
-    common = background.at(one.text("set"))
-    base = read_claim(common.specification, one.text("formula"))
-    knobs = tuple(_knob(x, where, common, base) for x in one.items("vary"))
+    common = background.at(said.set)
+    base = read_claim(common.specification, said.formula)
+    knobs = tuple(_knob(x, where, common, base) for x in said.vary)
     fault = (
-        _misnamed(one, common, base)
+        _misnamed(said, where, common, base)
         or next((x.fault for x in knobs if x.fault), "")
-        or _off_range(one, knobs)
+        or _off_range(said, where, knobs)
     )
-    exploration = _Exploration(one, common, base, knobs, fault)
-    of = tuple(str(one.content.get(name)) for name in ("scenario", "set", "formula"))
-    for k, finding in enumerate(one.items("values"), 1):
-        yield _at_point(exploration, finding, f"{where}, value {k}", (*of, "value", k))
-    for k, boundary in enumerate(one.items("boundaries"), 1):
-        place = f"{where}, boundary {k}"
-        sides = Fields(boundary, place, _BOUNDARY)
-        for side in _BOUNDARY:
-            if sides.has(side):
-                yield _at_point(exploration, sides.get(side), f"{place}, {side}", (*of, "boundary", k, side))
-    for k, extreme in enumerate(one.items("extremes"), 1):
-        place = f"{where}, extreme {k}"
-        sides = Fields(extreme, place, _EXTREME)
-        for side in ("best", "missed", "surely"):
-            if sides.has(side):
-                key = (*of, "extreme", k, side)
-                yield _of_measure(exploration, sides, sides.get(side), f"{place}, {side}", key)
+    one = _Exploration(common, base, knobs, fault)
+    of = (said.scenario, said.set, said.formula)
+    for k, finding in enumerate(said.values, 1):
+        yield _at_point(one, finding, f"{where}, value {k}", (*of, "value", k))
+    for k, boundary in enumerate(said.boundaries, 1):
+        sides = {"held": boundary.held, "missed": boundary.missed, "surely": boundary.surely}
+        for side, found in sides.items():
+            if found is not None:
+                yield _at_point(one, found, f"{where}, boundary {k}, {side}", (*of, "boundary", k, side))
+    for k, extreme in enumerate(said.extremes, 1):
+        for side, found in extreme.sides.items():
+            if found is not None:
+                place, key = f"{where}, extreme {k}", (*of, "extreme", k, side)
+                yield _of_measure(one, extreme, found, place, f"{place}, {side}", key)
 
 
-def _misnamed(one: Fields, common: Common, base: Query) -> str:
+def _misnamed(said: Exploration, where: str, common: Common, base: Query) -> str:
     """Why an exploration is not of the scenario that it names, or nothing."""
-    if not one.has("scenario"):
+    if said.scenario is None:
         return ""
-    number = one.whole("scenario")
-    known = name_of(number) in common.specification.definitions
-    if known and applied(common.specification, Scenario(number, common.set_name)).formula == base.formula:
+    known = name_of(said.scenario) in common.specification.definitions
+    told = Scenario(said.scenario, common.set_name)
+    if known and applied(common.specification, told).formula == base.formula:
         return ""
-    return f"{one.where} is called scenario {number}, but its formula is another: {one.text('formula')[:120]}"
+    return f"{where} is called scenario {said.scenario}, but its formula is another: {said.formula[:120]}"
 
 
-def _off_range(one: Fields, knobs: Sequence[_Knob]) -> str:
+def _off_range(said: Exploration, where: str, knobs: Sequence[_Knob]) -> str:
     """Why the values are not from the least to the greatest of what is varied, or nothing."""
-    found = [Fields(x, one.where).items("at") for x in one.items("values")]
     for k, knob in enumerate(knobs):
-        values = [rational(at[k], one.where) for at in found if k < len(at)]
+        values = [rational(x.at[k], where) for x in said.values if k < len(x.at)]
         if (min(values, default=knob.low), max(values, default=knob.high)) != (knob.low, knob.high):
-            return (
-                f"{one.where}: {knob.name} is varied from {knob.low} to {knob.high}, but its values are not"
-            )
+            return f"{where}: {knob.name} is varied from {knob.low} to {knob.high}, but its values are not"
     return ""
 
 
-def _knob(content: object, where: str, common: Common, base: Query) -> _Knob:
+def _knob(said: Varied, of: str, common: Common, base: Query) -> _Knob:
     """What is varied. Raises ``InputError``."""
-    data = Fields(content, f"{where}, vary", ("name", "unit", "low", "high"))
-    name, unit = data.text("name"), data.text("unit")
-    low, high = data.rational("low"), data.rational("high")
+    where, name, unit = f"{of}, vary", said.name, said.unit
+    low, high = rational(said.low, f"{where}, low"), rational(said.high, f"{where}, high")
     if name in common.library.parameters:
         known_unit = unit_text(UNITS[common.library.parameters[name].unit][1])
-        return _Knob(name, low, high, fault=_other_unit(data.where, unit, known_unit))
+        return _Knob(name, low, high, fault=_other_unit(where, unit, known_unit))
     vehicle, signal, end = (*name.split("."), "", "", "")[:3]
     known = next((x for x in LIMITED if x == signal), None)
     vehicles = base.vehicles if vehicle == "vehicle" else (vehicle,)
@@ -175,77 +286,68 @@ def _knob(content: object, where: str, common: Common, base: Query) -> _Knob:
         or end not in ("min", "max")
         or not {*vehicles} <= {*base.vehicles}
     ):
-        raise InputError(
-            f"{data.where}: '{name[:60]}' is no parameter and no limit of a vehicle of the formula"
-        )
-    return _Knob(name, low, high, tuple(vehicles), known, end, _other_unit(data.where, unit, LIMITS[known]))
+        raise InputError(f"{where}: '{name[:60]}' is no parameter and no limit of a vehicle of the formula")
+    return _Knob(name, low, high, tuple(vehicles), known, end, _other_unit(where, unit, LIMITS[known]))
 
 
 def _other_unit(where: str, said: str, known: str) -> str:
     return "" if said == known else f"{where}: unit='{said[:20]}', but it is '{known}'"
 
 
-def _at_point(one: _Exploration, content: object, where: str, key: tuple[object, ...]) -> Entry:
+def _at_point(one: _Exploration, found: Finding, where: str, key: tuple[object, ...]) -> Entry:
     """What was found at values of the knobs."""
-    line = Fields(content, where, _FINDING)
-    point = one.point(line.items("at"), where)
+    point = one.point(found.at, where)
     told = ", ".join(f"{name}={value}" for name, value in point.items())
-    return _entry(one, line, told, one.values(point), one.expected(*one.limits(point)), key)
+    return _entry(one, found, where, told, one.values(point), one.expected(*one.limits(point)), key)
 
 
 def _of_measure(
-    one: _Exploration, extreme: Fields, content: object, where: str, key: tuple[object, ...]
+    one: _Exploration, extreme: Extreme, found: Finding, place: str, where: str, key: tuple[object, ...]
 ) -> Entry:
     """What was found of a measure at a point of the knobs."""
-    line = Fields(content, where, _FINDING)
-    point = one.point(extreme.items("point"), extreme.where)
-    at = [rational(x, f"{where}, at") for x in line.items("at")]
-    if len(at) > 1 or extreme.text("sense") not in _SENSES:
+    point = one.point(extreme.point, place)
+    at = [rational(x, f"{where}, at") for x in found.at]
+    if len(at) > 1:
         raise InputError(f"{where}: it is no value of a measure")
     specification, given = one.common.specification, one.base.claim.given
     head = show(syntax.Claim(given, syntax.Literal_(True))).removesuffix("true") if given else ""
-    term = head + extreme.text("measure")
+    term = head + extreme.measure
     left, dimension = parse_claim(term).body, read_term(specification, term, "measure")[1]
-    if extreme.text("unit") != unit_text(dimension):
-        raise InputError(
-            f"{extreme.where}: unit='{extreme.text('unit')[:20]}', but it is '{unit_text(dimension)}'"
-        )
-    bound = [
-        comparison(specification, given, left, _SENSES[extreme.text("sense")], value, dimension)
-        for value in at
-    ]
-    if extreme.text("when"):
-        bound = [eventually(both(read_claim(specification, head + extreme.text("when")), *bound))]
-    return _entry(one, line, "", one.values(point), one.expected(*one.limits(point), *bound), key)
+    if extreme.unit != unit_text(dimension):
+        raise InputError(f"{place}: unit='{extreme.unit[:20]}', but it is '{unit_text(dimension)}'")
+    bound = [comparison(specification, given, left, _SENSES[extreme.sense], x, dimension) for x in at]
+    if extreme.when:
+        bound = [eventually(both(read_claim(specification, head + extreme.when), *bound))]
+    return _entry(one, found, where, "", one.values(point), one.expected(*one.limits(point), *bound), key)
 
 
 def _entry(
     one: _Exploration,
-    line: Fields,
+    found: Finding,
+    where: str,
     told: str,
     values: Mapping[str, Fraction] | None,
     expected: Formula,
     key: tuple[object, ...],
 ) -> Entry:
-    verdict, claim = line.text("verdict"), line.text("formula")
-    shows = shows_of(verdict, line.where, "impossibility", "drive")
-    assuming = read_assuming(line) if "assuming" in line.content else ()
+    shows = shows_of(found.verdict, where, "impossibility", "drive")
     fault = one.fault
-    if not fault and one.common.formula(claim) != expected:
-        fault = f"{line.where}: its formula is not that of its values: {claim[:120]}"
+    if not fault and one.common.formula(found.formula) != expected:
+        fault = f"{where}: its formula is not that of its values: {found.formula[:120]}"
     return Entry(
         one.common,
-        line.where,
+        where,
         key,
-        verdict,
+        found.verdict,
         told,
         shows,
-        claim,
-        one_of(line, shows),
+        found.formula,
+        file_of(where, shows, found.certificate, found.drive),
         values=values,
-        unchecked=unchecked_of(verdict),
-        fault=fault or _other(one.common, verdict, values, assuming, line.where),
-        assuming=assuming,
+        unchecked=unchecked_of(found.verdict),
+        fault=fault or _other(one.common, found.verdict, values, found.assuming, where),
+        assuming=found.assuming,
+        expected=lambda: [f.negation(expected) if shows == "impossibility" else expected],
     )
 
 
@@ -267,13 +369,4 @@ def _other(
     return f"{where} assumes {wrong[0]}" if wrong else ""
 
 
-READER = Reader(
-    SCHEMA,
-    ("options", "parameters", "specs"),
-    ("view", "seconds", "explored"),
-    read_index,
-    ("exploration",),
-    read_record,
-    unchecked=("seconds", *(f"explored[].{x}" for x in _UNCHECKED)),
-    unchecked_kept=tuple(f"exploration.{x}" for x in _UNCHECKED),
-)
+READER = Reader.of(Index, Said, _of_index, Record, _of_record)

@@ -97,6 +97,11 @@ def _without_record_faults(record: Fields, background: Background) -> Iterator[s
     yield from ()
 
 
+def _depth(path: str) -> int:
+    """In how many lists a field is."""
+    return path.count("[]")
+
+
 @dataclass(frozen=True)
 class Reader:
     """How an index of one ``schema`` is read, and each of the answers that are kept before it is written.
@@ -146,7 +151,6 @@ class Reader:
         once = tuple(x.key for x in fields_of(said))
         left = tuple(x for x in every if x not in (*HEADING, *once))
         kept = tuple(x.key for x in fields_of(record))
-        of_record = unchecked(record)
         return Reader(
             schema or get_args(every["schema"].type)[0],
             once,
@@ -154,7 +158,7 @@ class Reader:
             read_index,
             kept,
             read_record,
-            unchecked=tuple(sorted(unchecked(index), key=lambda path: "[" in path)),
-            unchecked_kept=of_record,
+            unchecked=tuple(sorted(unchecked(index), key=_depth)),
+            unchecked_kept=tuple(sorted(unchecked(record), key=_depth)),
             file_name=file_name,
         )

@@ -36,13 +36,13 @@ SetNames: TypeAlias = Annotated[
 ]
 ScenarioName: TypeAlias = Annotated[
     str,
-    Rule(pattern="^[0-9]+@[A-Za-z_][A-Za-z0-9_]*$"),
+    Rule(pattern="^[0-9]+@[A-Za-z_][A-Za-z0-9_]*$", called="scenario in a set, such as 4@base"),
     Doc("A scenario in a set, such as 4@base."),
     Shared("scenario_name"),
 ]
 Rational: TypeAlias = Annotated[
     str,
-    Rule(pattern="^-?[0-9]{1,40}(/[0-9]{1,40})?$"),
+    Rule(pattern="^-?[0-9]{1,40}(/[0-9]{1,40})?$", called="rational"),
     Doc('An exact number, such as "3/5".'),
     Shared("rational"),
 ]
@@ -101,7 +101,7 @@ Fingerprint: TypeAlias = Annotated[
         "Fingerprint of all that the specification files in use declare, those of --spec among them: two "
         "answers with one fingerprint read names alike."
     ),
-    Rule(pattern="^[0-9a-f]{16}$"),
+    Rule(pattern="^[0-9a-f]{16}$", called="fingerprint of 16 digits from 0 to f"),
     Shared("library"),
 ]
 Signals: TypeAlias = Annotated[
