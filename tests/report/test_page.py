@@ -122,6 +122,7 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
     claim |= {"assuming": [CLOSED], "expected": "PROVED", "verdict": "PROVED", "refuted_by": None}
     claim |= {"beyond_limits": None, "view": "dense", "seconds": 1, "reason": HOSTILE, "assumptions": []}
     claim |= {"premises": [CLOSED], "certificate": HOSTILE, "counterexample": None}
+    direction = {"claim": HOSTILE, "verdict": "UNKNOWN", "reason": CLOSED, "certificate": None, "drive": None}
     implied = {"from": "1@base", "to": "3@base", "claim": HOSTILE, "certificate": CLOSED}
     change = {"scenario": 1, "where": [CLOSED], "part": HOSTILE, "as": True, "changed": HOSTILE}
     change |= {"redundant": None, "verdict": "UNKNOWN", "assuming": HOSTILE, "claim": CLOSED}
@@ -129,7 +130,12 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
         "overlap": hostile_overlap(),
         "witness": {"verdicts": [outcome(HOSTILE, named) | {"reason": CLOSED, "road": HOSTILE}]},
         "verdicts": {"verdicts": [claim]},
-        "compare": {"first": {"formula": HOSTILE}, "relation": CLOSED, "forward": {"drive": named}},
+        "compare": {
+            **{"first": {"formula": HOSTILE, "set": CLOSED}, "second": {"formula": CLOSED, "set": HOSTILE}},
+            "relation": "weaker",
+            "forward": direction | {"drive": named},
+            "backward": direction,
+        },
         "classify": {"classes": [entry | {"situations": 1}], "text": CLOSED, "claims": [{"kind": HOSTILE}]},
         "coverage": {
             "verdict": CLOSED,
@@ -219,7 +225,8 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     files = []
     for kind, data in hostile_answers(drive_in(drives)).items():
         files.append(tmp_path / f"{kind}.json")
-        files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/1", **data}), "utf-8")
+        version = 2 if kind == "compare" else 1
+        files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/{version}", **data}), "utf-8")
     found, text = made(*files, out=tmp_path / "page.html", title=f"{HOSTILE} {CLOSED}")
     assert found.results == len(files)
     assert "<img" not in text

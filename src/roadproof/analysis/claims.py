@@ -49,11 +49,11 @@ class Answered:
         weaker = self.settled.bounded and self.task.expected is Verdict.PROVED
         return Verdict.PROVED_BOUNDED if weaker else self.task.expected
 
-    def as_settled(self, file: str | None = None, kernel: kept.KernelSays | None = None) -> kept.SettledClaim:
+    def as_settled(self, file: str | None = None, kernel: kept.KernelSays | None = None) -> kept.ClaimAnswer:
         """As the answer has it; ``file``: where its certificate is; ``kernel``: what Coq says of it."""
         task, settled, result = self.task, self.settled, self.settled.result
         certificate = result.certificate
-        return kept.SettledClaim(
+        return kept.ClaimAnswer(
             property=task.id,
             part=task.part,
             scenario=task.scenario,

@@ -68,7 +68,7 @@ class Witnessing:
     def record(self, name: str, answer: Outcome, shelf: Shelf) -> dict[str, Any]:
         shown = answer.impossibility
         values = self.named[name].setting.values
-        outcome = kept.KeptOutcome(
+        outcome = kept.OutcomeRecord(
             scenario=answer.scenario,
             set=answer.set_name,
             formula=answer.query.text,

@@ -10,7 +10,10 @@ from roadproof.api.definitions import Definitions, What, load
 from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, Vehicles, one_of, setting, work_of
 from roadproof.errors import UsageError
+from roadproof.evidence.answers import compare as kept
+from roadproof.evidence.answers.compare import SCHEMA
 from roadproof.evidence.certificate import to_json
+from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
 from roadproof.files import make_folder, write_json, write_whole
@@ -28,8 +31,6 @@ from roadproof.stages import Listener, listening
 from roadproof.study.pool import count_workers
 from roadproof.study.shelf import keep_specifications, specification_names
 from roadproof.verdict import ExitCode, Verdict
-
-SCHEMA = "roadproof/compare/2"
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,7 +68,17 @@ class Compared(Answer):
         ]
 
     def as_data(self) -> dict[str, Any]:
-        return {**heading(SCHEMA, self.library), **self.comparison.as_data()}
+        found = self.comparison
+        one, two = found.sets
+        answer = kept.Answer(
+            **heading(SCHEMA, self.library),
+            first=kept.Side(formula=found.first.text, set=one),
+            second=kept.Side(formula=found.second.text, set=two),
+            relation=found.relation,
+            forward=found.forward.kept,
+            backward=found.backward.kept,
+        )
+        return write(answer)
 
     def _specs(self, folder: Path) -> list[Path]:
         return [folder / name for name in specification_names(self.library)]

@@ -271,7 +271,7 @@ def _items(kind: Any) -> Read:
 
 
 def _told(kind: type) -> str:
-    """``settled claim`` of SettledClaim."""
+    """``settled claim`` of ClaimAnswer."""
     return re.sub("(?<=.)(?=[A-Z])", " ", kind.__name__).lower()
 
 

@@ -6,13 +6,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, get_args
 
-from roadproof.evidence.answers import drives, explore, order, overlap, proofs, redundancy, shared
+from roadproof.evidence.answers import compare, drives, explore, order, overlap, proofs, redundancy, shared
 from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import COMMON, Shared, schema_of, shared_schemas
 
 TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
     proofs.Answer: "roadproof prove --json: claims, proved or refuted",
+    compare.Answer: "roadproof compare --json: which of two formulas implies the other",
     drives.Answer: "roadproof witness --json: drives for scenarios and formulas",
     explore.Index: (
         "roadproof explore --json, and index.json of its folder: for which values there is a drive"

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import dataclass, replace
-from typing import Any, Literal, TypeAlias
 
 from roadproof.effort import Effort, Late
+from roadproof.evidence.answers import compare as kept
+from roadproof.evidence.answers.compare import Relation
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.judged import Judged
 from roadproof.logic.formula import is_state
@@ -20,10 +21,8 @@ from roadproof.spec.compose import both, implication, negation
 from roadproof.spec.motion import Assumed, value_texts
 from roadproof.spec.query import Query
 from roadproof.stages import about
-from roadproof.verdict import Verdict
+from roadproof.verdict import ClaimVerdict, Verdict
 from roadproof.workers import Lost, answers_of, is_worker
-
-Relation: TypeAlias = Literal["equivalent", "stronger", "weaker", "incomparable", "unknown"]
 
 DIRECTIONS = ("first implies second", "second implies first")
 BRIEF = 0.25  # units of work for a proof before sampled states are looked at
@@ -35,20 +34,21 @@ class Direction:
     """``claim`` is ``F1 -> F2``: PROVED with a certificate, REFUTED with a drive, or neither."""
 
     claim: Query
-    verdict: Verdict
+    verdict: ClaimVerdict
     reason: str = ""
     certificate: Certificate | None = None
     drive: Judged | None = None
 
-    def as_data(self) -> dict[str, Any]:
-        """As plain data."""
-        return {
-            "claim": self.claim.text,
-            "verdict": str(self.verdict),
-            "reason": self.reason,
-            "certificate": None if self.certificate is None else certificate_data(self.certificate),
-            "drive": None if self.drive is None else self.drive.as_data(),
-        }
+    @property
+    def kept(self) -> kept.Direction:
+        """As the answer has it."""
+        return kept.Direction(
+            claim=self.claim.text,
+            verdict=self.verdict,
+            reason=self.reason,
+            certificate=None if self.certificate is None else certificate_data(self.certificate),
+            drive=None if self.drive is None else self.drive.as_data(),
+        )
 
 
 @dataclass(frozen=True)
@@ -69,16 +69,6 @@ class Comparison:
     def directions(self) -> dict[str, Direction]:
         """Both directions, each with a name."""
         return dict(zip(DIRECTIONS, (self.forward, self.backward), strict=True))
-
-    def as_data(self) -> dict[str, Any]:
-        """As plain data, without its heading."""
-        return {
-            "first": {"formula": self.first.text, "set": self.sets[0]},
-            "second": {"formula": self.second.text, "set": self.sets[1]},
-            "relation": self.relation,
-            "forward": self.forward.as_data(),
-            "backward": self.backward.as_data(),
-        }
 
 
 def compare(
@@ -210,5 +200,7 @@ def _decide(against: Search, claim: Query) -> Direction:
         return Direction(claim, Verdict.REFUTED, drive=found.drives[0])
     if found.impossibility is not None:
         return Direction(claim, Verdict.PROVED, certificate=found.impossibility.certificate)
-    verdict = Verdict.PROVED_BOUNDED if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
+    verdict: ClaimVerdict = (
+        Verdict.PROVED_BOUNDED if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
+    )
     return Direction(claim, verdict, found.reason)

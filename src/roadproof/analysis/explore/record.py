@@ -24,7 +24,7 @@ def as_kept(name: str, asked: Explorable, explored: Explored, shelf: Shelf) -> k
         set=search.specification.set_name,
         formula=search.query.text,
         vary=tuple(
-            kept.Varied(name=knob.name, unit=knob.unit, low=str(knob.low), high=str(knob.high))
+            kept.Variation(name=knob.name, unit=knob.unit, low=str(knob.low), high=str(knob.high))
             for knob in asked.knobs
         ),
         values=tuple(writing.finding(x, f"{name}-value-{k:03}") for k, x in enumerate(explored.findings, 1)),

@@ -206,7 +206,7 @@ class Ordering:
                 for above, below, places in order.missing
             ),
             drives=tuple(
-                kept.NumberedRefutation(number=k, holds=x.holds, fails=x.fails, drive=x.drive)
+                kept.ListedRefutation(number=k, holds=x.holds, fails=x.fails, drive=x.drive)
                 for k, x in enumerate(drives, 1)
             ),
             doubts=tuple(x for record in every for x in record.doubts if x.pair in doubts),

@@ -44,7 +44,7 @@ Core: TypeAlias = Annotated[tuple[str, ...], UNCHECKED, Doc("Of an IMPOSSIBLE on
 
 
 @dataclass(frozen=True, kw_only=True)
-class KeptOutcome:
+class OutcomeRecord:
     """An outcome that a run has kept, with its evidence in files."""
 
     scenario: OneScenario
@@ -73,7 +73,7 @@ class Record:
     """A kept answer."""
 
     name: Annotated[str, Rule(least=1), Doc("How the names of its files begin.")]
-    outcome: KeptOutcome
+    outcome: OutcomeRecord
     asked: Annotated[
         str,
         UNCHECKED,
@@ -83,7 +83,7 @@ class Record:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class Preamble:
     """What is said once for all kept answers."""
 
     options: Options
@@ -147,7 +147,7 @@ def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
         )
 
 
-def _misnamed(outcome: KeptOutcome, common: Common, where: str) -> str:
+def _misnamed(outcome: OutcomeRecord, common: Common, where: str) -> str:
     """Why a formula is not the scenario that it is called, or nothing."""
     if outcome.scenario is None:
         return ""
@@ -159,7 +159,9 @@ def _misnamed(outcome: KeptOutcome, common: Common, where: str) -> str:
 
 
 READER = replace(
-    Reader.of(Said, Said, lambda data, background: (), Record, _of_record, lambda x: x.text("name"), SCHEMA),
+    Reader.of(
+        Preamble, Preamble, lambda data, background: (), Record, _of_record, lambda x: x.text("name"), SCHEMA
+    ),
     alone=True,
     unchecked_kept=tuple(sorted(unchecked(Record), key=lambda path: path != "outcome.reason")),
 )

@@ -50,7 +50,7 @@ Count: TypeAlias = Annotated[int, UNCHECKED, Rule(minimum=0)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Varied:
+class Variation:
     """What is varied, from low to high."""
 
     name: Annotated[str, Doc("A parameter, or a limit such as POV.a_lon.min.")]
@@ -119,7 +119,7 @@ class Exploration:
     scenario: OneScenario
     set: SetName
     formula: FormulaText
-    vary: tuple[Varied, ...]
+    vary: tuple[Variation, ...]
     values: tuple[Finding, ...]
     boundaries: tuple[Boundary, ...]
     searches: Annotated[Count, Doc("How many searches it took.")] = 0
@@ -136,7 +136,7 @@ class Exploration:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class Preamble:
     """What an index says once for all explorations."""
 
     options: Options
@@ -145,7 +145,7 @@ class Said:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Said, Heading):
+class Index(Preamble, Heading):
     """For which values there is a drive."""
 
     schema: Literal["roadproof/explore/1"] = SCHEMA
@@ -270,7 +270,7 @@ def _off_range(said: Exploration, where: str, knobs: Sequence[_Knob]) -> str:
     return ""
 
 
-def _knob(said: Varied, of: str, common: Common, base: Query) -> _Knob:
+def _knob(said: Variation, of: str, common: Common, base: Query) -> _Knob:
     """What is varied. Raises ``InputError``."""
     where, name, unit = f"{of}, vary", said.name, said.unit
     low, high = rational(said.low, f"{where}, low"), rational(said.high, f"{where}, high")
@@ -369,4 +369,4 @@ def _other(
     return f"{where} assumes {wrong[0]}" if wrong else ""
 
 
-READER = Reader.of(Index, Said, _of_index, Record, _of_record)
+READER = Reader.of(Index, Preamble, _of_index, Record, _of_record)

@@ -88,14 +88,14 @@ class Refutation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Numbered:
+class Listed:
     """What has a place among all of its kind."""
 
     number: Position
 
 
 @dataclass(frozen=True, kw_only=True)
-class NumberedRefutation(Refutation, Numbered):
+class ListedRefutation(Refutation, Listed):
     """A drive on which one scenario holds and others do not, by number."""
 
 
@@ -114,7 +114,7 @@ class Doubt(Implication):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class Preamble:
     """What an index says once for all implications."""
 
     sets: SetNames
@@ -124,7 +124,7 @@ class Said:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Said, Heading):
+class Index(Preamble, Heading):
     """Which scenarios imply which."""
 
     schema: Literal["roadproof/order/1"] = SCHEMA
@@ -136,7 +136,7 @@ class Index(Said, Heading):
     proved: tuple[Edge, ...]
     edges: Annotated[tuple[Edge, ...], Doc("Those proved that do not follow from others.")]
     missing: tuple[Missing, ...]
-    drives: tuple[NumberedRefutation, ...]
+    drives: tuple[ListedRefutation, ...]
     doubts: tuple[Doubt, ...]
     seconds: Seconds = 0.0
 
@@ -339,7 +339,7 @@ def _node(name: str) -> Scenario:
 
 
 READER = replace(
-    Reader.of(Index, Said, _of_index, Record, _of_record, lambda record: record.text("family")),
+    Reader.of(Index, Preamble, _of_index, Record, _of_record, lambda record: record.text("family")),
     faults=faults,
     unchecked_kept=("doubts", "said.sets"),
 )

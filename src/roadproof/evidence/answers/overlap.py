@@ -81,7 +81,7 @@ class Pair:
         """The two, in their sets."""
         return Scenario(self.a, self.set_a), Scenario(self.b, self.set_b)
 
-    def expected(self, common: Common, said: "Said") -> list[Formula]:
+    def expected(self, common: Common, said: "Preamble") -> list[Formula]:
         """What a drive of both satisfies; or the claims that say that no such conjunction ever holds."""
         one, other = self.scenarios
         orders = [_conjunctions(common, a, b, said) for a, b in ((one, other), (other, one))]
@@ -91,7 +91,7 @@ class Pair:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class Preamble:
     """What an index says once for all pairs."""
 
     set: Annotated[str, Rule(least=1), Doc("The spec set, or two with a comma between.")]
@@ -104,7 +104,7 @@ class Said:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Said, Heading):
+class Index(Preamble, Heading):
     """Which pairs of scenarios can hold together."""
 
     schema: Literal["roadproof/overlap/1"] = SCHEMA
@@ -127,12 +127,12 @@ def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
 
 
 def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    said = read(Said, background.said.content, background.said.where)
+    said = read(Preamble, background.said.content, background.said.where)
     pair = read_kept(Record, record).verdict
     yield _entry(pair, f"{record.where}, pair 1", background.home, said)
 
 
-def _entry(pair: Pair, where: str, common: Common, said: Said) -> Entry:
+def _entry(pair: Pair, where: str, common: Common, said: Preamble) -> Entry:
     one, other = pair.scenarios
     shows = shows_of(pair.verdict, where, "proof", "drive")
     fault = ""
@@ -154,7 +154,7 @@ def _entry(pair: Pair, where: str, common: Common, said: Said) -> Entry:
     )
 
 
-def _conjunctions(common: Common, one: Scenario, other: Scenario, said: Said) -> list[Query]:
+def _conjunctions(common: Common, one: Scenario, other: Scenario, said: Preamble) -> list[Query]:
     """The formulas of which one has to hold for two scenarios to hold together."""
     home = common.specification
     mine, theirs = vehicles_of(home, one), vehicles_of(home, other)
@@ -177,4 +177,4 @@ def _assignments(vehicles: Sequence[str], count: int, roles: str) -> list[tuple[
     return [(vehicles[0], *others) for others in combinations(vehicles[1:], count - 1)]
 
 
-READER = Reader.of(Index, Said, _of_index, Record, _of_record)
+READER = Reader.of(Index, Preamble, _of_index, Record, _of_record)

@@ -72,7 +72,7 @@ def trace_of(claim: Claim) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class Preamble:
     """What an index says once for all claims; indices of earlier versions do not."""
 
     options: Options = field(default_factory=dict)
@@ -80,7 +80,7 @@ class Said:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Said, Heading):
+class Index(Preamble, Heading):
     """Claims with the files that show them.
 
     Folders of earlier versions have no roadproof, library, options, specs.
@@ -162,7 +162,7 @@ def misnamed(where: str, told: tuple[str, str, int | None], label: tuple[str, st
 
 
 READER = replace(
-    Reader.of(Index, Said, _of_index, Record, _of_record), unchecked_kept=("reason", "seconds", "asked")
+    Reader.of(Index, Preamble, _of_index, Record, _of_record), unchecked_kept=("reason", "seconds", "asked")
 )
 
 
@@ -203,7 +203,7 @@ class KernelSays:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettledClaim:
+class ClaimAnswer:
     """A claim, with all that is known of it."""
 
     property: Property
@@ -254,5 +254,5 @@ class Answer(Heading):
     """Claims, proved or refuted."""
 
     schema: Literal["roadproof/verdicts/1"] = ANSWER_SCHEMA
-    verdicts: tuple[SettledClaim, ...]
+    verdicts: tuple[ClaimAnswer, ...]
     kernel: Annotated[KeptKernel | None, LEFT_OUT] = None

@@ -80,7 +80,7 @@ class Finding:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Said:
+class Preamble:
     """What an index says once for all changes."""
 
     set: SetName
@@ -90,7 +90,7 @@ class Said:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Said, Heading):
+class Index(Preamble, Heading):
     """Which parts of scenarios could be left out."""
 
     schema: Literal["roadproof/redundancy/1"] = SCHEMA
@@ -150,7 +150,7 @@ def _entry(said: Finding, where: str, common: Common) -> Entry:
 
 READER = Reader.of(
     Index,
-    Said,
+    Preamble,
     _of_index,
     Record,
     _of_record,

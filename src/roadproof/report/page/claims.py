@@ -3,8 +3,9 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from roadproof.evidence.answers import compare as comparisons
 from roadproof.evidence.answers import drives
-from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim, Index, SettledClaim
+from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim, ClaimAnswer, Index
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.report.page.book import Book
@@ -72,21 +73,21 @@ def claims(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     return joined([line, filtered(table(head, rows)), *refuted])
 
 
-def _entries_of(result: Result) -> Sequence[Claim | SettledClaim]:
+def _entries_of(result: Result) -> Sequence[Claim | ClaimAnswer]:
     if result.schema == ANSWER_SCHEMA:
         return read(Answer, result.data, result.name).verdicts
     return read(Index, result.data, result.name).claims
 
 
-def _label(claim: Claim | SettledClaim) -> str:
+def _label(claim: Claim | ClaimAnswer) -> str:
     if claim.property == OWN:
         return ""
     scenario = "" if claim.scenario is None else f" {claim.scenario}"
     return f"{claim.property}{f'-{claim.part}' if claim.part else ''}{scenario}"
 
 
-def _against(claim: Claim | SettledClaim, result: Result, book: Book) -> Markup:
-    if isinstance(claim, SettledClaim) and claim.refuted_by == "drive":
+def _against(claim: Claim | ClaimAnswer, result: Result, book: Book) -> Markup:
+    if isinstance(claim, ClaimAnswer) and claim.refuted_by == "drive":
         return book.drive(claim.counterexample["drive"])
     if isinstance(claim, Claim) and claim.evidence is not None and result.folder is not None:
         return book.drive(result.folder / claim.evidence)
@@ -106,7 +107,7 @@ def witnesses(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     return joined([tag("p", counts(x.verdict for x in outcomes)), *made])
 
 
-_RELATIONS = {
+_RELATIONS: Mapping[comparisons.Relation, str] = {
     "stronger": "The first implies the second, but not the reverse.",
     "weaker": "The second implies the first, but not the reverse.",
     "equivalent": "Each implies the other.",
@@ -117,16 +118,15 @@ _RELATIONS = {
 
 def comparison(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """The answer of ``compare --json``."""
-    data = result.data
-    one, two = data.get("first", {}), data.get("second", {})
-    relation = str(data.get("relation"))
+    answer = read(comparisons.Answer, result.data, result.name)
+    one, two = answer.first, answer.second
     parts: list[Content] = [
-        tag("p", "First: ", tag("code", one.get("formula")), f" (set {one.get('set')})"),
-        tag("p", "Second: ", tag("code", two.get("formula")), f" (set {two.get('set')})"),
-        tag("p", tag("b", _RELATIONS.get(relation, relation))),
+        tag("p", "First: ", tag("code", one.formula), f" (set {one.set})"),
+        tag("p", "Second: ", tag("code", two.formula), f" (set {two.set})"),
+        tag("p", tag("b", _RELATIONS[answer.relation])),
     ]
-    for name, key in (("first implies second", "forward"), ("second implies first", "backward")):
-        x = data.get(key, {})
-        shown = [book.drive(x["drive"])] if isinstance(x.get("drive"), Mapping) else []
-        parts.append(folded((verdict(x.get("verdict")), f" {name}"), tag("p", x.get("reason")), *shown))
+    both = (("first implies second", answer.forward), ("second implies first", answer.backward))
+    for name, x in both:
+        shown = [] if x.drive is None else [book.drive(x.drive)]
+        parts.append(folded((verdict(x.verdict), f" {name}"), tag("p", x.reason), *shown))
     return joined(parts)

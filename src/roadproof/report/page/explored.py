@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
-from roadproof.evidence.answers.explore import Exploration, Extreme, Finding, Index, Varied
+from roadproof.evidence.answers.explore import Exploration, Extreme, Finding, Index, Variation
 from roadproof.evidence.codec import read
 from roadproof.report.explore import show
 from roadproof.report.page.book import Book
@@ -41,7 +41,7 @@ def _exploration(place: str, x: Exploration, result: Result, book: Book, words: 
     return joined(parts)
 
 
-def _values(place: str, vary: Sequence[Varied], values: Sequence[Finding]) -> Markup:
+def _values(place: str, vary: Sequence[Variation], values: Sequence[Finding]) -> Markup:
     """A row for one parameter, a matrix for two; each value leads to what is behind it."""
     first = list(dict.fromkeys(x.at[0] for x in values))
     second = list(dict.fromkeys(x.at[1] if len(vary) > 1 else "" for x in values))
@@ -67,7 +67,7 @@ def _told_boundaries(x: Exploration) -> Iterator[Markup]:
         yield tag("p", f"There is a drive at {held}, none was found at {missed}{sure}.")
 
 
-def _extremes(place: str, extremes: Sequence[Extreme], vary: Sequence[Varied]) -> Markup:
+def _extremes(place: str, extremes: Sequence[Extreme], vary: Sequence[Variation]) -> Markup:
     rows = []
     for k, x in enumerate(extremes):
         at = ", ".join(_values_at(x.point, vary))
@@ -93,11 +93,11 @@ def _behind(target: str, said: str, found: Finding, result: Result, book: Book) 
     return folded((verdict(found.verdict), f" {said}"), *inside, *shown, id=target)
 
 
-def _at(found: Finding, vary: Sequence[Varied]) -> str:
+def _at(found: Finding, vary: Sequence[Variation]) -> str:
     return ", ".join(_values_at(found.at, vary))
 
 
-def _values_at(at: Sequence[str], vary: Sequence[Varied]) -> Iterator[str]:
+def _values_at(at: Sequence[str], vary: Sequence[Variation]) -> Iterator[str]:
     for value, x in zip(at, vary, strict=True):
         yield f"{x.name} = {_number(value, x.unit)}"
 
