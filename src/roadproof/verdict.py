@@ -32,6 +32,12 @@ ClaimVerdict: TypeAlias = Literal[
 """Answers to claims."""
 
 
+ProofVerdict: TypeAlias = Literal[
+    Verdict.PROVED, Verdict.REFUTED, Verdict.VACUOUS, Verdict.UNKNOWN, Verdict.CROSSCHECK_FAILED
+]
+"""Answers to claims over dense, unbounded time."""
+
+
 DriveVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN, Verdict.UNKNOWN]
 """Answers to questions for drives."""
 

@@ -291,27 +291,31 @@ def test_a_class_that_occurs_in_traffic_may_say_where() -> None:
 
 DEFINED = """
 set classes extends base "classes of base" {}
-def fast(a: vehicle, L: lane) := atLane(a, L) and v_lon(a) > 20 m/s
-def slow(a: vehicle, L: lane) := not fast(a, L)
+def fast(SV, POV: vehicle, L: lane) := atLane(SV, L) and v_lon(SV) > 20 m/s and fasterThan(POV, SV)
+def slow(SV, POV: vehicle, L: lane) := not fast(SV, POV, L)
 """
+CLASS = {"vehicles": ["SV", "POV"], "scenarios": [], "happens": [], "where": None, "description": ""}
 CLASSIFY = {
     "schema": "roadproof/classify/1",
     "set": "classes",
     **SAID,
+    "scenarios": [],
     "classes": [
-        {
-            "name": "fast",
-            "vehicles": ["SV"],
-            "formula": "fast(SV, L)",
-            "verdict": "WITNESSED",
-            "drive": "d.json",
-        },
-        {"name": "slow", "vehicles": ["SV"], "formula": "slow(SV, L)", "verdict": "UNKNOWN", "drive": None},
+        {"name": "fast", **CLASS, "formula": "fast(SV, POV, L)", "verdict": "WITNESSED", "drive": "d.json"},
+        {"name": "slow", **CLASS, "formula": "slow(SV, POV, L)", "verdict": "UNKNOWN", "drive": None},
     ],
     "claims": [
-        {"name": "exclusive-fast-slow", "kind": "exclusive", "claim": "not (fast(SV, L) and slow(SV, L))"}
-        | {"verdict": "PROVED", "certificate": "c.json"}
+        {
+            **{"name": "exclusive-fast-slow", "kind": "exclusive"},
+            **{"claim": "not (fast(SV, POV, L) and slow(SV, POV, L))"},
+            **{"verdict": "PROVED", "certificate": "c.json"},
+        }
     ],
+}
+COVERS = {
+    "name": "covers-scenario-01",
+    "kind": "covers",
+    "claim": "scenario_1(SV, POV, L) <-> fast(SV, POV, L)",
 }
 
 
@@ -323,7 +327,8 @@ def test_classes_and_claims_about_them(tmp_path: Path) -> None:
     assert (fast.shows, fast.file, fast.fault) == ("drive", "d.json", "")
     assert (slow.shows, slow.file, slow.unchecked) == ("nothing", None, ())
     assert (claim.where, claim.key) == ("index.json, claim 1", ("claim", "exclusive-fast-slow"))
-    assert (claim.shows, claim.file, claim.claim) == ("proof", "c.json", "not (fast(SV, L) and slow(SV, L))")
+    assert (claim.shows, claim.file) == ("proof", "c.json")
+    assert claim.claim == "not (fast(SV, POV, L) and slow(SV, POV, L))"
     assert [slow.fault, claim.fault] == ["", ""]
 
 
@@ -332,12 +337,30 @@ def test_classes_and_claims_about_them(tmp_path: Path) -> None:
     [
         ("classes", {"name": "quick"}, "there is no definition 'quick'"),
         ("classes", {"name": "slow"}, "its formula is not slow"),
-        ("classes", {"vehicles": ["POV"]}, "its formula is not fast"),
-        ("classes", {"formula": "fast(SV, L) or slow(SV, L)"}, "its formula is not fast"),
+        ("classes", {"vehicles": ["POV", "SV"]}, "its formula is not fast"),
+        ("classes", {"formula": "fast(SV, POV, L) or slow(SV, POV, L)"}, "its formula is not fast"),
         ("claims", {"name": "exclusive-fast-quick"}, "is called exclusive-fast-quick, but its claim is"),
         ("claims", {"name": "covers-scenario-01"}, "is none of kind exclusive"),
         ("claims", {"kind": "covers", "name": "covers-scenario-01"}, "is called covers-scenario-01, but"),
-        ("claims", {"claim": "fast(SV, L) or not fast(SV, L)"}, "is called exclusive-fast-slow, but"),
+        (
+            "claims",
+            {"claim": "fast(SV, POV, L) or not fast(SV, POV, L)"},
+            "is called exclusive-fast-slow, but",
+        ),
+        ("claims", {"claim": "not (fast(SV, POV, L) and slow(POV, SV, L))"}, "is called exclusive-fast-slow"),
+        (
+            "claims",
+            {
+                **{"kind": "covers", "name": "covers-scenario-01"},
+                **{"claim": "scenario_1(SV, POV, L) -> fast(SV, POV, L)"},
+            },
+            "is called covers-scenario-01, but",
+        ),
+        (
+            "claims",
+            {"kind": "empty", "name": "empty-1", "claim": "fast(SV, POV, L)"},
+            "is called empty-1, but",
+        ),
     ],
 )
 def test_classes_and_claims_under_another_name(
@@ -362,6 +385,7 @@ def test_a_kept_answer_about_classes_and_doubts_about_all_of_them(tmp_path: Path
         (entry,) = read_record(head, Fields(kept, "answer", record_fields(CLASSIFY["schema"], "")), library)
         assert (entry.key, entry.claim) in [(x.key, x.claim) for x in entries(CLASSIFY, library)]
     doubts = [{"about": "whether there is a shorter text", "reason": "lost"}]
+    assert entries(with_one(CLASSIFY, "claims", **COVERS), library)[2].fault == ""
     *_, doubt = entries({**CLASSIFY, "doubts": doubts}, library)
     assert (doubt.verdict, doubt.shows, doubt.label) == ("UNKNOWN", "nothing", doubts[0]["about"])
 

@@ -7,10 +7,10 @@ import pytest
 from report.edges import cut_off
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Class
-from roadproof.analysis.classify.divide import Doubt
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import Classified
+from roadproof.evidence.answers.classify import Doubt
 from roadproof.report.classify import as_table, compose_classes, summary
 from roadproof.spec.words import Words
 from roadproof.verdict import Verdict
@@ -53,7 +53,9 @@ def test_without_shares_there_are_none() -> None:
 def test_doubts_are_told_and_traces_that_are_shown_twice() -> None:
     shares = shares_of(class_4=10)
     shares.repeated = 5
-    found = Classified((one((4,), None, Verdict.UNKNOWN),), (), (Doubt("what there is", "lost"),), shares)
+    found = Classified(
+        (one((4,), None, Verdict.UNKNOWN),), (), (Doubt(about="what there is", reason="lost"),), shares
+    )
     assert [*summary(found)] == [
         "1 class: 1 UNKNOWN",
         "  UNKNOWN: what there is: lost",

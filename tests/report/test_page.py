@@ -115,6 +115,14 @@ def hostile_overlap() -> dict:
     return {"schema": "roadproof/overlap/1", **said, "verdicts": verdicts}
 
 
+def hostile_classes() -> dict:
+    one = {"name": "class_4", "vehicles": [HOSTILE, CLOSED], "scenarios": [4], "happens": [4]}
+    one |= {"where": HOSTILE, "description": CLOSED, "formula": HOSTILE, "verdict": "WITNESSED"}
+    claim = {"name": HOSTILE, "kind": "empty", "claim": CLOSED, "verdict": "UNKNOWN"}
+    classes = {"classes": [one | {"reason": HOSTILE, "situations": 1}], "claims": [claim], "text": CLOSED}
+    return {"set": HOSTILE, **SAID, "scenarios": [4], "view": "dense", "seconds": 1, **classes}
+
+
 def hostile_answers(drive: dict) -> dict[str, dict]:
     named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
     entry = {"verdict": "WITNESSED", "formula": HOSTILE, "reason": CLOSED, "name": HOSTILE, "scenario": 1}
@@ -136,7 +144,7 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
             "forward": direction | {"drive": named},
             "backward": direction,
         },
-        "classify": {"classes": [entry | {"situations": 1}], "text": CLOSED, "claims": [{"kind": HOSTILE}]},
+        "classify": hostile_classes(),
         "coverage": {
             "verdict": CLOSED,
             "classes": [entry | {"component": HOSTILE, "condition": CLOSED, "gaps": [1]}],
@@ -254,7 +262,8 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         ("[]", ""),
         ('{"schema": "other/1"}', "no schema that begins with roadproof/"),
         ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'set' is missing"),
-        ('{"schema": "roadproof/classify/1", "classes": 3}', "is no result that can be shown"),
+        ('{"schema": "roadproof/classify/1", "classes": 3}', "'set' is missing"),
+        ('{"schema": "roadproof/traffic-results/1", "table": 3}', "is no result that can be shown"),
     ],
 )
 def test_mistakes_are_named(tmp_path, capsys, content, wrong):

@@ -57,7 +57,7 @@ class Classifications(Studied[Classification, Example | Decision]):
     @property
     def verdicts(self) -> dict[str, Verdict]:
         found = self.classified
-        verdicts = {x.one.name: x.verdict for x in found.examples}
+        verdicts: dict[str, Verdict] = {x.one.name: x.verdict for x in found.examples}
         verdicts |= {x.claim.name: x.verdict for x in found.decisions}
         return verdicts | {x.about: Verdict.UNKNOWN for x in found.doubts}
 
@@ -99,7 +99,7 @@ class Classifications(Studied[Classification, Example | Decision]):
         return called(self.study.basis.specification)
 
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-        return {**self.study.as_data(self.classified, records), "seconds": round(self.seconds, 1)}
+        return self.study.index(self.classified, records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Which scenarios make up which class, and how often it occurs."""

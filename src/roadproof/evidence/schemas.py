@@ -6,7 +6,17 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, get_args
 
-from roadproof.evidence.answers import compare, drives, explore, order, overlap, proofs, redundancy, shared
+from roadproof.evidence.answers import (
+    classify,
+    compare,
+    drives,
+    explore,
+    order,
+    overlap,
+    proofs,
+    redundancy,
+    shared,
+)
 from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import COMMON, Shared, schema_of, shared_schemas
 
@@ -14,6 +24,9 @@ TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
     proofs.Answer: "roadproof prove --json: claims, proved or refuted",
     compare.Answer: "roadproof compare --json: which of two formulas implies the other",
+    classify.Index: (
+        "roadproof classify --json, and index.json of its folder: classes that exclude each other"
+    ),
     drives.Answer: "roadproof witness --json: drives for scenarios and formulas",
     explore.Index: (
         "roadproof explore --json, and index.json of its folder: for which values there is a drive"
@@ -24,7 +37,11 @@ TITLES: Mapping[type, str] = {
         "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
     ),
 }
-RECORDS: Mapping[type, type] = {drives.Answer: drives.Record, order.Index: order.Record}
+RECORDS: Mapping[type, type] = {
+    classify.Index: classify.Record,
+    drives.Answer: drives.Record,
+    order.Index: order.Record,
+}
 """Kept answers that are made of more than the index."""
 
 

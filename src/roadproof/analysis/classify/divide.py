@@ -13,18 +13,11 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, refine, whole_cell
 from roadproof.analysis.classify.classes import Classes, Plan, what_axis, where_axis
 from roadproof.effort import Late
+from roadproof.evidence.answers.classify import Doubt
 from roadproof.hands import Jobs
 from roadproof.spec.query import Query
 from roadproof.study import pool
 from roadproof.study.pool import Progress
-
-
-@dataclass(frozen=True)
-class Doubt:
-    """What would be known if a job had not been lost, or cut off by the clock."""
-
-    about: str
-    reason: str
 
 
 @dataclass(frozen=True)
@@ -96,7 +89,7 @@ def divide(
     outlines = [x for x in found if isinstance(x, Outline)]
     reasons = dict.fromkeys(x for x in found if isinstance(x, str))
     if reasons:
-        doubts = tuple(Doubt("which classes there are", reason) for reason in reasons)
+        doubts = tuple(Doubt(about="which classes there are", reason=reason) for reason in reasons)
         return Division(Classes(plan, ((),) * len(plan.groups), ()), {}, doubts, cut_off=True)
     jobs = [
         Refining(plan.what(cell[0]) if k < len(plan.groups) else plan.where(cell[0]), axes[k], *cell)
@@ -122,7 +115,7 @@ def _division(
         first = plan.groups[0].vehicles
         empty[first] = (*empty[first], *outlines[-1].empty)
     doubts = [
-        Doubt(f"whether there is a shorter text for {job.name}", reason)
+        Doubt(about=f"whether there is a shorter text for {job.name}", reason=reason)
         for job, (_, reason) in zip(jobs, cells, strict=True)
         if reason
     ]

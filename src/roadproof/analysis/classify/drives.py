@@ -11,6 +11,7 @@ from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.placing import placed, placed_on, zones_of
 from roadproof.effort import Late
+from roadproof.evidence.answers.classify import Word
 from roadproof.evidence.judged import Judged
 from roadproof.searching.ask import ask
 from roadproof.searching.question import usual_road
@@ -31,7 +32,7 @@ class Example:
     """A judged drive of a class, or the reason why there is none to show."""
 
     one: Class
-    verdict: Verdict
+    verdict: Word
     reason: str = ""
     drive: Judged | None = None
 

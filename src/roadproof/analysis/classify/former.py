@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from roadproof.analysis.classify.study import SCHEMA
 from roadproof.errors import InputError
+from roadproof.evidence.answers.classify import SCHEMA
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, head_of, read_kept
 from roadproof.evidence.strict import LARGEST_INDEX, read_json
 from roadproof.study.shelf import INDEX, Question

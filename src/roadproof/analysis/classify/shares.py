@@ -24,6 +24,7 @@ from roadproof.evaluation.questions import (
     ask,
     of_three,
 )
+from roadproof.evidence.answers import classify
 from roadproof.formats.recording import Recording
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -56,6 +57,19 @@ class Shares:
     broken: list[str] = field(default_factory=list)
     repeated: int = 0
     source: str = ""
+
+    @property
+    def told(self) -> classify.Shares:
+        """What an index says of them."""
+        return classify.Shares(
+            source=self.source,
+            recordings=tuple(self.recordings),
+            traces=self.all_traces,
+            covered=self.covered,
+            repeated=self.repeated,
+            situations=classify.Situations(pairs=self.classified[2], triples=self.classified[3]),
+            broken=tuple(self.broken),
+        )
 
 
 def count_shares(

@@ -7,18 +7,20 @@ from typing import Any
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import Class, Classes
-from roadproof.analysis.classify.divide import Division, Doubt
+from roadproof.analysis.classify.divide import Division
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.text import ClassClaim, claims_of, with_classes, write_classes
 from roadproof.effort import Late
 from roadproof.errors import InputError
+from roadproof.evidence.answers import classify as kept
+from roadproof.evidence.answers.classify import SCHEMA, Doubt
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
 from roadproof.study.shelf import Question, Shelf
-from roadproof.verdict import Verdict
+from roadproof.verdict import ProofVerdict, Verdict
 
-SCHEMA = "roadproof/classify/1"
 CLAIMS_IN_A_PIECE = 8
 CLAIM = 4.0  # how much more work a claim is given than a drive
 
@@ -28,7 +30,7 @@ class Decision:
     """The verdict on a claim; a certificate where it is proved, else a reason."""
 
     claim: ClassClaim
-    verdict: Verdict
+    verdict: ProofVerdict
     reason: str
     certificate: Certificate | None = None
     seconds: float = 0.0
@@ -117,6 +119,7 @@ class Classification:
             result = self.basis.proof_of(claim.query, CLAIM * self.basis.effort.units, claim.name)
         except Late as late:
             return Decision(claim, Verdict.UNKNOWN, str(late), seconds=late.seconds)
+        assert result.verdict is not Verdict.PROVED_BOUNDED
         return Decision(claim, result.verdict, result.reason, result.certificate, result.seconds)
 
     def doubt(self, piece: Alike | Claimed, reason: str) -> dict[str, Example | Decision]:
@@ -132,45 +135,45 @@ class Classification:
     def record(self, name: str, answer: Example | Decision, shelf: Shelf) -> dict[str, Any]:
         match answer:
             case Example(one, verdict, reason, drive):
-                entry: dict[str, Any] = {
-                    "name": name,
-                    "vehicles": list(one.vehicles),
-                    "scenarios": list(one.scenarios),
-                    "happens": list(one.what.holds),
-                    "where": one.place,
-                    "description": one.description,
-                    "formula": one.formula,
-                    "verdict": str(verdict),
-                    "reason": reason,
-                    "drive": shelf.drive(f"drives/{name}.json", drive),
-                }
-                return {"classes": [entry], "claims": []}
+                kept_class = kept.KeptClass(
+                    name=name,
+                    vehicles=one.vehicles,
+                    scenarios=one.scenarios,
+                    happens=one.what.holds,
+                    where=one.place,
+                    description=one.description,
+                    formula=one.formula,
+                    verdict=verdict,
+                    reason=reason,
+                    drive=shelf.drive(f"drives/{name}.json", drive),
+                )
+                return write(kept.Record(classes=(kept_class,), claims=()))
             case Decision(claim, verdict, reason, certificate, seconds):
-                entry = {
-                    "name": name,
-                    "kind": claim.kind,
-                    "claim": claim.query.text,
-                    "verdict": str(verdict),
-                    "reason": reason,
-                    "certificate": shelf.certificate(f"proofs/{name}.json", certificate),
-                    "seconds": seconds,
-                }
-                return {"classes": [], "claims": [entry]}
+                kept_claim = kept.Claim(
+                    name=name,
+                    kind=claim.kind,
+                    claim=claim.query.text,
+                    verdict=verdict,
+                    reason=reason,
+                    certificate=shelf.certificate(f"proofs/{name}.json", certificate),
+                    seconds=seconds,
+                )
+                return write(kept.Record(classes=(), claims=(kept_claim,)))
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Example | Decision]:
-        entries = [*record["classes"], *record["claims"]]
+        said = _read(record)
+        entries: list[kept.KeptClass | kept.Claim] = [*said.classes, *said.claims]
         if len(entries) != 1:
             raise InputError(f"{len(entries)} answers, where one was kept")
-        (said,) = entries
-        name, verdict, reason = said["name"], Verdict(said["verdict"]), said["reason"]
-        match self._named.get(name):
-            case Class() as one if said.get("formula") == one.formula:
-                return name, Example(one, verdict, reason, shelf.read_drive(said["drive"]))
-            case ClassClaim() as claim if said.get("claim") == claim.query.text:
-                certificate = shelf.read_certificate(said["certificate"])
-                return name, Decision(claim, verdict, reason, certificate, said["seconds"])
+        (entry,) = entries
+        match entry, self._named.get(entry.name):
+            case kept.KeptClass(), Class() as one if entry.formula == one.formula:
+                return entry.name, Example(one, entry.verdict, entry.reason, shelf.read_drive(entry.drive))
+            case kept.Claim(), ClassClaim() as claim if entry.claim == claim.query.text:
+                certificate = shelf.read_certificate(entry.certificate)
+                return entry.name, Decision(claim, entry.verdict, entry.reason, certificate, entry.seconds)
             case _:
-                raise InputError(f"there is no class and no claim like this '{name}'")
+                raise InputError(f"there is no class and no claim like this '{entry.name}'")
 
     def classified(
         self, answers: Mapping[str, Example | Decision], shares: Shares | None = None
@@ -184,41 +187,31 @@ class Classification:
             shares,
         )
 
-    def as_data(self, classified: Classified, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def index(
+        self, classified: Classified, records: Mapping[str, Mapping[str, Any]], seconds: float
+    ) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
         shares = classified.shares
-        data: dict[str, Any] = {
+        every = [_read(records[name]) for name in self._named]
+        index = kept.Index(
             **self.question.heading,
-            "view": "dense",
-            "text": self.text,
-            "classes": [
-                {**records[x.one.name]["classes"][0], **_counts(x.one, shares)} for x in classified.examples
-            ],
-            "claims": [records[x.claim.name]["claims"][0] for x in classified.decisions],
-            "shares": None if shares is None else _shares_data(shares),
-        }
-        if classified.doubts:
-            data["doubts"] = [{"about": x.about, "reason": x.reason} for x in classified.doubts]
-        return data
+            text=self.text,
+            classes=tuple(_counted(x, shares) for record in every for x in record.classes),
+            claims=tuple(x for record in every for x in record.claims),
+            shares=None if shares is None else shares.told,
+            doubts=classified.doubts,
+            seconds=round(seconds, 1),
+        )
+        return write(index)
 
 
-def _counts(one: Class, shares: Shares | None) -> dict[str, int | None]:
-    if shares is None:
-        return {"situations": None, "traces": None}
-    return {"situations": shares.situations[one.name], "traces": shares.traces[one.name]}
+def _read(record: Mapping[str, Any]) -> kept.Record:
+    return read(kept.Record, record, "a kept answer")
 
 
-def _shares_data(shares: Shares) -> dict[str, Any]:
-    return {
-        "source": shares.source,
-        "recordings": shares.recordings,
-        "end": "clip",
-        "traces": shares.all_traces,
-        "covered": shares.covered,
-        "repeated": shares.repeated,
-        "situations": {str(count): number for count, number in sorted(shares.classified.items())},
-        "broken": shares.broken,
-    }
+def _counted(one: kept.KeptClass, shares: Shares | None) -> kept.CountedClass:
+    counts = (None, None) if shares is None else (shares.situations[one.name], shares.traces[one.name])
+    return kept.CountedClass(**vars(one), situations=counts[0], traces=counts[1])
 
 
 def classification_of(basis: Basis, division: Division) -> Classification:

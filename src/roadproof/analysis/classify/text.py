@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from textwrap import wrap
-from typing import Literal, TypeAlias
 
 from roadproof.analysis.classify.cells import Cell, query_of
 from roadproof.analysis.classify.classes import (
@@ -16,6 +15,7 @@ from roadproof.analysis.classify.classes import (
     where_axis,
 )
 from roadproof.errors import InputError
+from roadproof.evidence.answers.classify import Kind
 from roadproof.spec.elaborate import read_claim
 from roadproof.spec.library import Source, Specification, build_library
 from roadproof.spec.query import Query
@@ -24,7 +24,6 @@ from roadproof.study.shelf import specification_names
 
 WIDTH = 110
 
-Kind: TypeAlias = Literal["exclusive", "covers", "empty"]
 HEADINGS: Mapping[Kind, str] = {
     "exclusive": "any two classes exclude each other",
     "covers": "each scenario is the union of its classes",

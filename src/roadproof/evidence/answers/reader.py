@@ -158,7 +158,7 @@ class Reader:
             read_index,
             kept,
             read_record,
-            unchecked=tuple(sorted(unchecked(index), key=_depth)),
+            unchecked=tuple(sorted(unchecked(index), key=lambda path: (_depth(path), path != "seconds"))),
             unchecked_kept=tuple(sorted(unchecked(record), key=_depth)),
             file_name=file_name,
         )

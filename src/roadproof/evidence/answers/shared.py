@@ -11,6 +11,7 @@ Formula: TypeAlias = Annotated[
     str, Rule(least=1), Doc("A formula or a claim as text (docs/language.md)."), Shared("formula")
 ]
 Number: TypeAlias = Annotated[int, Rule(minimum=0), Doc("Number of a scenario."), Shared("number")]
+Count: TypeAlias = Annotated[int, Rule(minimum=0)]
 SetName: TypeAlias = Annotated[str, Rule(least=1), Doc("Name of a spec set."), Shared("set")]
 KeptFile: TypeAlias = Annotated[Any, Shared("file", by_hand=True)]
 OneScenario: TypeAlias = Annotated[int | None, Shared("scenario", by_hand=True)]

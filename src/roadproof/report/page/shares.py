@@ -5,36 +5,37 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
+from roadproof.evidence.answers.classify import Index
+from roadproof.evidence.codec import read
 from roadproof.report.explore import show
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import bar, behind, folded, short, verdict
+from roadproof.report.page.pieces import bar, evidence_of, folded, short, verdict
 from roadproof.report.page.results import Result
 
 
 def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """Classes that exclude each other: the share of each, a drive for each, and what is proved of them."""
-    entries = result.data.get("classes", ())
+    index = read(Index, result.data, result.name)
     totals: Counter[int] = Counter()  # situations by how many vehicles they have
-    for x in entries:
-        totals[len(x.get("vehicles", ()))] += x.get("situations") or 0
+    for x in index.classes:
+        totals[len(x.vehicles)] += x.situations or 0
     counted_at_all = totals.total() > 0
     rows = []
-    for x in entries:
-        count, total = x.get("situations"), totals[len(x.get("vehicles", ()))]
+    for x in index.classes:
+        count, total = x.situations, totals[len(x.vehicles)]
         share = (
             "" if count is None or not total else bar(count / total, f"{count}, {100 * count / total:.1f} %")
         )
-        shares = (x.get("traces"), share) if counted_at_all else ()
-        rows.append((verdict(x.get("verdict")), tag("b", x["name"]), x.get("description"), *shares))
-    counted = Counter((str(x.get("kind")), str(x.get("verdict"))) for x in result.data.get("claims", ()))
+        shares = (x.traces, share) if counted_at_all else ()
+        rows.append((verdict(x.verdict), tag("b", x.name), x.description, *shares))
+    counted = Counter((claim.kind, claim.verdict) for claim in index.claims)
     told = joined([joined([f"{kind}: {n} ", verdict(word)]) for (kind, word), n in counted.items()], "; ")
-    text = result.data.get("text")
-    file = folded(("The classes as a specification file",), tag("pre", text)) if text else None
+    file = folded(("The classes as a specification file",), tag("pre", index.text)) if index.text else None
     drives = []
-    for x in entries:
-        inside = (tag("p", tag("code", x.get("formula"))), *behind(x, result, book))
-        drives.append(folded((verdict(x.get("verdict")), " ", tag("b", x["name"])), *inside))
+    for x in index.classes:
+        inside = (tag("p", tag("code", x.formula)), *evidence_of(result, book, x.drive))
+        drives.append(folded((verdict(x.verdict), " ", tag("b", x.name)), *inside))
     head = ("verdict", "class", "what happens", *_SHARES[: 2 * counted_at_all])
     return joined([tag("p", told), table(head, rows), file, *drives])
 
