@@ -39,7 +39,7 @@ ScenarioName: TypeAlias = Annotated[
     str,
     Rule(pattern="^[0-9]+@[A-Za-z_][A-Za-z0-9_]*$", called="scenario in a set, such as 4@base"),
     Doc("A scenario in a set, such as 4@base."),
-    Shared("scenario_name"),
+    Shared("named_scenario"),
 ]
 Rational: TypeAlias = Annotated[
     str,
