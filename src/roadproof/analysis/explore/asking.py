@@ -26,12 +26,12 @@ from roadproof.world.vehicle import LIMITS, with_limits
 _LIMIT = re.compile(r"(\w+)\.(\w+)\.(min|max)")
 EVERY_VEHICLE = "vehicle"
 # A name, and the least and the greatest value: ``("minDanger", 0, 3)``, ``("POV.a_lon.min", -6, -1)``.
-Variation: TypeAlias = tuple[str, Number, Number]
+Varied: TypeAlias = tuple[str, Number, Number]
 
 
 def ask_for(
     search: Search,
-    vary: Sequence[Variation],
+    vary: Sequence[Varied],
     steps: int | None = None,
     precision: Number | None = None,
     measures: Sequence[tuple[Sense, str]] = (),
@@ -62,7 +62,7 @@ def _measure(search: Search, sense: Sense, term: str, when: str) -> Measure:
     return read_measure(search.specification, sense, term, when, search.query.claim.given)
 
 
-def read_knobs(vary: Sequence[Variation], setting: Setting, query: Query, library: Library) -> list[Knob]:
+def read_knobs(vary: Sequence[Varied], setting: Setting, query: Query, library: Library) -> list[Knob]:
     """What is varied, as knobs. Raises ``UsageError``, ``InputError``."""
     if len(vary) > 2:
         raise UsageError(f"--vary is given {len(vary)} times: vary one or two things at once")
