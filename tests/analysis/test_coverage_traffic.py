@@ -42,9 +42,9 @@ def test_what_is_proved_not_to_be_and_occurs_is_our_fault() -> None:
 
 
 def test_a_trace_is_told_under_all_its_classes() -> None:
-    told = TRAFFIC.as_data()
-    assert [x["classes"] for x in told["missed"]] == [[FIRST.key], [FIRST.key], [""]]
-    assert told["missed"][0]["pair"] == "3 and 5, frames 10 to 40"
+    missed = TRAFFIC.told.missed
+    assert [x.classes for x in missed] == [(FIRST.key,), (FIRST.key,), ("",)]
+    assert missed[0].pair == "3 and 5, frames 10 to 40"
 
 
 def test_windows_that_overlap_count_once(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from evidence.test_drive_file import FILE
 from roadproof.analysis.coverage.claims import claims_of
 from roadproof.errors import InputError
-from roadproof.evidence.answers.coverage import read_classes
+from roadproof.evidence.answers.coverage import Entries, KeptClass
 from roadproof.evidence.answers.entry import Entry, mismatch
 from roadproof.evidence.answers.read import (
     faults_of,
@@ -22,6 +22,7 @@ from roadproof.evidence.answers.read import (
     record_fields,
 )
 from roadproof.evidence.answers.reader import Background, first_set
+from roadproof.evidence.codec import read as read_as
 from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
 from roadproof.proving.properties import find_label
@@ -230,6 +231,7 @@ def coverage(set_name: str) -> dict[str, Any]:
     return {
         "schema": "roadproof/coverage/1",
         "set": set_name,
+        "wider": [],
         **SAID,
         "verdict": "COVERED",
         "claims": [
@@ -263,19 +265,50 @@ def test_a_gap_is_on_the_road_that_is_said_and_its_class_is_not_proved_empty() -
     gap |= {"drive": "gap.json", "elsewhere": {"main-3": "gap-main-3.json"}}
     said = {**part, "verdict": "WITNESSED", "gaps": [gap], "claim": "", "certificate": None, "reason": ""}
     common = Background(Fields(coverage("ext"), "index.json"), LIBRARY, "index.json").at("ext")
-    there, elsewhere = read_classes(common, [said])
+
+    def read_class(said: dict[str, Any]) -> list[Entry]:
+        return list(Entries(common, [4]).of_classes([read_as(KeptClass, said, "class")]))
+
+    there, elsewhere = read_class(said)
     on = {road: replace(FILE, road=replace(FILE.road, name=road)) for road in ("main-2", "main-3")}
     for entry, road, other in ((there, "main-2", "main-3"), (elsewhere, "main-3", "main-2")):
         assert entry.fault_of_drive is not None
         assert entry.fault_of_drive(on[road]) == ""
         assert entry.fault_of_drive(on[other]) == f"its road is {road}, but that of its file {other}"
     for more in ({"claim": "false"}, {"certificate": "empty.json"}):
-        assert "with a claim or a certificate" in next(iter(read_classes(common, [{**said, **more}]))).fault
+        assert "with a claim or a certificate" in read_class({**said, **more})[0].fault
+    assert there.expected is not None
+    assert elsewhere.fault_of is not None
+    assert there.expected() == []
+    assert "of a gap its formula has to say initSafe(SV, POV)" in elsewhere.fault_of(gap["formula"])
+    missed = [f"not (some M in lanes: scenario_4({pair}, M))" for pair in ("SV, POV", "POV, SV")]
+    whole = " and ".join(["initSafe(SV, POV)", "F danger(SV, POV)", *missed, gap["formula"]])
+    there, _ = read_class({**said, "gaps": [gap | {"formula": whole}]})
+    assert there.expected is not None
+    assert there.expected() == [common.formula(whole)]
+    assert elsewhere.fault_of(whole) == ""
+    assert f"has to say {missed[1]}" in elsewhere.fault_of(whole.replace(missed[1], "v_lon(SV) > 0 m/s"))
+
+
+def test_a_claim_and_a_need_of_another_set() -> None:
+    data = coverage("complete")
+    need = {"definition": "cutIn", "extends": "ext", "verdict": "WITNESSED", "road": "main-2"}
+    need |= {"formula": "v_lon(SV) > 0 m/s", "drive": "needed.json"}
+    *claims, found = entries({**data, "needs": [need]})
+    assert found.fault == ""
+    assert found.fault_of_drive is not None
+    assert found.fault_of_drive(replace(FILE, road=replace(FILE.road, name="merge"))).startswith(
+        "its road is"
+    )
+    assert all(x.expected is not None and x.common.formula(str(x.claim)) in x.expected() for x in claims)
+    *_, other = entries({**data, "needs": [need | {"extends": "base"}]})
+    assert other.fault == "index.json, need 1: its set extends 'ext', not 'base'"
 
 
 def test_verdicts_on_a_set() -> None:
     assert faults({**coverage("ext"), "verdict": "GAPS"}) == ["GAPS, but it has none"]
-    assert faults({**coverage("ext"), "verdict": "PROVED"}) == ["there is no verdict 'PROVED' on a set"]
+    with pytest.raises(InputError, match="verdict: 'PROVED' is none of COVERED, GAPS, UNKNOWN"):
+        faults({**coverage("ext"), "verdict": "PROVED"})
     assert faults({**coverage("ext"), "verdict": "UNKNOWN"}) == []
 
 

@@ -123,9 +123,19 @@ def hostile_classes() -> dict:
     return {"set": HOSTILE, **SAID, "scenarios": [4], "view": "dense", "seconds": 1, **classes}
 
 
+def hostile_gaps() -> dict:
+    one = {"scenario": 1, "component": HOSTILE, "description": CLOSED, "condition": CLOSED}
+    one |= {"verdict": "WITNESSED", "gaps": [1], "reason": HOSTILE}
+    gap = {"number": 1, "road": HOSTILE, "formula": CLOSED, "first": HOSTILE, "caught_by": [[HOSTILE]]}
+    gap |= {"classes": [CLOSED], "drive": CLOSED, "elsewhere": {HOSTILE: None}}
+    claim = {"claim": HOSTILE, "verdict": "REFUTED", "certificate": None, "reason": CLOSED}
+    empty = one | {"condition": HOSTILE, "verdict": "IMPOSSIBLE", "gaps": [], "claim": CLOSED}
+    said = {"set": HOSTILE, "wider": [CLOSED], **SAID, "view": "dense", "seconds": 1, "verdict": "GAPS"}
+    return {**said, "claims": [claim], "classes": [one, empty], "gaps": [gap]}
+
+
 def hostile_answers(drive: dict) -> dict[str, dict]:
     named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
-    entry = {"verdict": "WITNESSED", "formula": HOSTILE, "reason": CLOSED, "name": HOSTILE, "scenario": 1}
     claim = {"property": HOSTILE, "part": CLOSED, "scenario": None, "set": HOSTILE, "claim": HOSTILE}
     claim |= {"assuming": [CLOSED], "expected": "PROVED", "verdict": "PROVED", "refuted_by": None}
     claim |= {"beyond_limits": None, "view": "dense", "seconds": 1, "reason": HOSTILE, "assumptions": []}
@@ -145,11 +155,7 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
             "backward": direction,
         },
         "classify": hostile_classes(),
-        "coverage": {
-            "verdict": CLOSED,
-            "classes": [entry | {"component": HOSTILE, "condition": CLOSED, "gaps": [1]}],
-            "gaps": [{"number": 1, "road": HOSTILE, "formula": CLOSED, "caught_by": HOSTILE}],
-        },
+        "coverage": hostile_gaps(),
         "catalogue": {
             "targets": [{"name": HOSTILE, "words": CLOSED, "tested": [HOSTILE]}],
             "tests": [

@@ -67,7 +67,7 @@ class Coverages(Studied[Coverage, Any]):
     @property
     def verdicts(self) -> dict[str, Verdict]:
         """Of each claim, each class of gaps, and each definition that may be needed."""
-        found = {x.claim.text: x.verdict for x in self.surveyed.claims}
+        found: dict[str, Verdict] = {x.claim.text: x.verdict for x in self.surveyed.claims}
         found |= {_name(x): x.verdict for x in self.surveyed.classes}
         return found | {f"{x.definition} is needed": x.verdict for x in self.surveyed.needs}
 
@@ -104,8 +104,7 @@ class Coverages(Studied[Coverage, Any]):
         ]
 
     def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-        data = self.study.as_data(self.surveyed, self.found.answers, records)
-        return {**data, "seconds": round(self.seconds, 1)}
+        return self.study.index(self.surveyed, self.found.answers, records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """A picture of each gap."""

@@ -21,7 +21,9 @@ from roadproof.api.definitions import Definitions
 from roadproof.api.restricting import drivers_of
 from roadproof.api.settings import basis_of
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue import SCHEMA
+from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, Told
 from roadproof.evidence.strict import Fields, read_json
@@ -31,7 +33,6 @@ from roadproof.spec.library import Library
 from roadproof.spec.scenarios import name_of as scenario_name
 from roadproof.study.pool import Progress
 from roadproof.study.shelf import Shelf, inside
-from roadproof.verdict import Verdict
 
 _DERIVED = (
     "targets",
@@ -122,11 +123,12 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
     if len(found.items("claims")) != len(claims):
         raise InputError(f"{found.where}: with gaps asked for there are {len(claims)} claims")
     for number, content in enumerate(found.items("claims"), 1):
-        said = Fields(content, f"{found.where}, claim {number}")
-        if said.text("claim") not in claims:
-            raise InputError(f"{said.where}: coverage does not rest on this claim")
-        claim = claims[said.text("claim")]
-        answer = Covered(claim.query, _verdict(said), None, said.text("reason"))
+        where = f"{found.where}, claim {number}"
+        said = read(coverage.Claim, content, where)
+        if said.claim not in claims:
+            raise InputError(f"{where}: coverage does not rest on this claim")
+        claim = claims[said.claim]
+        answer = Covered(claim.query, said.verdict, None, said.reason)
         yield GAPS + name_of(claim), AboutGaps(answer)
     parts = (
         {}
@@ -134,18 +136,13 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
         else {tuple(names_of(x).values()): x for x in study.gaps.parts.values()}
     )
     for number, content in enumerate(found.items("classes"), 1):
-        said = Fields(content, f"{found.where}, class {number}")
-        key = tuple(said.get(name) for name in names_of(None))
+        where = f"{found.where}, class {number}"
+        one = read(coverage.KeptClass, content, where)
+        key = tuple(getattr(one, name) for name in names_of(None))
         if key not in parts:
-            raise InputError(f"{said.where}: there is no such class of gaps, or it is said twice")
-        answers = (ClassAnswer(parts.pop(key), _verdict(said), reason=said.text("reason")),)
+            raise InputError(f"{where}: there is no such class of gaps, or it is said twice")
+        answers = (ClassAnswer(parts.pop(key), one.verdict, reason=one.reason),)
         yield f"{GAPS}class-{number}", AboutGaps(answers)
-
-
-def _verdict(said: Fields) -> Verdict:
-    if said.text("verdict") not in [*map(str, Verdict)]:
-        raise InputError(f"{said.where}: verdict={said.text('verdict')[:40]!r} is none")
-    return Verdict(said.text("verdict"))
 
 
 # --- tests ---------------------------------------------------------------------------------------

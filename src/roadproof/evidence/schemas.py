@@ -9,6 +9,7 @@ from typing import Any, get_args
 from roadproof.evidence.answers import (
     classify,
     compare,
+    coverage,
     drives,
     explore,
     order,
@@ -27,6 +28,9 @@ TITLES: Mapping[type, str] = {
     classify.Index: (
         "roadproof classify --json, and index.json of its folder: classes that exclude each other"
     ),
+    coverage.Index: (
+        "roadproof coverage --json, and index.json of its folder: which disturbances a set misses"
+    ),
     drives.Answer: "roadproof witness --json: drives for scenarios and formulas",
     explore.Index: (
         "roadproof explore --json, and index.json of its folder: for which values there is a drive"
@@ -39,6 +43,7 @@ TITLES: Mapping[type, str] = {
 }
 RECORDS: Mapping[type, type] = {
     classify.Index: classify.Record,
+    coverage.Index: coverage.Record,
     drives.Answer: drives.Record,
     order.Index: order.Record,
 }

@@ -7,6 +7,7 @@ from typing import Any
 from roadproof.analysis.coverage.classes import GapGroup
 from roadproof.analysis.coverage.parts import Part
 from roadproof.errors import InputError
+from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.spec.elaborate import read_claim
@@ -44,7 +45,7 @@ class ClassAnswer:
     """
 
     part: Part | None
-    verdict: Verdict
+    verdict: kept.CountedVerdict
     gaps: tuple[Gap, ...] = ()
     claim: Query | None = None
     certificate: Certificate | None = None
@@ -62,23 +63,24 @@ def group_name(group: GapGroup) -> str:
     return group.title.replace(" ", "-")
 
 
-def record_of(group: GapGroup, answers: Answers, shelf: Shelf) -> dict[str, Any]:
-    """The answers for a group as plain data; their evidence goes to the shelf."""
+def record_of(group: GapGroup, answers: Answers, shelf: Shelf) -> kept.Record:
+    """The answers for a group as they are kept; their evidence goes to the shelf."""
     stems = (f"{group_name(group)}-{k}" for k in range(len(answers)))
-    classes = [_class_data(x, stem, shelf) for stem, x in zip(stems, answers, strict=True)]
-    return {"group": group.title, "classes": classes}
+    classes = tuple(_kept_class(x, stem, shelf) for stem, x in zip(stems, answers, strict=True))
+    return kept.Record(group=group.title, classes=classes)
 
 
-def _class_data(answer: ClassAnswer, stem: str, shelf: Shelf) -> dict[str, Any]:
-    return {
+def _kept_class(answer: ClassAnswer, stem: str, shelf: Shelf) -> kept.KeptClass:
+    assert answer.verdict is not Verdict.CROSSCHECK_FAILED  # that is said of recordings alone
+    return kept.KeptClass(
         **names_of(answer.part),
-        "verdict": str(answer.verdict),
-        "gaps": [_gap_data(gap, f"gap-{stem}-{n}", shelf) for n, gap in enumerate(answer.gaps, 1)],
-        "claim": "" if answer.claim is None else answer.claim.text,
-        "certificate": shelf.certificate(f"empty-{stem}.json", answer.certificate),
-        "reason": answer.reason,
-        "none_for": list(answer.none_for),
-    }
+        verdict=answer.verdict,
+        gaps=tuple(_kept_gap(gap, f"gap-{stem}-{n}", shelf) for n, gap in enumerate(answer.gaps, 1)),
+        claim="" if answer.claim is None else answer.claim.text,
+        certificate=shelf.certificate(f"empty-{stem}.json", answer.certificate),
+        reason=answer.reason,
+        none_for=answer.none_for,
+    )
 
 
 def names_of(part: Part | None) -> dict[str, Any]:
@@ -91,54 +93,47 @@ def names_of(part: Part | None) -> dict[str, Any]:
     }
 
 
-def _gap_data(gap: Gap, name: str, shelf: Shelf) -> dict[str, Any]:
+def _kept_gap(gap: Gap, name: str, shelf: Shelf) -> kept.Gap:
     file = gap.drive.file
-    return {
-        "road": file.road.name,
-        "formula": file.formula,
-        "first": gap.first,
-        "caught_by": [list(names) for names in gap.caught_by],
-        "classes": list(gap.classes),
-        "drive": shelf.drive(f"{name}.json", gap.drive),
-        "elsewhere": {
-            road: shelf.drive(f"{name}-{road}.json", drive) for road, drive in gap.elsewhere.items()
-        },
-    }
+    return kept.Gap(
+        road=file.road.name,
+        formula=file.formula,
+        first=gap.first,
+        caught_by=gap.caught_by,
+        classes=gap.classes,
+        drive=shelf.drive(f"{name}.json", gap.drive),
+        elsewhere={road: shelf.drive(f"{name}-{road}.json", drive) for road, drive in gap.elsewhere.items()},
+    )
 
 
 def answers_in(
-    record: Mapping[str, Any], group: GapGroup, specification: Specification, shelf: Shelf
+    classes: Sequence[kept.KeptClass], group: GapGroup, specification: Specification, shelf: Shelf
 ) -> Answers:
     """The inverse of ``record_of``, with every drive judged again. Raises ``InputError``."""
-    classes: Sequence[Mapping[str, Any]] = record["classes"]
-    if [{name: x[name] for name in names_of(None)} for x in classes] != [names_of(x) for x in group.parts]:
+    named = [{name: getattr(x, name) for name in names_of(None)} for x in classes]
+    if named != [names_of(part) for part in group.parts]:
         raise InputError(f"the classes that are kept of {group.title} are not its own")
     found = zip(group.parts, classes, strict=True)
     return tuple(_read_class(part, said, specification, shelf) for part, said in found)
 
 
 def _read_class(
-    part: Part | None, said: Mapping[str, Any], specification: Specification, shelf: Shelf
+    part: Part | None, said: kept.KeptClass, specification: Specification, shelf: Shelf
 ) -> ClassAnswer:
     return ClassAnswer(
         part,
-        Verdict(said["verdict"]),
-        tuple(_read_gap(gap, shelf) for gap in said["gaps"]),
-        read_claim(specification, said["claim"]) if said["claim"] else None,
-        shelf.read_certificate(said["certificate"]),
-        said["reason"],
-        tuple(said["none_for"]),
+        said.verdict,
+        tuple(_read_gap(gap, shelf) for gap in said.gaps),
+        read_claim(specification, said.claim) if said.claim else None,
+        shelf.read_certificate(said.certificate),
+        said.reason,
+        said.none_for,
     )
 
 
-def _read_gap(said: Mapping[str, Any], shelf: Shelf) -> Gap:
-    drives = {road: shelf.read_drive(kept) for road, kept in said["elsewhere"].items()}
-    drive = shelf.read_drive(said["drive"])
+def _read_gap(said: kept.Gap, shelf: Shelf) -> Gap:
+    drives = {road: shelf.read_drive(file) for road, file in said.elsewhere.items()}
+    drive = shelf.read_drive(said.drive)
     assert drive is not None
-    return Gap(
-        drive,
-        said["first"],
-        tuple(map(tuple, said["caught_by"])),
-        tuple(said["classes"]),
-        {road: judged for road, judged in drives.items() if judged is not None},
-    )
+    there = {road: judged for road, judged in drives.items() if judged is not None}
+    return Gap(drive, said.first, said.caught_by, said.classes, there)

@@ -31,7 +31,7 @@ from roadproof.spec.scenarios import (
     sector,
     vehicles_of,
 )
-from roadproof.verdict import Verdict
+from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
 
 PROOF = 60.0  # units of work for a claim of coverage
@@ -42,7 +42,7 @@ class Covered:
     """The answer to one claim of coverage, with a certificate where it is proved."""
 
     claim: Query
-    verdict: Verdict
+    verdict: ProofVerdict
     certificate: Certificate | None
     reason: str
 
@@ -97,6 +97,7 @@ def prove_claim(basis: Basis, claim: Query) -> Covered:
         result = basis.proof_of(claim, PROOF, "coverage")
     except Late as late:
         return Covered(claim, Verdict.UNKNOWN, None, str(late))
+    assert result.verdict is not Verdict.PROVED_BOUNDED
     return Covered(claim, result.verdict, result.certificate, result.reason)
 
 

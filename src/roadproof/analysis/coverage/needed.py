@@ -15,6 +15,7 @@ from roadproof.analysis.coverage.claims import (
 from roadproof.analysis.coverage.simple import HORIZON, ZERO, simple_drives
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.effort import Late
+from roadproof.evidence.answers.coverage import NeedVerdict
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
 from roadproof.judge.exact import judge
@@ -41,7 +42,7 @@ class Need:
 
     definition: str
     parent: str
-    verdict: Verdict
+    verdict: NeedVerdict
     drive: Judged | None = None
 
 
@@ -99,7 +100,7 @@ def _judged(basis: Basis, without: Specification, file: DriveFile) -> Judged:
     return Judged(replace(file, formula=formula), basis.library)
 
 
-def _covers(basis: Basis, without: Specification) -> Verdict:
+def _covers(basis: Basis, without: Specification) -> NeedVerdict:
     """PROVED where coverage is proved without the definition, too, else UNKNOWN."""
     effort = basis.effort.of(PROOF)
     try:

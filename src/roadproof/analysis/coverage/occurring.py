@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.evidence.answers.coverage import MissedTrace, Traffic
 from roadproof.verdict import Verdict
 
 
@@ -43,16 +43,13 @@ class GapTraffic:
     missed: tuple[GapTrace, ...]
     repeats: int
 
-    def as_data(self) -> dict[str, Any]:
+    @property
+    def told(self) -> Traffic:
         """What an index says of it."""
-        missed = [{"recording": x.recording, "pair": x.pair, "classes": list(x.keys)} for x in self.missed]
-        return {
-            "recordings": str(self.folder),
-            "view": "recorded",
-            "disturbances": self.disturbances,
-            "repeats": self.repeats,
-            "missed": missed,
-        }
+        missed = tuple(MissedTrace(recording=x.recording, pair=x.pair, classes=x.keys) for x in self.missed)
+        return Traffic(
+            recordings=str(self.folder), disturbances=self.disturbances, repeats=self.repeats, missed=missed
+        )
 
 
 def with_counts(answer: ClassAnswer, traffic: GapTraffic) -> ClassAnswer:

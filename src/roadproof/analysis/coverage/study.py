@@ -30,7 +30,9 @@ from roadproof.analysis.coverage.settling import Settling
 from roadproof.analysis.coverage.surveyed import Surveyed, is_covered
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.errors import InputError
+from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
+from roadproof.evidence.codec import read, write
 from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
 
@@ -146,50 +148,48 @@ class Coverage:
                 return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
     def record(self, name: str, answer: Kept, shelf: Shelf) -> dict[str, Any]:
+        return write(self._record(name, answer, shelf))
+
+    def _record(self, name: str, answer: Kept, shelf: Shelf) -> kept.Record:
         match answer:
             case Covered(claim, verdict, certificate, reason):
                 file = shelf.certificate(f"{name}.json", certificate)
-                said = {"claim": claim.text, "verdict": str(verdict), "certificate": file}
-                return {"claim": {**said, "reason": reason}}
+                said = kept.Claim(claim=claim.text, verdict=verdict, certificate=file, reason=reason)
+                return kept.Record(claim=said)
             case Need(definition, parent, verdict, drive):
-                told = {"road": "", "formula": ""}
-                if drive is not None:
-                    told = {"road": drive.file.road.name, "formula": drive.file.formula}
-                names = {"definition": definition, "extends": parent, "verdict": str(verdict)}
-                return {"need": {**names, **told, "drive": shelf.drive(f"{name}.json", drive)}}
+                need = kept.Need(
+                    definition=definition,
+                    extends=parent,
+                    verdict=verdict,
+                    road="" if drive is None else drive.file.road.name,
+                    formula="" if drive is None else drive.file.formula,
+                    drive=shelf.drive(f"{name}.json", drive),
+                )
+                return kept.Record(need=need)
             case Looked():
-                return {}
+                return kept.Record()
             case _:
                 return record_of(self.groups[name], answer, shelf)
 
     def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
-        match record:
-            case {"claim": said}:
-                return self._read_claim(said, shelf)
-            case {"need": said}:
-                need = Need(
-                    said["definition"],
-                    said["extends"],
-                    Verdict(said["verdict"]),
-                    shelf.read_drive(said["drive"]),
-                )
-                return name_of(NeededDefinition(need.definition)), need
-            case _:
-                return self._read_classes(record, shelf)
-
-    def _read_claim(self, said: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
-        for claim in self.claims:
-            if claim.query.text == said["claim"]:
-                certificate = shelf.read_certificate(said["certificate"])
-                verdict = Verdict(said["verdict"])
-                return name_of(claim), Covered(claim.query, verdict, certificate, said["reason"])
-        raise InputError(f"coverage does not rest on this claim: {said['claim'][:120]}")
-
-    def _read_classes(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
+        said = _read(record)
+        if said.claim is not None:
+            return self._recalled_claim(said.claim, shelf)
+        if said.need is not None:
+            drive = shelf.read_drive(said.need.drive)
+            need = Need(said.need.definition, said.need.extends, said.need.verdict, drive)
+            return name_of(NeededDefinition(need.definition)), need
         for name, group in self.groups.items():
-            if group.title == record["group"]:
-                return name, answers_in(record, group, self.survey.basis.specification, shelf)
-        raise InputError(f"the set has no component {record['group']}")
+            if group.title == said.group:
+                return name, answers_in(said.classes, group, self.survey.basis.specification, shelf)
+        raise InputError(f"the set has no component {said.group}")
+
+    def _recalled_claim(self, said: kept.Claim, shelf: Shelf) -> tuple[str, Kept]:
+        for claim in self.claims:
+            if claim.query.text == said.claim:
+                certificate = shelf.read_certificate(said.certificate)
+                return name_of(claim), Covered(claim.query, said.verdict, certificate, said.reason)
+        raise InputError(f"coverage does not rest on this claim: {said.claim[:120]}")
 
     # --- all together ----------------------------------------------------------------------------
 
@@ -218,30 +218,44 @@ class Coverage:
         """The names of the groups that have answers, in order; none is shown where no gap can be."""
         return [] if is_covered(self._proved(answers)) else list(self.groups)
 
-    def as_data(
-        self, surveyed: Surveyed, answers: Mapping[str, Kept], records: Mapping[str, Mapping[str, Any]]
+    def index(
+        self,
+        surveyed: Surveyed,
+        answers: Mapping[str, Kept],
+        records: Mapping[str, Mapping[str, Any]],
+        seconds: float,
     ) -> dict[str, Any]:
         """The index, made of the answers as they are recorded: classes name their gaps by numbers."""
-        recorded = [entry for name in self._shown(answers) for entry in records[name]["classes"]]
-        classes: list[dict[str, Any]] = []
-        numbered: list[dict[str, Any]] = []
-        for answer, entry in zip(surveyed.classes, recorded, strict=True):
-            first = len(numbered) + 1
-            numbered += [{"number": first + k, **gap} for k, gap in enumerate(entry["gaps"])]
-            numbers = list(range(first, len(numbered) + 1))
-            told: dict[str, Any] = {"verdict": str(answer.verdict), "gaps": numbers, "reason": answer.reason}
-            told |= {} if answer.in_traffic is None else {"in_traffic": answer.in_traffic}
-            classes.append({**entry, **told, **({"trace": answer.trace} if answer.trace else {})})
-        return {
+        recorded = [x for name in self._shown(answers) for x in _read(records[name]).classes]
+        classes: list[kept.CountedClass] = []
+        gaps: list[kept.NumberedGap] = []
+        for answer, said in zip(surveyed.classes, recorded, strict=True):
+            first = len(gaps) + 1
+            gaps += [kept.NumberedGap(number=k, **vars(gap)) for k, gap in enumerate(said.gaps, first)]
+            told = {
+                "verdict": answer.verdict,
+                "reason": answer.reason,
+                "gaps": tuple(range(first, len(gaps) + 1)),
+            }
+            counts = {"in_traffic": answer.in_traffic, "trace": answer.trace}
+            classes.append(kept.CountedClass(**{**vars(said), **told, **counts}))
+        claims = (_read(records[name_of(claim)]).claim for claim in self.claims)
+        needs = (_read(records[name_of(NeededDefinition(x.definition))]).need for x in surveyed.needs)
+        index = kept.Index(
             **self.question.heading,
-            "view": "dense",
-            "verdict": str(surveyed.verdict),
-            "claims": [records[name_of(claim)]["claim"] for claim in self.claims],
-            "classes": classes,
-            "gaps": numbered,
-            "needs": [records[name_of(NeededDefinition(x.definition))]["need"] for x in surveyed.needs],
-            "traffic": None if surveyed.traffic is None else surveyed.traffic.as_data(),
-        }
+            verdict=surveyed.verdict,
+            claims=tuple(x for x in claims if x is not None),
+            classes=tuple(classes),
+            gaps=tuple(gaps),
+            needs=tuple(x for x in needs if x is not None),
+            traffic=None if surveyed.traffic is None else surveyed.traffic.told,
+            seconds=round(seconds, 1),
+        )
+        return write(index)
+
+
+def _read(record: Mapping[str, Any]) -> kept.Record:
+    return read(kept.Record, record, "a kept answer")
 
 
 def _is_classes(answer: Kept) -> TypeGuard[tuple[ClassAnswer, ...]]:

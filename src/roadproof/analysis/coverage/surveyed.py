@@ -7,6 +7,7 @@ from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.claims import Covered
 from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.occurring import GapTraffic
+from roadproof.evidence.answers.coverage import SetVerdict
 from roadproof.verdict import Verdict
 
 
@@ -20,7 +21,7 @@ class Surveyed:
     traffic: GapTraffic | None = None
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> SetVerdict:
         return verdict_on(self.claims, self.classes, self.traffic)
 
 
@@ -31,7 +32,7 @@ def is_covered(claims: Sequence[Covered]) -> bool:
 
 def verdict_on(
     claims: Sequence[Covered], classes: Sequence[ClassAnswer], traffic: GapTraffic | None
-) -> Verdict:
+) -> SetVerdict:
     """The verdict on a set: CROSSCHECK-FAILED where traffic shows what is proved not to be."""
     proved = is_covered(claims)
     if any(x.verdict is Verdict.CROSSCHECK_FAILED for x in classes):

@@ -10,6 +10,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of, shows_of_claim
 from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.codec import read as read_as
 from roadproof.evidence.strict import Fields, rational
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.terms import constant_value
@@ -111,8 +112,10 @@ def _fault(line: Fields, common: Common, relation: str, other: str, claim: str) 
 
 def read_gaps(claims: Sequence[object], classes: Sequence[object], background: Background) -> Iterator[Entry]:
     """What is said of classes of gaps, as an index of ``coverage`` says it. Raises ``InputError``."""
-    yield from coverage.read_claims(background.home, claims)
-    yield from coverage.read_classes(background.home, classes)
+    numbers = read_as(tuple[int, ...], background.said.items("scenarios"), "scenarios")
+    entries = coverage.Entries(background.home, numbers)
+    yield from entries.of_claims([read_as(coverage.Claim, x, background.where) for x in claims])
+    yield from entries.of_classes([read_as(coverage.KeptClass, x, background.where) for x in classes])
 
 
 def _read_index(data: Fields, background: Background) -> Iterator[Entry]:

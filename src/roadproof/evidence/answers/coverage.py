@@ -1,110 +1,352 @@
 """The index and the journal of ``roadproof coverage``: classes of gaps, and claims that there are none."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
+from roadproof.evidence.answers.gaps import claims_of, fault_of_gap
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.shared import (
+    Count,
+    Dense,
+    Heading,
+    KeptCertificate,
+    KeptDrive,
+    OneScenario,
+    Options,
+    Parameters,
+    Reason,
+    Seconds,
+    SetName,
+    Specifications,
+)
+from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read, unchecked
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import without_names
-from roadproof.spec.compose import both, either, eventually, implication
-from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import (
-    PAIR,
-    SUBJECT,
-    Scenario,
-    applied,
-    asked_between,
-    danger,
-    in_lane,
-    in_some_zone,
     numbers_of,
-    safe,
-    sector,
-    vehicles_of,
 )
+from roadproof.verdict import ProofVerdict, Verdict
 
-SCHEMA = "roadproof/coverage/1"
-_CLASS = ("scenario", "component", "description", "condition", "verdict", "gaps", "claim", "certificate")
-_CLASS_MORE = ("reason", "none_for", "in_traffic", "trace")
-_GAP = ("number", "road", "formula", "first", "caught_by", "classes", "drive", "elsewhere")
-_OF_CLASS = ("scenario", "component", "condition", "description", "reason", "none_for")
-UNCHECKED_KEPT = (
-    *("claim.reason", *(f"classes[].{x}" for x in _OF_CLASS)),
-    *(f"classes[].gaps[].{x}" for x in ("first", "caught_by", "classes")),
-)
-_NEED = ("definition", "extends", "verdict", "road", "formula", "drive")
-
-
-def read_classes(common: Common, records: Sequence[object]) -> Iterator[Entry]:
-    """The classes of an index, or of a line of a journal, which holds their gaps inside."""
-    for number, content in enumerate(records, 1):
-        line = Fields(content, f"{common.where}, class {number}", (*_CLASS, *_CLASS_MORE))
-        verdict, gaps = line.text("verdict"), line.items("gaps")
-        shows = shows_of(verdict, line.where, "proof", "drive")
-        words = [line.text(x) for x in ("component", "condition") if line.text(x)] or ["no single condition"]
-        # A class is witnessed by its gaps, which are entries of their own.
-        fault = f"{line.where}: {verdict} with {len(gaps)} gaps" if bool(gaps) != (shows == "drive") else ""
-        if shows == "drive" and (line.text("claim") or line.has("certificate")):
-            fault = f"{line.where}: {verdict} with a claim or a certificate that there is no gap"
-        if shows != "drive" or fault:
-            yield Entry(
-                common,
-                line.where,
-                ("class", line.content.get("scenario"), *words),
-                verdict,
-                f"class {', '.join(words)}",
-                "nothing" if shows == "drive" else shows,
-                line.text("claim"),
-                evidence_name(line, "certificate"),
-                unchecked=("that the claim says that the class is empty",) if shows == "proof" else (),
-                fault=fault,
-            )
-        inside = [gap for gap in gaps if isinstance(gap, dict)]
-        yield from read_gaps(common, inside, line.where)
+SCHEMA: Final = "roadproof/coverage/1"
+ClassVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.UNKNOWN]
+CountedVerdict: TypeAlias = Literal[
+    Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.UNKNOWN, Verdict.CROSSCHECK_FAILED
+]
+NeedVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.PROVED, Verdict.UNKNOWN]
+SetVerdict: TypeAlias = Literal[Verdict.COVERED, Verdict.GAPS, Verdict.UNKNOWN, Verdict.CROSSCHECK_FAILED]
+Names: TypeAlias = tuple[str, ...]
+Road: TypeAlias = Annotated[str, Doc("Name of the road.")]
+Position: TypeAlias = Annotated[int, Rule(minimum=1)]
 
 
-def read_gaps(common: Common, records: Sequence[object], where: str) -> Iterator[Entry]:
-    """Gaps: drives that the set misses."""
-    unchecked = ("which wider set catches it", "to which classes it belongs")
-    for number, content in enumerate(records, 1):
-        line = Fields(content, f"{where}, gap {number}", _GAP)
-        placed = Fields(line.mapping("elsewhere"), f"{line.where}, elsewhere")
-        files: list[tuple[str | None, str | None, str]] = [
-            (line.text("formula"), evidence_name(line, "drive"), line.text("road"))
-        ]
-        files += [(None, evidence_name(placed, road), road) for road in placed.content]
-        for claim, file, road in files:
-            told = unchecked if claim else (*unchecked, "that its formula is that of the gap elsewhere")
-            yield Entry(
-                common, line.where, ("gap", file), "WITNESSED", f"gap on {road}", "drive", claim, file,
-                unchecked=told, fault_of=_not_compared, fault_of_drive=partial(_on_other_road, road),
-            )  # fmt: skip
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """One of the claims that together say that there is no gap."""
+
+    claim: FormulaText
+    verdict: ProofVerdict
+    certificate: KeptCertificate = None
+    reason: Reason = ""
+
+    def expected(self, common: Common, numbers: Sequence[int]) -> list[Formula]:
+        """All claims that together say that there is no gap of the scenarios ``numbers``."""
+        return claims_of(common.specification, numbers)
 
 
-def _on_other_road(road: str, file: DriveFile) -> str:
-    """Why a drive is not on a road, or nothing."""
-    return "" if file.road.name == road else f"its road is {road[:40]}, but that of its file {file.road.name}"
+@dataclass(frozen=True, kw_only=True)
+class Gap:
+    """A drive that the set misses, near to the scenario of a class."""
+
+    road: Road
+    formula: FormulaText
+    first: Annotated[
+        str,
+        UNCHECKED,
+        Doc("The first of the wider sets that catches it; empty where none does."),
+    ]
+    caught_by: Annotated[
+        tuple[Names, ...],
+        UNCHECKED,
+        Doc("The smallest choices of definitions of that set which catch it."),
+    ]
+    classes: Annotated[Names, UNCHECKED, Doc("The parts for which it is a near miss.")]
+    drive: KeptDrive = None
+    elsewhere: Annotated[Mapping[str, KeptDrive], Doc("The same motions as gaps on other roads, by road.")]
+
+    def expected(self, common: Common, numbers: Sequence[int]) -> list[Formula]:
+        """Its formula, where that says that none of the scenarios ``numbers`` holds between two vehicles."""
+        return [] if fault_of_gap(common, numbers, self.formula) else [common.formula(self.formula)]
 
 
-def _not_compared(formula: str) -> str:
-    """Of gaps elsewhere, whose formulas the index does not say; the entry lists that as not checked."""
-    return ""
+@dataclass(frozen=True, kw_only=True)
+class Numbered:
+    """What has a place among all of its kind."""
+
+    number: Annotated[Position, UNCHECKED, Doc("Its place among all gaps.")]
 
 
-def read_record(record: Fields, background: Background) -> Iterator[Entry]:
-    """An answer that was kept: to a claim, on a definition, or on the classes of a component."""
+@dataclass(frozen=True, kw_only=True)
+class NumberedGap(Gap, Numbered):
+    """A drive that the set misses, by number."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GapClass:
+    """A class of gaps, by what of a scenario is false."""
+
+    scenario: Annotated[OneScenario, UNCHECKED]
+    component: Annotated[
+        str,
+        UNCHECKED,
+        Doc("The definition of the scenario that is false; empty where no single condition is to blame."),
+    ]
+    description: Annotated[str, UNCHECKED, Doc("The component in words.")]
+    condition: Annotated[str, UNCHECKED, Doc("The condition of the component; empty where it is the whole.")]
+    verdict: CountedVerdict
+    gaps: tuple[Gap | int, ...]
+    claim: Annotated[str, Doc("Of an IMPOSSIBLE: that the class is empty.")] = ""
+    certificate: KeptCertificate = None
+    reason: Reason = ""
+    none_for: Annotated[
+        Names, UNCHECKED, Doc("Wider sets for which no gap was found that they catch first.")
+    ] = ()
+
+    def expected(self, common: Common) -> list[Formula]:
+        """The claim as it is read; that it says that the class is empty, ``check`` lists as not compared."""
+        return [common.formula(self.claim)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeptClass(GapClass):
+    """A class of gaps in a kept answer, which holds its gaps."""
+
+    verdict: ClassVerdict
+    gaps: Annotated[tuple[Gap, ...], Doc("Its gaps.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CountedClass(GapClass):
+    """A class of gaps in an index, which numbers its gaps."""
+
+    gaps: Annotated[tuple[Position, ...], Doc("Numbers of its gaps.")]
+    in_traffic: Annotated[
+        Count | None, UNCHECKED, LEFT_OUT, Doc("With --on: disturbances of the class in recordings.")
+    ] = None
+    trace: Annotated[
+        str, Rule(least=1), UNCHECKED, LEFT_OUT, Doc("With --on: where the first of these is.")
+    ] = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Need:
+    """Whether a set that covers needs one of its definitions."""
+
+    definition: Annotated[str, Doc("The name of the definition.")]
+    extends: Annotated[str, Doc("The set whose definition stands in its place in the formula.")]
+    verdict: Annotated[NeedVerdict, Doc("PROVED: without the definition the set covers as much.")]
+    road: Road
+    formula: Annotated[str, Doc("What holds on the drive; empty where there is none.")]
+    drive: KeptDrive = None
+
+    def expected(self, common: Common) -> list[Formula]:
+        """The formula as it is read; whether the set without the definition misses it is not compared."""
+        return [common.formula(self.formula)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MissedTrace:
+    """A disturbance of a recording that the set misses."""
+
+    recording: Annotated[str, Doc("The name of the recording.")]
+    pair: Annotated[str, Doc("Ids of two vehicles, and frames, in words.")]
+    classes: Annotated[Names, Doc("The parts for which it is a near miss; empty where there is none.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traffic:
+    """What recordings hold."""
+
+    recordings: Annotated[str, Doc("Their folder.")]
+    view: Literal["recorded"] = "recorded"
+    disturbances: Annotated[Count, Doc("Disturbances between two vehicles.")]
+    repeats: Annotated[Count, Doc("Disturbances that an earlier window has shown already.")] = 0
+    missed: Annotated[tuple[MissedTrace, ...], Doc("Those that the set misses.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Preamble:
+    """What an index says once for all classes."""
+
+    set: SetName
+    wider: Annotated[Names, UNCHECKED, Doc("Wider sets, from the next to the widest.")]
+    options: Options
+    parameters: Parameters
+    specs: Specifications
+
+
+@dataclass(frozen=True, kw_only=True)
+class Index(Preamble, Heading):
+    """Which disturbances a set misses."""
+
+    schema: Literal["roadproof/coverage/1"] = SCHEMA
+    view: Dense = "dense"
+    verdict: SetVerdict
+    claims: Annotated[tuple[Claim, ...], Doc("Together they say that there is no gap.")]
+    classes: Annotated[tuple[CountedClass, ...], Doc("Classes of gaps, by what of a scenario is false.")]
+    gaps: tuple[NumberedGap, ...]
+    needs: Annotated[
+        tuple[Need, ...],
+        Doc("With --needed, of a set that covers: a drive for each definition that it needs."),
+    ] = ()
+    traffic: Annotated[Traffic | None, UNCHECKED, Doc("With --on: what recordings hold.")] = None
+    seconds: Seconds = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """A kept answer: to a claim, on a definition, or on the classes of a component."""
+
+    claim: Annotated[Claim | None, LEFT_OUT] = None
+    need: Annotated[Need | None, LEFT_OUT] = None
+    group: Annotated[str | None, LEFT_OUT, Doc("The component that the classes are of.")] = None
+    classes: Annotated[tuple[KeptClass, ...], LEFT_OUT] = ()
+
+
+def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
+    index = read(Index, data.content, data.where)
+    common = background.at(index.set)
+    entries = Entries(common, numbers_of(common.specification))
+    yield from entries.of_claims(index.claims)
+    yield from entries.of_needs(index.needs)
+    told, count = [n for x in index.classes for n in x.gaps], len(index.gaps)
+    if told != [*range(1, count + 1)]:
+        raise InputError(f"{data.where}: its classes name the gaps {str(told)[:60]}, but it has 1 to {count}")
+    yield from entries.of_classes(index.classes)
+    yield from entries.of_gaps(index.gaps, data.where)
+
+
+def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
+    kept = read_kept(Record, record)
+    if [kept.claim, kept.need, kept.group].count(None) != 2:
+        raise InputError(f"{record.where}: it has to be about one claim, one definition or one group")
     common = background.at(background.said.text("set"))
-    if record.has("claim"):
-        yield from read_claims(common, [record.get("claim")])
-    elif record.has("need"):
-        yield from read_needs(common, [record.get("need")])
-    else:
-        yield from read_classes(common, record.items("classes"))
+    entries = Entries(common, numbers_of(common.specification))
+    yield from entries.of_claims([x for x in [kept.claim] if x is not None])
+    yield from entries.of_needs([x for x in [kept.need] if x is not None])
+    yield from entries.of_classes(kept.classes)
+
+
+@dataclass(frozen=True)
+class Entries:
+    """The entries of an answer about gaps of the scenarios ``numbers``."""
+
+    common: Common
+    numbers: Sequence[int]
+
+    def of_claims(self, claims: Sequence[Claim]) -> Iterator[Entry]:
+        """That there is no gap."""
+        for number, said in enumerate(claims, 1):
+            where = f"{self.common.where}, claim {number}"
+            yield Entry(
+                self.common,
+                where,
+                ("claim", said.claim),
+                said.verdict,
+                self.common.set_name,
+                shows_of_claim(said.verdict, where),
+                said.claim,
+                evidence_name(Fields({"certificate": said.certificate}, where), "certificate"),
+                unchecked=unchecked_of(said.verdict),
+                expected=partial(said.expected, self.common, self.numbers),
+            )
+
+    def of_needs(self, needs: Sequence[Need]) -> Iterator[Entry]:
+        """Definitions that are needed for there to be no gap."""
+        for number, said in enumerate(needs, 1):
+            where, drive = f"{self.common.where}, need {number}", said.verdict is Verdict.WITNESSED
+            parent = self.common.library.sets[self.common.set_name].parent
+            fault = f"{where}: its set extends '{parent}', not '{said.extends[:40]}'"
+            yield Entry(
+                self.common,
+                where,
+                ("need", said.definition),
+                said.verdict,
+                f"{said.definition} of {self.common.set_name}",
+                "drive" if drive else "nothing",
+                said.formula if drive else said.definition,
+                evidence_name(Fields({"drive": said.drive}, where), "drive"),
+                unchecked=("that the formula is the set without the definition",) if drive else (),
+                fault=fault if said.extends != parent else "",
+                fault_of_drive=partial(_on_other_road, said.road),
+                expected=partial(said.expected, self.common),
+            )
+
+    def of_classes(self, classes: Sequence[GapClass]) -> Iterator[Entry]:
+        """Classes of gaps. One that is witnessed is so by its gaps, which are entries of their own."""
+        for number, said in enumerate(classes, 1):
+            where = f"{self.common.where}, class {number}"
+            shows = shows_of(said.verdict, where, "proof", "drive")
+            words = [x for x in (said.component, said.condition) if x] or ["no single condition"]
+            fault = ""
+            if shows == "drive" and (said.claim or said.certificate is not None):
+                fault = f"{where}: {said.verdict} with a claim or a certificate that there is no gap"
+            elif bool(said.gaps) != (shows == "drive"):
+                fault = f"{where}: {said.verdict} with {len(said.gaps)} gaps"
+            if shows != "drive" or fault:
+                yield Entry(
+                    self.common,
+                    where,
+                    ("class", said.scenario, *words),
+                    said.verdict,
+                    f"class {', '.join(words)}",
+                    "nothing" if shows == "drive" else shows,
+                    said.claim,
+                    evidence_name(Fields({"certificate": said.certificate}, where), "certificate"),
+                    unchecked=("that the claim says that the class is empty",) if shows == "proof" else (),
+                    fault=fault,
+                    expected=partial(said.expected, self.common),
+                )
+            yield from self.of_gaps([x for x in said.gaps if isinstance(x, Gap)], where)
+
+    def of_gaps(self, gaps: Sequence[Gap], where: str) -> Iterator[Entry]:
+        """Drives that the set misses, each also on other roads."""
+        not_compared = ("which wider set catches it", "to which classes it belongs")
+        for number, said in enumerate(gaps, 1):
+            here = f"{where}, gap {number}"
+            entry = Entry(
+                self.common,
+                here,
+                ("gap", said.drive),
+                "WITNESSED",
+                f"gap on {said.road}",
+                "drive",
+                said.formula,
+                evidence_name(Fields({"drive": said.drive}, here), "drive"),
+                unchecked=not_compared,
+                fault_of_drive=partial(_on_other_road, said.road),
+                expected=partial(said.expected, self.common, self.numbers),
+            )
+            yield entry
+            for road in said.elsewhere:
+                file = evidence_name(Fields(dict(said.elsewhere), f"{here}, elsewhere"), road)
+                yield replace(
+                    entry,
+                    key=("gap", file),
+                    label=f"gap on {road}",
+                    claim=None,
+                    file=file,
+                    unchecked=(*not_compared, "that its formula is that of the gap elsewhere"),
+                    fault_of=partial(fault_of_gap, self.common, self.numbers),
+                    fault_of_drive=partial(_on_other_road, road),
+                    expected=None,
+                )
 
 
 def name_of_group(record: Fields) -> str | None:
@@ -112,130 +354,35 @@ def name_of_group(record: Fields) -> str | None:
     return record.text("group").replace(" ", "-") if record.has("group") else None
 
 
-def read_claims(common: Common, records: Sequence[object]) -> Iterator[Entry]:
-    """The claims that together say that there is no gap."""
-    for number, content in enumerate(records, 1):
-        where = f"{common.where}, claim {number}"
-        line = Fields(content, where, ("claim", "verdict", "certificate", "reason"))
-        verdict, claim = line.text("verdict"), line.text("claim")
-        shows = shows_of_claim(verdict, where)
-        file = evidence_name(line, "certificate")
-        yield Entry(
-            common,
-            where,
-            ("claim", claim),
-            verdict,
-            common.set_name,
-            shows,
-            claim,
-            file,
-            None,
-            None,
-            unchecked_of(verdict),
-        )
+def _on_other_road(road: str, file: DriveFile) -> str:
+    """Why a drive is not on a road, or nothing."""
+    return "" if file.road.name == road else f"its road is {road[:40]}, but that of its file {file.road.name}"
 
 
-def read_needs(common: Common, records: Sequence[object]) -> Iterator[Entry]:
-    """The definitions that are needed for there to be no gap."""
-    for number, content in enumerate(records, 1):
-        line = Fields(content, f"{common.where}, need {number}", _NEED)
-        verdict, name = line.text("verdict"), line.text("definition")
-        drive = verdict == "WITNESSED"
-        yield Entry(
-            common,
-            line.where,
-            ("need", name),
-            verdict,
-            f"{name} of {common.set_name}",
-            "drive" if drive else "nothing",
-            line.text("formula") if drive else name,
-            evidence_name(line, "drive"),
-            unchecked=("that the formula is the set without the definition",) if drive else (),
-        )
-
-
-def read_index(data: Fields, background: Background) -> Iterator[Entry]:
-    """The entries of an index. Raises ``InputError``."""
-    common = background.at(data.text("set"))
-    yield from read_claims(common, data.items("claims"))
-    yield from read_needs(common, data.items("needs"))
-    yield from _numbered(data)
-    yield from read_classes(common, data.items("classes"))
-    yield from read_gaps(common, data.items("gaps"), data.where)
-
-
-def _numbered(data: Fields) -> Iterator[Entry]:
-    """Nothing; raises ``InputError`` where classes name gaps that are not there."""
-    count = len(data.items("gaps"))
-    told = [n for content in data.items("classes") for n in Fields(content, data.where).items("gaps")]
-    if told != list(range(1, count + 1)):
-        raise InputError(f"{data.where}: its classes name the gaps {str(told)[:60]}, but it has 1 to {count}")
-    yield from ()
-
-
-def faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """What the verdict on the set says beyond what its entries show."""
-    common = background.at(data.text("set"))
-    verdict = data.text("verdict")
-    lines = [Fields(x, data.where) for x in data.items("claims")]
-    if [common.formula(x.text("claim")) for x in lines] != _claims(common.specification):
+    index = read(Index, data.content, data.where)
+    common = background.at(index.set)
+    if [common.formula(x.claim) for x in index.claims] != claims_of(common.specification):
         yield "its claims are not those that together say that there is no gap"
-    if verdict == "COVERED":
-        if not all(x.text("verdict") in PROOFS for x in lines):
-            yield "COVERED, but its claims are not all proved"
-    elif verdict == "GAPS":
-        if not data.items("gaps"):
-            yield "GAPS, but it has none"
-    elif verdict not in ("UNKNOWN", "CROSSCHECK-FAILED"):
-        yield f"there is no verdict '{verdict[:40]}' on a set"
-
-
-def _claims(specification: Specification) -> list[Formula]:
-    """Where SV is in L, one of the scenarios of its sector holds; and vehicles in zones are in a sector."""
-    sectors: dict[Formula, list[int]] = {}
-    for number in numbers_of(specification):
-        if len(vehicles_of(specification, Scenario(number, specification.set_name))) == 2:
-            meaning = without_names(sector(specification, number, PAIR).formula)
-            sectors.setdefault(meaning, []).append(number)
-    claims: list[Formula] = []
-    for numbers in sectors.values():
-        later = eventually(danger(specification, *PAIR))
-        starts = (safe(specification, *PAIR), later, *asked_between(specification, *PAIR))
-        premise = both(sector(specification, numbers[0], PAIR), in_lane(specification, SUBJECT), *starts)
-        some = [
-            applied(specification, Scenario(number, specification.set_name), roles)
-            for roles in (PAIR, PAIR[::-1])
-            for number in numbers
-        ]
-        claims.append(implication(premise, either(*some)).formula)
-    somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in PAIR))
-    some_sector = either(*(sector(specification, numbers[0], PAIR) for numbers in sectors.values()))
-    return [*claims, implication(somewhere, some_sector).formula]
+    if index.verdict is Verdict.COVERED and not all(x.verdict in PROOFS for x in index.claims):
+        yield "COVERED, but its claims are not all proved"
+    if index.verdict is Verdict.GAPS and not index.gaps:
+        yield "GAPS, but it has none"
 
 
 def record_faults(record: Fields, background: Background) -> Iterator[str]:
     """Where the claim of a kept answer is none of those that together say that there is no gap."""
-    if record.has("claim"):
-        claim = Fields(record.mapping("claim"), record.where).text("claim")
-        common = background.at(background.said.text("set"))
-        if common.formula(claim) not in _claims(common.specification):
-            yield f"{record.where}: coverage does not rest on this claim: {claim[:120]}"
+    said = read_kept(Record, record).claim
+    common = background.at(background.said.text("set"))
+    if said is not None and common.formula(said.claim) not in claims_of(common.specification):
+        yield f"{record.where}: coverage does not rest on this claim: {said.claim[:120]}"
 
 
-READER = Reader(
-    SCHEMA,
-    ("set", "wider", "options", "parameters", "specs"),
-    ("view", "verdict", "claims", "classes", "gaps", "needs", "traffic", "seconds"),
-    read_index,
-    ("group", "classes", "claim", "need"),
-    read_record,
-    faults,
-    unchecked=(
-        *("seconds", "wider", "traffic", "claims[].reason"),
-        *(f"classes[].{x}" for x in (*_OF_CLASS, "in_traffic", "trace")),
-        *(f"gaps[].{x}" for x in ("number", "first", "caught_by", "classes")),
-    ),
+UNCHECKED_KEPT = unchecked(Record)
+READER = replace(
+    Reader.of(Index, Preamble, _of_index, Record, _of_record, name_of_group),
+    faults=_faults,
     unchecked_kept=("said.wider", *UNCHECKED_KEPT),
-    file_name=name_of_group,
     record_faults=record_faults,
 )

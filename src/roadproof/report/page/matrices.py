@@ -1,13 +1,14 @@
 """Matrices with what is behind each cell: which scenarios hold together, and which dangers are missed."""
 
-from collections.abc import Mapping
-from typing import Any, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import TypeAlias
 
+from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers.overlap import Index, Pair
 from roadproof.evidence.codec import read
 from roadproof.report.page.book import Book
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.report.page.pieces import behind, cell, counts, evidence_of, folded, matrix, short, verdict
+from roadproof.report.page.pieces import cell, counts, evidence_of, folded, matrix, short, verdict
 from roadproof.report.page.results import Result
 
 End: TypeAlias = tuple[int, str]
@@ -65,49 +66,47 @@ def _pair(result: Result, place: int, pair: Pair, book: Book, words: Mapping[int
 
 def coverage(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """Which disturbances a set misses: classes of gaps by scenario, and behind each cell a drive."""
-    data = result.data
-    classes, gaps, claims = (data.get(x) or () for x in ("classes", "gaps", "claims"))
+    index = read(gaps.Index, result.data, result.name)
+    count = len(index.gaps)
     told = (
-        f": {len(gaps)} gap{'s' if len(gaps) != 1 else ''}, each with a judged drive."
-        if gaps
+        f": {count} gap{'s' if count != 1 else ''}, each with a judged drive."
+        if index.gaps
         else ": no gap was found."
     )
-    parts: list[Content] = [tag("p", verdict(data.get("verdict")), told)]
-    for x in claims:
-        inside: list[Content] = [tag("p", x["reason"])] if x.get("reason") else []
-        summary = (verdict(x.get("verdict")), " ", tag("code", x.get("claim")))
-        parts.append(folded(summary, *inside, *behind(x, result, book)))
-    parts += [_classes(result, classes, words)] if classes else []
-    for x in gaps:
-        where = f" on {short(x.get('road'))}, caught by {short(x.get('caught_by'))}"
-        inside = [tag("p", tag("code", x.get("formula"))), *behind(x, result, book)]
-        parts.append(
-            folded((tag("b", f"gap {x['number']}"), where), *inside, id=_id(result, "gap", x["number"]))
-        )
-    noted = [x for x in classes if x.get("reason") and x.get("gaps")]
-    notes = [(x.get("scenario"), x.get("description"), x["reason"]) for x in noted]
+    parts: list[Content] = [tag("p", verdict(index.verdict), told)]
+    for claim in index.claims:
+        inside: list[Content] = [tag("p", claim.reason)] if claim.reason else []
+        summary = (verdict(claim.verdict), " ", tag("code", claim.claim))
+        parts.append(folded(summary, *inside, *evidence_of(result, book, certificate=claim.certificate)))
+    parts += [_classes(result, index.classes, words)] if index.classes else []
+    for gap in index.gaps:
+        where = f" on {short(gap.road)}, caught by {short(gap.caught_by)}"
+        inside = [tag("p", tag("code", gap.formula)), *evidence_of(result, book, gap.drive)]
+        title = (tag("b", f"gap {gap.number}"), where)
+        parts.append(folded(title, *inside, id=_id(result, "gap", gap.number)))
+    notes = [(x.scenario, x.description, x.reason) for x in index.classes if x.reason and x.gaps]
     parts += [table(("scenario", "what", "note"), notes)] if notes else []
-    parts += [_no_gap(result, k, x, book) for k, x in enumerate(classes) if not x.get("gaps")]
+    parts += [_no_gap(result, k, x, book) for k, x in enumerate(index.classes) if not x.gaps]
     return joined(parts)
 
 
-def _no_gap(result: Result, place: int, x: Mapping[str, Any], book: Book) -> Markup:
+def _no_gap(result: Result, place: int, x: gaps.CountedClass, book: Book) -> Markup:
     """A class without a drive: what was proved of it, or why it is not known."""
-    scenario = x.get("scenario")
-    told = f" scenario {scenario}, {x.get('component')}: " if scenario is not None else " "
-    inside: list[Content] = [tag("p", tag("code", x.get("claim")))] if x.get("claim") else []
-    inside += [tag("p", x["reason"])] if x.get("reason") else []
-    summary = (verdict(x.get("verdict")), told, x.get("condition") or x.get("description"))
-    return folded(summary, *inside, *behind(x, result, book), id=_id(result, "class", place))
+    told = f" scenario {x.scenario}, {x.component}: " if x.scenario is not None else " "
+    inside: list[Content] = [tag("p", tag("code", x.claim))] if x.claim else []
+    inside += [tag("p", x.reason)] if x.reason else []
+    summary = (verdict(x.verdict), told, x.condition or x.description)
+    shown = evidence_of(result, book, certificate=x.certificate)
+    return folded(summary, *inside, *shown, id=_id(result, "class", place))
 
 
-def _classes(result: Result, classes: Any, words: Mapping[int, str]) -> Markup:
-    scenarios = list(dict.fromkeys(x.get("scenario") for x in classes))
-    kinds = list(dict.fromkeys((x.get("component"), x.get("condition")) for x in classes))
-    places = {(x.get("scenario"), x.get("component"), x.get("condition")): k for k, x in enumerate(classes)}
+def _classes(result: Result, classes: Sequence[gaps.CountedClass], words: Mapping[int, str]) -> Markup:
+    scenarios = list(dict.fromkeys(x.scenario for x in classes))
+    kinds = list(dict.fromkeys((x.component, x.condition) for x in classes))
+    places = {(x.scenario, x.component, x.condition): k for k, x in enumerate(classes)}
     rows: list[list[Content]] = []
     for kind in kinds:
-        cells: list[Content] = [tag("th", " ".join(str(x) for x in kind if x), scope="row")]
+        cells: list[Content] = [tag("th", " ".join(x for x in kind if x), scope="row")]
         for scenario in scenarios:
             k = places.get((scenario, *kind))
             cells.append(tag("td") if k is None else _gap_cell(result, k, classes[k]))
@@ -118,8 +117,7 @@ def _classes(result: Result, classes: Any, words: Mapping[int, str]) -> Markup:
     return joined([tag("p", told), matrix(columns, rows)])
 
 
-def _gap_cell(result: Result, place: int, x: Mapping[str, Any]) -> Markup:
-    numbers = x.get("gaps") or ()
-    target = _id(result, "gap", numbers[0]) if numbers else _id(result, "class", place)
-    drives = f", gap {', '.join(map(str, numbers))}" if numbers else ""
-    return cell(x.get("verdict"), f"{x.get('description')}: {x.get('verdict')}{drives}", target)
+def _gap_cell(result: Result, place: int, x: gaps.CountedClass) -> Markup:
+    target = _id(result, "gap", x.gaps[0]) if x.gaps else _id(result, "class", place)
+    drives = f", gap {', '.join(map(str, x.gaps))}" if x.gaps else ""
+    return cell(x.verdict, f"{x.description}: {x.verdict}{drives}", target)

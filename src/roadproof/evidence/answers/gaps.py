@@ -1,0 +1,75 @@
+"""What ``check`` asks of evidence about gaps, made of the specification alone: no finder has a part in it."""
+
+from collections.abc import Sequence
+
+from roadproof.evidence.answers.entry import Common
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
+from roadproof.spec.compose import both, either, eventually, implication, in_some_lane, negation
+from roadproof.spec.library import Specification
+from roadproof.spec.query import Query
+from roadproof.spec.scenarios import (
+    LANE,
+    PAIR,
+    SUBJECT,
+    Scenario,
+    applied,
+    asked_between,
+    danger,
+    in_lane,
+    in_some_zone,
+    numbers_of,
+    safe,
+    sector,
+    vehicles_of,
+)
+
+
+def fault_of_gap(common: Common, numbers: Sequence[int], formula: str) -> str:
+    """Why a formula does not say that the scenarios miss two vehicles that come into danger, or nothing."""
+    said, home = common.formula(formula), common.specification
+    conjuncts = {*said.parts} if isinstance(said, f.And) else {said}
+    scenarios = (x for numbers in _sectors(home, numbers).values() for x in _in_either_role(home, numbers))
+    asked = [*_starts(home), *(negation(in_some_lane(x, LANE)) for x in scenarios)]
+    missing = next((x for x in asked if x.formula not in conjuncts), None)
+    return "" if missing is None else f"of a gap its formula has to say {missing.text}: {formula[:120]}"
+
+
+def claims_of(specification: Specification, numbers: Sequence[int] = ()) -> list[Formula]:
+    """Where SV is in L, one of the scenarios of its sector holds; and vehicles in zones are in a sector.
+
+    ``numbers``: of these scenarios alone.
+    """
+    sectors = _sectors(specification, numbers or numbers_of(specification)).values()
+    claims: list[Formula] = []
+    for those in sectors:
+        premise = both(
+            sector(specification, those[0], PAIR), in_lane(specification, SUBJECT), *_starts(specification)
+        )
+        claims.append(implication(premise, either(*_in_either_role(specification, those))).formula)
+    somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in PAIR))
+    some_sector = either(*(sector(specification, those[0], PAIR) for those in sectors))
+    return [*claims, implication(somewhere, some_sector).formula]
+
+
+def _sectors(specification: Specification, numbers: Sequence[int]) -> dict[Formula, list[int]]:
+    """The scenarios of two vehicles by road sector."""
+    sectors: dict[Formula, list[int]] = {}
+    for number in numbers:
+        if len(vehicles_of(specification, Scenario(number, specification.set_name))) == len(PAIR):
+            meaning = without_names(sector(specification, number, PAIR).formula)
+            sectors.setdefault(meaning, []).append(number)
+    return sectors
+
+
+def _starts(specification: Specification) -> tuple[Query, ...]:
+    """Safety, danger later, and what else drives are asked to begin with."""
+    later = eventually(danger(specification, *PAIR))
+    return safe(specification, *PAIR), later, *asked_between(specification, *PAIR)
+
+
+def _in_either_role(specification: Specification, numbers: Sequence[int]) -> list[Query]:
+    """The scenarios for L, with the two vehicles in either role."""
+    scenarios = [Scenario(number, specification.set_name) for number in numbers]
+    return [applied(specification, x, roles) for roles in (PAIR, PAIR[::-1]) for x in scenarios]
