@@ -29,9 +29,7 @@ from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read, unche
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields
 from roadproof.logic.formula import Formula
-from roadproof.spec.scenarios import (
-    numbers_of,
-)
+from roadproof.spec.scenarios import numbers_of
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/coverage/1"
