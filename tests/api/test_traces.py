@@ -11,7 +11,8 @@ import pytest
 
 import roadproof as rp
 from api.doors import tell
-from roadproof.api.traces import Monitored, Overruled
+from roadproof.api.traces import Monitored
+from roadproof.evidence.answers.monitor import Override
 from roadproof.evidence.judged import Judged
 
 MARGIN = "s(POV) - s(SV) > 10 m"
@@ -64,8 +65,8 @@ def test_a_sampled_drive(drive: Judged, here: Path) -> None:
 def test_what_is_overruled_is_told(drive: Judged, here: Path) -> None:
     line = ["monitor", "4", str(here / "scenario-04-base.json"), "--set", "ext", "--param", "rho=1"]
     found = rp.monitor(4, drive, rp.load("ext", params={"rho": 1}))
-    assert Overruled("parameter rho", "1", "3/5") in found.place.overruled
-    assert Overruled("set", "ext", "base") in found.place.overruled
+    assert Override(what="parameter rho", asked="1", said="3/5") in found.place.overruled
+    assert Override(what="set", asked="ext", said="base") in found.place.overruled
     text = tell(line)[1].strip().replace(str(here / "scenario-04-base.json"), "drive")
     assert str(found) == text
 

@@ -134,6 +134,22 @@ def hostile_gaps() -> dict:
     return {**said, "claims": [claim], "classes": [one, empty], "gaps": [gap]}
 
 
+def hostile_monitor() -> dict:
+    said = {
+        "formula": CLOSED,
+        "view": "dense",
+        "end": "clip",
+        "verdict": "undecided",
+        "seconds": 3,
+        "dt": "1",
+    }
+    said |= {"under_the_other_end": None, "robustness": [None, 1], "trace": CLOSED, "start": HOSTILE}
+    said |= {"set": HOSTILE, "road": HOSTILE, "lanes": {HOSTILE: CLOSED}}
+    part = {"formula": HOSTILE, "true": [[0, None]], "undecided": [[1, 2]]}
+    overruled = {"what": f"option {HOSTILE}", "asked": HOSTILE, "said": CLOSED}
+    return {**said, "parts": [part], "overruled": [overruled]}
+
+
 def hostile_answers(drive: dict) -> dict[str, dict]:
     named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
     claim = {"property": HOSTILE, "part": CLOSED, "scenario": None, "set": HOSTILE, "claim": HOSTILE}
@@ -185,11 +201,7 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
             "doubts": [{"from": "1@base", "to": "2@base", "reason": HOSTILE}],
         },
         "redundancy": {**{"set": HOSTILE, **SAID, "view": "dense", "seconds": 1}, "verdicts": [change]},
-        "monitor": {
-            **{"verdict": HOSTILE, "formula": CLOSED, "end": HOSTILE, "trace": CLOSED, "start": HOSTILE},
-            **{"seconds": 3, "road": HOSTILE, "view": CLOSED, "robustness": [None, 1], "overruled": [CLOSED]},
-            "parts": [{"formula": HOSTILE, "true": [[0, None]], "undecided": [[1, 2]]}],
-        },
+        "monitor": hostile_monitor(),
         "other": {"things": [{"formula": HOSTILE, CLOSED: [HOSTILE]}], "note": CLOSED},
     }
 
@@ -239,7 +251,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     files = []
     for kind, data in hostile_answers(drive_in(drives)).items():
         files.append(tmp_path / f"{kind}.json")
-        version = 2 if kind == "compare" else 1
+        version = {"compare": 2, "monitor": 2}.get(kind, 1)
         files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/{version}", **data}), "utf-8")
     found, text = made(*files, out=tmp_path / "page.html", title=f"{HOSTILE} {CLOSED}")
     assert found.results == len(files)

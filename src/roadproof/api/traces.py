@@ -4,15 +4,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from html import escape
+from math import isfinite
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 from roadproof.api.answer import Picture, picture
 from roadproof.api.definitions import Definitions, What, load
 from roadproof.api.row import Row
 from roadproof.api.settings import RoadLike, as_road, one_of, positive
 from roadproof.errors import InputError, UsageError
-from roadproof.evaluation.observed import Observed, Said, observe_drive, observe_samples
+from roadproof.evaluation.observed import Observed, Spans, observe_drive, observe_samples
 from roadproof.evaluation.one_trace import (
     OneTrace,
     is_pair,
@@ -22,6 +23,9 @@ from roadproof.evaluation.one_trace import (
     refuse_unmeasured,
     sample_drive,
 )
+from roadproof.evidence.answers import monitor as kept
+from roadproof.evidence.answers.monitor import Override, Place, Truth, View
+from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import Judged
@@ -37,51 +41,12 @@ from roadproof.spec.values import Number
 from roadproof.verdict import ExitCode
 
 # A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
-View: TypeAlias = Literal["dense", "recorded"]
 TraceLike: TypeAlias = str | Path | Judged | DriveFile | OneTrace | Mapping[str, Any] | Frame
-_CODES: dict[Said, ExitCode] = {
+_CODES: dict[Truth, ExitCode] = {
     "true": ExitCode.AS_EXPECTED,
     "false": ExitCode.UNEXPECTED,
     "undecided": ExitCode.UNKNOWN,
 }
-
-
-SCHEMA = "roadproof/monitor/2"
-
-
-@dataclass(frozen=True)
-class Overruled:
-    """What is asked for otherwise than the drive file ``said``, which was judged as it says."""
-
-    what: str
-    asked: str
-    said: str
-
-
-@dataclass(frozen=True)
-class Place:
-    """On which trace, from when on (as its source counts), with which set, road and free lanes."""
-
-    trace: str
-    start: str
-    set_name: str
-    road: str
-    lanes: Mapping[str, str]
-    overruled: tuple[Overruled, ...] = ()
-
-    def as_data(self) -> dict[str, Any]:
-        """As plain data."""
-        data = {"trace": self.trace, "start": self.start, "set": self.set_name, "road": self.road}
-        return {**data, "lanes": dict(self.lanes), "overruled": [vars(x) for x in self.overruled]}
-
-    def __str__(self) -> str:
-        parts = [f"trace: {self.trace}", f"start: {self.start}"]
-        parts += [f"set: {self.set_name}", f"road: {self.road}"]
-        parts += [f"lane {name}: {lane}" for name, lane in self.lanes.items()]
-        for x in self.overruled:
-            asked = f"{x.asked} (the file says {x.said})"
-            parts.append(f"set of the file: {x.said}" if x.what == "set" else f"{x.what}: {asked}")
-        return "; ".join(parts)
 
 
 @dataclass(frozen=True, repr=False)
@@ -94,7 +59,7 @@ class Monitored:
     notes: tuple[str, ...] = ()
 
     @property
-    def verdict(self) -> Said:
+    def verdict(self) -> Truth:
         """At the first sample: "true", "false", or "undecided" where what comes after the trace decides."""
         return self.observed.verdict
 
@@ -119,7 +84,29 @@ class Monitored:
 
     def as_data(self) -> dict[str, Any]:
         """As the plain data of ``--json``."""
-        return {**heading(SCHEMA, self.library), **self.observed.as_json(), **self.place.as_data()}
+        x = self.observed
+        answer = kept.Answer(
+            **heading(kept.SCHEMA, self.library),
+            formula=x.formula,
+            view=x.view,
+            end=x.convention,
+            verdict=x.verdict,
+            under_the_other_end=x.other,
+            robustness=(_finite(x.margin[0]), _finite(x.margin[1])),
+            seconds=x.seconds,
+            dt=str(x.dt),
+            parts=tuple(
+                kept.Part(
+                    formula=strip.name,
+                    true=_ended(strip.true),
+                    undecided=_ended(strip.undecided),
+                    exact=strip.exact,
+                )
+                for strip in x.strips
+            ),
+            **vars(self.place),
+        )
+        return write(answer)
 
     def plot(self) -> Picture:
         """A strip for each part."""
@@ -133,6 +120,15 @@ class Monitored:
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>"
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None
+
+
+def _ended(spans: Spans) -> kept.Spans:
+    """Spans of which one that never ends has no end."""
+    return tuple((begin, _finite(end)) for begin, end in spans)
 
 
 def trace(columns: "Mapping[str, Any] | Frame", road: RoadLike = "main-2") -> OneTrace:
@@ -231,16 +227,17 @@ def _on_drive(
     return Monitored(home.library, observed, _place(samples, home, lanes, overruled))
 
 
-def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Overruled]:
+def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Override]:
     specification = home.specification
     for name, value in file.values.items():
         if values[name] != value:
-            yield Overruled(f"parameter {name}", str(values[name]), str(value))
+            yield Override(what=f"parameter {name}", asked=str(values[name]), said=str(value))
     for name, reading in file.options.items():
         if specification.options.get(name) != reading:
-            yield Overruled(f"option {name}", str(specification.options.get(name)), reading)
+            asked = str(specification.options.get(name))
+            yield Override(what=f"option {name}", asked=asked, said=reading)
     if specification.set_name != file.set_name:
-        yield Overruled("set", specification.set_name, file.set_name)
+        yield Override(what="set", asked=specification.set_name, said=file.set_name)
 
 
 def _on_trace(
@@ -261,10 +258,16 @@ def _on_trace(
 
 
 def _place(
-    samples: OneTrace, home: Definitions, lanes: Mapping[str, str], overruled: tuple[Overruled, ...] = ()
+    samples: OneTrace, home: Definitions, lanes: Mapping[str, str], overruled: tuple[Override, ...] = ()
 ) -> Place:
-    about = home.alone.set_name
-    return Place(samples.source, samples.first, about, samples.road.name, lanes, overruled)
+    return Place(
+        trace=samples.source,
+        start=samples.first,
+        set_name=home.alone.set_name,
+        road=samples.road.name,
+        lanes=lanes,
+        overruled=overruled,
+    )
 
 
 def _lanes(

@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from roadproof.evidence.answers.monitor import Truth, View
 from roadproof.judge.algebraic import approximate
 from roadproof.judge.exact import judge
 from roadproof.judge.robust import robustness
@@ -17,7 +18,6 @@ from roadproof.monitoring.batch import Batch
 from roadproof.monitoring.compiled import compile
 from roadproof.world.drive import Drive
 
-Said: TypeAlias = Literal["true", "false", "undecided"]
 Spans: TypeAlias = tuple[tuple[float, float], ...]
 
 
@@ -43,36 +43,14 @@ class Observed:
     lanes decide. ``other`` is the answer under the other convention for the end of a trace."""
 
     formula: str
-    view: Literal["recorded", "dense"]
-    verdict: Said
+    view: View
+    verdict: Truth
     margin: tuple[float, float]
     seconds: float
     dt: Fraction
     strips: tuple[Strip, ...]
     convention: Convention | None = None
-    other: Said | None = None
-
-    def as_json(self) -> dict[str, Any]:
-        """As plain data without its heading; infinities and unknown ends are null."""
-        return {
-            "formula": self.formula,
-            "view": self.view,
-            "end": self.convention,
-            "verdict": self.verdict,
-            "under_the_other_end": self.other,
-            "robustness": [_finite(x) for x in self.margin],
-            "seconds": self.seconds,
-            "dt": str(self.dt),
-            "parts": [
-                {
-                    "formula": strip.name,
-                    "true": [[begin, _finite(end)] for begin, end in strip.true],
-                    "undecided": [[begin, _finite(end)] for begin, end in strip.undecided],
-                }
-                | ({"exact": strip.exact} if strip.exact else {})
-                for strip in self.strips
-            ],
-        }
+    other: Truth | None = None
 
 
 def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> Observed:
@@ -110,7 +88,7 @@ def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, 
     depths = _depths(formula)
     named = [(part, truth) for part, truth in judgement.named() if part != formula]
     strips += [replace(_exact_strip(name_of(part), truth), depth=depths[part]) for part, truth in named]
-    verdict: Said = "true" if judgement.holds else "false"
+    verdict: Truth = "true" if judgement.holds else "false"
     return Observed(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
 
 
@@ -166,9 +144,5 @@ def _exact_strip(name: str, truth: TruthSet) -> Strip:
     return Strip(name, spans, (), str(truth))
 
 
-def _said(answer: TruthArrays) -> Said:
+def _said(answer: TruthArrays) -> Truth:
     return "true" if answer.true[0] else "false" if answer.false[0] else "undecided"
-
-
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None

@@ -1,9 +1,10 @@
 """Reads and writes frozen dataclasses as JSON: one definition of an answer gives both, and its JSON Schema.
 
 A field is declared as ``name: Annotated[type, Doc("one sentence"), …]``. Types are ``str``, ``int``,
-``float``, ``bool``, ``Literal``, enumerations of texts, ``tuple[T, …]``, ``Mapping[str, T]``, other
-dataclasses, unions with ``None``, and ``Any`` (plain JSON). A field with a default may be missing, as in
-evidence of earlier versions; it is written all the same, but where it is marked ``LEFT_OUT``.
+``float``, ``bool``, ``Literal``, enumerations of texts, ``tuple[T, ...]``, ``Mapping[str, T]``, other
+dataclasses, unions with ``None``, and ``Any`` (plain JSON). ``tuple[A, B]`` has one item of each type; a rule
+for the keys of a mapping stands at their type. A field with a default may be missing, as in evidence of
+earlier versions; it is written all the same, but where it is marked ``LEFT_OUT``.
 """
 
 import re
@@ -50,13 +51,15 @@ class Key:
 @dataclass(frozen=True)
 class Rule:
     """What values of a type have to be: texts match ``pattern`` and have ``least`` characters, numbers are at
-    least ``minimum``, lists have ``least`` items. ``called``: what a text that does not match is not.
+    least ``minimum``, lists have ``least`` items; with ``unique`` they have none twice. ``called``: what a
+    text that does not match is not.
     """
 
     pattern: str = ""
     called: str = ""
     minimum: int | None = None
     least: int = 0
+    unique: bool = False
 
 
 @dataclass(frozen=True)
@@ -188,6 +191,8 @@ def _ruled(inner: Read, rule: Rule) -> Read:
             raise InputError(f"{where}: {_shown(content)} is below {rule.minimum}")
         if isinstance(found, tuple | dict) and len(found) < rule.least:
             raise InputError(f"{where}: it has {len(found)} entries, and needs {rule.least}")
+        if rule.unique and len({*found}) < len(found):
+            raise InputError(f"{where}: {_shown(content)} names something twice")
         return found
 
     return make
@@ -202,9 +207,9 @@ def _unruled(kind: Any) -> Read:
     if origin is Literal:
         return _one_of(inside)
     if origin is tuple:
-        return _items(inside[0])
+        return _items(inside[0]) if Ellipsis in inside else _each(tuple(map(_reader, inside)))
     if origin is not None and issubclass(origin, Mapping):
-        return _named(_reader(inside[1]))
+        return _named(_reader(inside[0]), _reader(inside[1]))
     if isinstance(kind, type) and issubclass(kind, StrEnum):
         return _word(kind)
     return _SIMPLE[kind]
@@ -275,11 +280,23 @@ def _told(kind: type) -> str:
     return re.sub("(?<=.)(?=[A-Z])", " ", kind.__name__).lower()
 
 
-def _named(inner: Read) -> Read:
+def _each(readers: tuple[Read, ...]) -> Read:
+    """``readers``: one for each item."""
+
+    def make(content: object, where: str) -> Any:
+        if not isinstance(content, list) or len(content) != len(readers):
+            raise InputError(f"{where}: {_shown(content)} is no list of {len(readers)} items")
+        every = zip(readers, content, strict=True)
+        return tuple(inner(x, f"{where}, item {number}") for number, (inner, x) in enumerate(every, 1))
+
+    return make
+
+
+def _named(key: Read, inner: Read) -> Read:
     def make(content: object, where: str) -> Any:
         if not isinstance(content, dict):
             raise InputError(f"{where}: {_shown(content)} is no object")
-        return {key: inner(x, f"{where}.{key}") for key, x in content.items()}
+        return {key(name, where): inner(x, f"{where}.{name}") for name, x in content.items()}
 
     return make
 

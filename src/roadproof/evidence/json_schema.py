@@ -143,6 +143,7 @@ def _facets(rule: Rule, kind: object) -> dict[str, Any]:
     least = {"array": "minItems", "object": "minProperties"}.get(str(kind), "minLength")
     found: dict[str, Any] = {"pattern": rule.pattern} if rule.pattern else {}
     found |= {"minimum": rule.minimum} if rule.minimum is not None else {}
+    found |= {"uniqueItems": True} if rule.unique else {}
     return found | ({least: rule.least} if rule.least else {})
 
 
@@ -159,12 +160,17 @@ def _plain(kind: Any) -> dict[str, Any]:
     if origin is Literal:
         words = [str(x) if isinstance(x, StrEnum) else x for x in inside]
         return {"const": words[0]} if len(words) == 1 else {"enum": words}
+    if origin is tuple and Ellipsis not in inside:
+        every = [_schema(x) for x in inside]
+        items = {"items": every[0]} if every == every[:1] * len(every) else {"prefixItems": every}
+        return {"type": "array", **items, "minItems": len(every), "maxItems": len(every)}
     if origin is tuple:
         return {"type": "array", "items": _schema(inside[0])}
     if origin in (Union, UnionType):
         [inner] = [x for x in inside if x is not NoneType]
         return {"anyOf": [{"type": "null"}, _schema(inner)]}
-    return {"type": "object", "additionalProperties": _schema(inside[1])}
+    names = [{"propertyNames": {"pattern": x.pattern}} for x in notes_of(inside[0]) if isinstance(x, Rule)]
+    return {"type": "object", **(names[0] if names else {}), "additionalProperties": _schema(inside[1])}
 
 
 def _called(name: str) -> str:

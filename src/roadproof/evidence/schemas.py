@@ -12,6 +12,7 @@ from roadproof.evidence.answers import (
     coverage,
     drives,
     explore,
+    monitor,
     order,
     overlap,
     proofs,
@@ -25,6 +26,7 @@ TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
     proofs.Answer: "roadproof prove --json: claims, proved or refuted",
     compare.Answer: "roadproof compare --json: which of two formulas implies the other",
+    monitor.Answer: "roadproof monitor --json: where a formula holds on one trace",
     classify.Index: (
         "roadproof classify --json, and index.json of its folder: classes that exclude each other"
     ),

@@ -157,11 +157,17 @@ KeptPrevention: TypeAlias = Annotated[
 
 
 @dataclass(frozen=True, kw_only=True)
-class Heading:
+class PlainHeading:
     """How every answer begins; earlier versions did not say the version and the library."""
 
     schema: str
     roadproof: Version = ""
     library: Fingerprint = ""
     signals: Annotated[Signals | None, LEFT_OUT] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Heading(PlainHeading):
+    """How an answer begins whose question may be asked only of what a driver model prevents, or cannot."""
+
     prevention: Annotated[KeptPrevention | None, LEFT_OUT] = None

@@ -1,8 +1,9 @@
 """One trace that was monitored: the verdict, and when each part is true."""
 
 from collections.abc import Mapping
-from typing import Any
 
+from roadproof.evidence.answers.monitor import Answer, Spans
+from roadproof.evidence.codec import read, write
 from roadproof.report.page.book import Book, strips
 from roadproof.report.page.markup import Content, Markup, joined, table, tag
 from roadproof.report.page.pieces import short
@@ -13,36 +14,33 @@ _SIGNS = {"true": ("✓", "proof"), "false": ("✗", "against")}
 
 def monitored(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """The answer of ``monitor --json``, which holds no trace: what was said of it, and on what."""
-    data = result.data
-    sign, kind = _SIGNS.get(data["verdict"], ("?", "doubt"))
-    said = tag("span", f"{sign} {data['verdict']}", class_=f"verdict-word {kind}")
-    end = f", with the end as {data['end']}" if data.get("end") else ""
-    parts = data.get("parts", ())
-    rows = [(tag("code", x["formula"]), _spans(x["true"]), _spans(x["undecided"])) for x in parts]
+    answer = read(Answer, result.data, result.name)
+    sign, kind = _SIGNS.get(answer.verdict, ("?", "doubt"))
+    said = tag("span", f"{sign} {answer.verdict}", class_=f"verdict-word {kind}")
+    end = f", with the end as {answer.end}" if answer.end else ""
+    rows = [(tag("code", x.formula), _spans(x.true), _spans(x.undecided)) for x in answer.parts]
     shown: list[Content] = [
-        tag("p", said, " at the start: ", tag("code", data["formula"])),
+        tag("p", said, " at the start: ", tag("code", answer.formula)),
         tag(
             "p",
-            f"{data['trace']}, from {data['start']}, {data['seconds']:g} s on {data['road']}, "
-            f"{data['view']}{end}.",
+            f"{answer.trace}, from {answer.start}, {answer.seconds:g} s on {answer.road}, "
+            f"{answer.view}{end}.",
         ),
-        tag("p", f"Margin, in the units of what is compared: {_margin(data['robustness'])}."),
-        _picture(data),
+        tag("p", f"Margin, in the units of what is compared: {_margin(answer.robustness)}."),
+        _picture(answer),
         table(("part", "true, s", "it depends on what comes later, s"), rows),
     ]
-    shown += (
-        [tag("p", "In place of what the file says: ", short(data["overruled"]))]
-        if data.get("overruled")
-        else []
-    )
+    if answer.overruled:
+        said_there = short([write(x) for x in answer.overruled])
+        shown.append(tag("p", "In place of what the file says: ", said_there))
     return joined(shown)
 
 
-def _picture(data: Mapping[str, Any]) -> Markup:
+def _picture(answer: Answer) -> Markup:
     """The strips of the parts."""
-    named = [{"op": "name", "text": x["formula"], "true": x["true"]} for x in data.get("parts", ())]
+    named = [{"op": "name", "text": x.formula, "true": x.true} for x in answer.parts]
     return strips(
-        {"formulas": [{"text": data["formula"], "parts": named}], "drive": {"horizon": data["seconds"]}}
+        {"formulas": [{"text": answer.formula, "parts": named}], "drive": {"horizon": answer.seconds}}
     )
 
 
@@ -51,5 +49,5 @@ def _margin(bounds: tuple[float | None, float | None]) -> str:
     return low if low == high else f"between {low} and {high}"
 
 
-def _spans(spans: list[tuple[float, float | None]]) -> str:
+def _spans(spans: Spans) -> str:
     return ", ".join(f"{begin:g} to {'the end' if end is None else f'{end:g}'}" for begin, end in spans)
