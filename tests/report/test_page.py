@@ -150,6 +150,22 @@ def hostile_monitor() -> dict:
     return {**said, "parts": [part], "overruled": [overruled]}
 
 
+def hostile_traffic() -> dict:
+    settings = {"sets": [HOSTILE], "min_danger": ["0"], "scenarios": [1], "classes": [HOSTILE]}
+    settings |= {"convention": "clip", "detectors": [HOSTILE], "options": {HOSTILE: CLOSED}, "parameters": {}}
+    counts = ("recordings", "vehicles", "samples", "violating", "asked", "undecided", "differing")
+    row = {"sector": HOSTILE, "min_danger": "0", "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}
+    row |= dict.fromkeys(("traces", "matching", "matching_with_three_cars", "matching_several"), 1)
+    row |= {"recall_without_init_safe": None, "together": {}}
+    model = {"min_danger": "3/5", "set": HOSTILE, "scenario": 1, "driver": "rss", "unpreventable": 2}
+    return {
+        **dict.fromkeys(counts, 1),
+        **{"settings": settings, "table": [row], "words": [], "detectors": {HOSTILE: 3}, "repeats": []},
+        **{"checks": {"broken": [HOSTILE], "unequal_3_4": []}, "notes": {HOSTILE: [CLOSED]}},
+        **{"failed": {HOSTILE: CLOSED}, "drivers": [model | {"preventable": 0, "not_foreseen": 0}]},
+    }
+
+
 def hostile_answers(drive: dict) -> dict[str, dict]:
     named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
     claim = {"property": HOSTILE, "part": CLOSED, "scenario": None, "set": HOSTILE, "claim": HOSTILE}
@@ -184,11 +200,7 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
             "facts": [{"test": HOSTILE, "other": CLOSED, "relation": HOSTILE, "verdict": CLOSED}],
             "gaps": {"targets": [{"name": CLOSED}], "classes": [{"claim": HOSTILE, "description": CLOSED}]},
         },
-        "traffic-results": {
-            "table": [{"sector": HOSTILE, "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}],
-            "detectors": {HOSTILE: 3},
-            "drivers": [{"min_danger": "3/5", "set": HOSTILE, "driver": CLOSED, "unpreventable": 2}],
-        },
+        "traffic-results": hostile_traffic(),
         "preventable": hostile_plates(named),
         "explore": {**SAID, "view": "dense", "seconds": 1, "explored": [explored(named)]},
         "order": {
@@ -251,7 +263,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     files = []
     for kind, data in hostile_answers(drive_in(drives)).items():
         files.append(tmp_path / f"{kind}.json")
-        version = {"compare": 2, "monitor": 2}.get(kind, 1)
+        version = {"compare": 2, "monitor": 2, "traffic-results": 3}.get(kind, 1)
         files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/{version}", **data}), "utf-8")
     found, text = made(*files, out=tmp_path / "page.html", title=f"{HOSTILE} {CLOSED}")
     assert found.results == len(files)
@@ -281,7 +293,8 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         ('{"schema": "other/1"}', "no schema that begins with roadproof/"),
         ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'set' is missing"),
         ('{"schema": "roadproof/classify/1", "classes": 3}', "'set' is missing"),
-        ('{"schema": "roadproof/traffic-results/1", "table": 3}', "is no result that can be shown"),
+        ('{"schema": "roadproof/traffic-results/3", "table": 3}', "'settings' is missing"),
+        ('{"schema": "roadproof/catalogue/1", "tests": 3}', "is no result that can be shown"),
     ],
 )
 def test_mistakes_are_named(tmp_path, capsys, content, wrong):

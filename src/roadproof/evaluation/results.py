@@ -25,6 +25,8 @@ from roadproof.evaluation.foretelling import LABELS
 from roadproof.evaluation.matching import Match
 from roadproof.evaluation.questions import Settings
 from roadproof.evaluation.sectors import Sector, sectors_of
+from roadproof.evidence.answers import traffic as kept
+from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.files import make_folder, whole_file
 from roadproof.formats.repeats import Seen
@@ -33,7 +35,6 @@ from roadproof.spec.scenarios import MIN_DANGER
 from roadproof.spec.words import Called, called_in
 
 RECORDING_SCHEMA = "roadproof/recording-findings/4"
-RESULTS_SCHEMA = "roadproof/traffic-results/3"
 MATCH_COLUMNS = tuple(
     "recording sv pov pov2 lane start_frame end_frame min_danger set scenario title uncertain".split()  # noqa: SIM905
 )
@@ -47,7 +48,7 @@ def question_mark(settings: Settings) -> str:
     told = {
         "schema": RECORDING_SCHEMA,
         "version": version("roadproof"),
-        "settings": describe(settings),
+        "settings": write(_kept_settings(settings)),
         "specification": {name: source.text for name, source in sorted(settings.library.sources.items())},
     }
     return _digest(told)
@@ -62,18 +63,18 @@ def _digest(told: object) -> str:
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
-def describe(settings: Settings) -> dict[str, Any]:
-    """The settings as plain data."""
-    return {
-        "sets": list(settings.sets),
-        "min_danger": [str(x) for x in settings.min_danger],
-        "scenarios": list(settings.scenarios),
-        "classes": list(settings.classes),
-        "convention": settings.convention,
-        "detectors": list(settings.detectors),
-        "options": dict(sorted(settings.options.items())),
-        "parameters": {k: str(v) for k, v in sorted(settings.values.items()) if k != MIN_DANGER},
-    } | ({"drivers": list(settings.drivers)} if settings.drivers else {})
+def _kept_settings(settings: Settings) -> kept.Settings:
+    return kept.Settings(
+        sets=settings.sets,
+        min_danger=tuple(map(str, settings.min_danger)),
+        scenarios=settings.scenarios,
+        classes=settings.classes,
+        convention=settings.convention,
+        detectors=settings.detectors,
+        options=dict(sorted(settings.options.items())),
+        parameters={k: str(v) for k, v in sorted(settings.values.items()) if k != MIN_DANGER},
+        drivers=settings.drivers,
+    )
 
 
 def save_findings(path: Path, findings: Findings, mark: str) -> None:
@@ -342,40 +343,52 @@ def write_results(
 
 def as_json(totals: Totals, failed: Mapping[str, str]) -> dict[str, Any]:
     """The totals as plain data; ``failed``: which recordings are left out, and why."""
-    names = ("recordings", "vehicles", "samples", "violating", "asked", "undecided", "differing")
-    return {
-        **heading(RESULTS_SCHEMA, totals.settings.library),
-        "settings": describe(totals.settings),
-        **{name: getattr(totals, name) for name in names},
-        "table": [
-            {
-                "sector": row.sector.name,
-                "min_danger": str(row.min_danger),
-                "set": row.set_name,
-                "traces": row.traces,
-                "matching": row.matching,
-                "matching_with_three_cars": row.matching_with_three,
-                "recall": row.recall,
-                "recall_without_init_safe": row.matching_violating / totals.violating
-                if totals.violating
-                else None,
-                "scenarios": {str(i): row.scenarios[i] for i in row.sector.scenarios},
-                "matching_several": row.several,
-                "together": {f"{i}-{j}": n for (i, j), n in sorted(row.together.items())},
-            }
-            for rows in totals.shown.values()
-            for row in rows
-        ],
-        "words": [x.as_data() for x in words_in(totals.settings).values()],
-        "detectors": {name: totals.detected[name] for name in totals.settings.detectors},
-        "checks": {
-            "broken": totals.broken,
-            "unequal_3_4": [list(x) for x in totals.unequal_3_4],
-        },
-        "repeats": [_repeat_as_json(totals, x) for x in totals.repeats],
-        "notes": {name: list(notes) for name, notes in totals.notes.items()},
-        "failed": dict(failed),
-    } | ({"drivers": _drivers_as_json(totals)} if totals.settings.drivers else {})
+    answer = kept.Answer(
+        **heading(kept.SCHEMA, totals.settings.library),
+        settings=_kept_settings(totals.settings),
+        recordings=totals.recordings,
+        vehicles=totals.vehicles,
+        samples=totals.samples,
+        violating=totals.violating,
+        asked=totals.asked,
+        undecided=totals.undecided,
+        differing=totals.differing,
+        table=tuple(_kept_row(row, totals) for rows in totals.shown.values() for row in rows),
+        words=tuple(words_in(totals.settings).values()),
+        detectors={name: totals.detected[name] for name in totals.settings.detectors},
+        checks=kept.Checks(broken=tuple(totals.broken), unequal_3_4=tuple(totals.unequal_3_4)),
+        repeats=tuple(_kept_repeat(x, totals) for x in totals.repeats),
+        notes=totals.notes,
+        failed=failed,
+        drivers=_predictions(totals) if totals.settings.drivers else None,
+    )
+    return write(answer)
+
+
+def _kept_row(row: Row, totals: Totals) -> kept.Row:
+    return kept.Row(
+        sector=row.sector.name,
+        min_danger=str(row.min_danger),
+        set=row.set_name,
+        traces=row.traces,
+        matching=row.matching,
+        matching_with_three_cars=row.matching_with_three,
+        recall=row.recall,
+        recall_without_init_safe=row.matching_violating / totals.violating if totals.violating else None,
+        scenarios={str(i): row.scenarios[i] for i in row.sector.scenarios},
+        matching_several=row.several,
+        together={f"{i}-{j}": n for (i, j), n in sorted(row.together.items())},
+    )
+
+
+def _kept_repeat(repeat: Repeat, totals: Totals) -> kept.Repeat:
+    return kept.Repeat(
+        recording=repeat.recording,
+        pair=(repeat.first, repeat.second),
+        what=repeat.what,
+        min_danger=None if repeat.min_danger is None else str(totals.settings.min_danger[repeat.min_danger]),
+        shown_in=repeat.shown_in,
+    )
 
 
 def foretold_rows(totals: Totals) -> Iterator[tuple[Fraction, str, int, str, tuple[int, ...]]]:
@@ -393,12 +406,20 @@ def foretold_rows(totals: Totals) -> Iterator[tuple[Fraction, str, int, str, tup
                 yield danger, set_name, number, driver, counts
 
 
-def _drivers_as_json(totals: Totals) -> list[dict[str, Any]]:
-    return [
-        {"min_danger": str(danger), "set": set_name, "scenario": number, "driver": driver}
-        | dict(zip((label.replace(" ", "_") for label in LABELS), counts, strict=True))
+def _predictions(totals: Totals) -> tuple[kept.Prediction, ...]:
+    return tuple(
+        kept.Prediction(
+            min_danger=str(danger),
+            set=set_name,
+            scenario=number,
+            driver=driver,
+            preventable=preventable,
+            unpreventable=unpreventable,
+            not_foreseen=not_foreseen,
+        )
         for danger, set_name, number, driver, counts in foretold_rows(totals)
-    ]
+        for preventable, unpreventable, not_foreseen in (counts,)
+    )
 
 
 def driver_columns(settings: Settings) -> list[str]:
@@ -418,17 +439,6 @@ def words_in(settings: Settings) -> Called:
     """What the scenarios of an evaluation are called."""
     home = settings.library.select(settings.sets[0], settings.options)
     return called_in(home, settings.sets, settings.scenarios)
-
-
-def _repeat_as_json(totals: Totals, repeat: Repeat) -> dict[str, Any]:
-    danger = None if repeat.min_danger is None else str(totals.settings.min_danger[repeat.min_danger])
-    return {
-        "recording": repeat.recording,
-        "pair": [repeat.first, repeat.second],
-        "what": repeat.what,
-        "min_danger": danger,
-        "shown_in": repeat.shown_in,
-    }
 
 
 def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[list[object]]:

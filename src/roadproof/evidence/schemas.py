@@ -18,6 +18,7 @@ from roadproof.evidence.answers import (
     proofs,
     redundancy,
     shared,
+    traffic,
 )
 from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import COMMON, Shared, schema_of, shared_schemas
@@ -27,6 +28,9 @@ TITLES: Mapping[type, str] = {
     proofs.Answer: "roadproof prove --json: claims, proved or refuted",
     compare.Answer: "roadproof compare --json: which of two formulas implies the other",
     monitor.Answer: "roadproof monitor --json: where a formula holds on one trace",
+    traffic.Answer: (
+        "results.json of roadproof evaluate, and its --json: dangers in recordings, and what matches them"
+    ),
     classify.Index: (
         "roadproof classify --json, and index.json of its folder: classes that exclude each other"
     ),

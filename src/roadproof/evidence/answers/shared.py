@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Shared
+from roadproof.spec.words import Words
 
 Formula: TypeAlias = Annotated[
     str, Rule(least=1), Doc("A formula or a claim as text (docs/language.md)."), Shared("formula")
@@ -26,6 +27,7 @@ Assuming: TypeAlias = Annotated[
 ]
 KeptLimits: TypeAlias = Annotated[Any, Shared("limits", by_hand=True)]
 
+KeptWords: TypeAlias = Annotated[Words, Shared("words", by_hand=True)]
 KernelWord: TypeAlias = Annotated[
     str, Rule(pattern=r"^(accepted|refused|unknown( \(lemma [0-9]+\))?)$"), Shared("kernel_word")
 ]

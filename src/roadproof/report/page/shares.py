@@ -3,9 +3,9 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
 from roadproof.evidence.answers.classify import Index
+from roadproof.evidence.answers.traffic import Answer, Prediction, Row
 from roadproof.evidence.codec import read
 from roadproof.report.explore import show
 from roadproof.report.page.book import Book
@@ -41,54 +41,49 @@ def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
 
 
 _SHARES = ("traces", "share of situations with as many vehicles")
-_FACTS = {
-    "recordings": "recordings",
-    "vehicles": "vehicles",
-    "samples": "samples",
-    "violating": "pairs that violate the RSS distance",
-    "undecided": "undecided",
-}
 
 
 def traffic(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     """The results table of recordings, with recall as bars, and what detectors of earlier works report."""
-    data = result.data
-    told = "; ".join(f"{name}: {data[key]}" for key, name in _FACTS.items() if key in data)
-    entries = data.get("table", ())
-    numbers = list(dict.fromkeys(n for x in entries for n in x.get("scenarios", {})))
+    answer = read(Answer, result.data, result.name)
+    facts = {
+        "recordings": answer.recordings,
+        "vehicles": answer.vehicles,
+        "samples": answer.samples,
+        "pairs that violate the RSS distance": answer.violating,
+        "undecided": answer.undecided,
+    }
+    told = "; ".join(f"{name}: {count}" for name, count in facts.items())
+    numbers = list(dict.fromkeys(n for x in answer.table for n in x.scenarios))
     named = [tag("span", n, title=words.get(int(n))) for n in numbers]
     head = ("road sector", "minDanger", "set", "traces", "matching", "recall", *named)
-    parts: list[Content] = [tag("p", told), table(head, [_row(x, numbers) for x in entries])]
-    detectors = data.get("detectors") or {}
-    most = max([*detectors.values(), 1])
-    if detectors:
-        rows = [(name, bar(n / most, str(n))) for name, n in detectors.items()]
+    parts: list[Content] = [tag("p", told), table(head, [_row(x, numbers) for x in answer.table])]
+    if answer.detectors:
+        most = max([*answer.detectors.values(), 1])
+        rows = [(name, bar(n / most, str(n))) for name, n in answer.detectors.items()]
         parts.append(tag("h3", "Pairs that detectors of earlier works report"))
         parts.append(table(("detector", "pairs"), rows))
-    parts += _drivers(data.get("drivers") or ())
+    parts += _drivers(answer.drivers or ())
     called = [(n, words[int(n)]) for n in numbers if words.get(int(n))]
     parts += [folded(("What the scenarios are called",), table(("", ""), called))] if called else []
-    broken = (data.get("checks") or {}).get("broken") or ()
-    if broken:
-        parts.append(tag("p", f"Facts that do not hold, which is our fault: {short(broken)}", class_="wrong"))
+    if answer.checks.broken:
+        told = f"Facts that do not hold, which is our fault: {short(answer.checks.broken)}"
+        parts.append(tag("p", told, class_="wrong"))
     return joined(parts)
 
 
-_LABELS = {"preventable": "preventable", "unpreventable": "unpreventable", "not_foreseen": "not foreseen"}
-
-
-def _drivers(entries: Sequence[Mapping[str, Any]]) -> list[Content]:
+def _drivers(entries: Sequence[Prediction]) -> list[Content]:
     """What driver models say of matches, where some were asked for."""
     if not entries:
         return []
     rows: list[list[Content]] = []
     for x in entries:
-        counts = [x.get(key, 0) for key in _LABELS]
-        danger = f"{show(Fraction(x.get('min_danger', 0)))} s"
+        counts = (x.preventable, x.unpreventable, x.not_foreseen)
         told = f"{100 * counts[1] / sum(counts):.1f} %" if sum(counts) else "–"
         share = bar(counts[1] / sum(counts), told) if sum(counts) else told
-        rows.append([danger, x.get("set"), x.get("scenario"), x.get("driver"), *counts, share])
-    head = ("minDanger", "set", "scenario", "model", *_LABELS.values(), "share unpreventable")
+        rows.append([_seconds(x.min_danger), x.set, x.scenario, x.driver, *counts, share])
+    labels = ("preventable", "unpreventable", "not foreseen")
+    head = ("minDanger", "set", "scenario", "model", *labels, "share unpreventable")
     below = (
         "From the state in which the manoeuvre begins: would a driver of SV who does what the model says "
         "prevent a collision? Matches count, so a pair may count in both roles; floating point, no evidence."
@@ -97,16 +92,11 @@ def _drivers(entries: Sequence[Mapping[str, Any]]) -> list[Content]:
     return [tag("h3", title), table(head, rows), tag("p", below, class_="faint")]
 
 
-def _row(x: Mapping[str, Any], numbers: Sequence[str]) -> list[Content]:
-    recall = x.get("recall")
-    share = bar(recall, f"{100 * recall:.1f} %") if isinstance(recall, int | float) else "–"
-    counts = [x.get(key) for key in ("traces", "matching")]
-    found = [x.get("scenarios", {}).get(n) for n in numbers]
-    return [
-        x.get("sector"),
-        f"{show(Fraction(x.get('min_danger', 0)))} s",
-        x.get("set"),
-        *counts,
-        share,
-        *found,
-    ]
+def _row(x: Row, numbers: Sequence[str]) -> list[Content]:
+    share = "–" if x.recall is None else bar(x.recall, f"{100 * x.recall:.1f} %")
+    found = [x.scenarios.get(n) for n in numbers]
+    return [x.sector, _seconds(x.min_danger), x.set, x.traces, x.matching, share, *found]
+
+
+def _seconds(value: str) -> str:
+    return f"{show(Fraction(value))} s"

@@ -1,0 +1,154 @@
+"""The answer of ``roadproof evaluate``: dangers in recordings, and the scenarios that match them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal, TypeAlias
+
+from roadproof.evidence.answers.shared import (
+    Count,
+    KeptWords,
+    Number,
+    Options,
+    Parameters,
+    PlainHeading,
+    Rational,
+    SetName,
+    SetNames,
+)
+from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
+
+SCHEMA: Final = "roadproof/traffic-results/3"
+Driver: TypeAlias = Annotated[
+    str, Rule(pattern="^(careful|r157|eu1426|rss)$", called="driver model with formulas")
+]
+MinDanger: TypeAlias = Annotated[Rational, Doc("In s.")]
+Share: TypeAlias = Annotated[float, Rule(minimum=0)] | None
+UnequalPair: TypeAlias = tuple[str, int, int, Rational]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """How traffic is evaluated."""
+
+    sets: SetNames
+    min_danger: Annotated[
+        tuple[Rational, ...], Rule(least=1), Doc("Values of the parameter minDanger, in s.")
+    ]
+    scenarios: tuple[Number, ...]
+    classes: Annotated[tuple[str, ...], Doc("Classes of vehicles that are looked at, such as Car.")]
+    convention: Annotated[Literal["truncated", "clip"], Doc("What the end of a trace means.")]
+    detectors: Annotated[tuple[str, ...], Doc("Detectors of earlier works, by name.")]
+    options: Options
+    parameters: Annotated[Parameters, Doc("All but minDanger, in SI units.")]
+    drivers: Annotated[
+        tuple[Driver, ...],
+        LEFT_OUT,
+        Rule(least=1, unique=True),
+        Doc("Driver models that matches were put to; only where some were asked for."),
+    ] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row:
+    """A spec set under one min_danger, in a road sector."""
+
+    sector: Annotated[str, Doc("The road sector of the row's scenarios, in the words of the specification.")]
+    min_danger: MinDanger
+    set: SetName
+    traces: Annotated[Count, Doc("Unordered pairs on which danger arises, and that begin in the sector.")]
+    matching: Annotated[Count, Doc("Those that a scenario of two cars matches.")]
+    matching_with_three_cars: Annotated[Count, Doc("Those that any scenario matches.")]
+    recall: Annotated[Share, Doc("matching by traces; null where there are none.")]
+    recall_without_init_safe: Annotated[
+        Share,
+        Doc(
+            "The share of all violating pairs that match a scenario of two cars of this sector; null where "
+            "there are none."
+        ),
+    ]
+    scenarios: Annotated[
+        Mapping[Annotated[str, Rule(pattern="^[0-9]+$", called="number")], Count],
+        Doc("Pairs by the number of the scenario that matches them."),
+    ]
+    matching_several: Annotated[Count, Doc("Pairs that several scenarios match.")]
+    together: Annotated[
+        Mapping[Annotated[str, Rule(pattern="^[0-9]+-[0-9]+$", called="pair of numbers")], Count],
+        Doc("Pairs by two scenarios that both match them."),
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checks:
+    """Facts that were checked on this run."""
+
+    broken: Annotated[tuple[str, ...], Doc("Facts that do not hold, in words: our fault.")]
+    unequal_3_4: Annotated[
+        tuple[UnequalPair, ...],
+        Doc("Pairs that match only one of the two: recording, two vehicles, min_danger in s."),
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Repeat:
+    """What an earlier recording shows too."""
+
+    recording: str
+    pair: Annotated[tuple[int, int], Doc("Ids of vehicles.")]
+    what: Annotated[str, Doc("trace, violation, or the name of a detector.")]
+    min_danger: Annotated[Rational | None, Doc("In s; null where it makes no difference.")]
+    shown_in: Annotated[str, Doc("The earlier recording.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prediction:
+    """What a driver model says of the matches of a scenario."""
+
+    min_danger: MinDanger
+    set: SetName
+    scenario: Number
+    driver: Driver
+    preventable: Annotated[
+        Count,
+        Doc("Matches in which the model prevents a collision from where the manoeuvre begins."),
+    ]
+    unpreventable: Annotated[Count, Doc("Those in which it does not.")]
+    not_foreseen: Annotated[Count, Doc("Those in which the manoeuvre does not begin before danger does.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(PlainHeading):
+    """Dangers in recordings, and the scenarios that match them."""
+
+    schema: Literal["roadproof/traffic-results/3"] = SCHEMA
+    settings: Settings
+    recordings: Annotated[Count, Doc("Recordings that were used.")]
+    vehicles: Annotated[Count, Doc("Vehicles in them.")]
+    samples: Annotated[Count, Doc("Samples of these vehicles.")]
+    violating: Annotated[
+        Count,
+        Doc(
+            "Pairs that violate the RSS distance in some frame, in all road sectors, with and without "
+            "initial safety."
+        ),
+    ]
+    asked: Annotated[Count, Doc("Questions to the monitor.")]
+    undecided: Annotated[Count, Doc("Those that depend on what comes after a trace.")]
+    differing: Annotated[Count, Doc("Those that truncated and clip answer otherwise.")]
+    table: Annotated[
+        tuple[Row, ...],
+        Doc("A row for each road sector that the recordings have, min_danger and set."),
+    ]
+    words: Annotated[tuple[KeptWords, ...], Doc("What the scenarios are called.")]
+    detectors: Annotated[Mapping[str, Count], Doc("Pairs that each detector reports.")]
+    checks: Checks
+    repeats: Annotated[
+        tuple[Repeat, ...],
+        Doc("What an earlier recording shows too, which is counted there only."),
+    ]
+    notes: Annotated[Mapping[str, tuple[str, ...]], Doc("What is odd, by recording, in words.")]
+    failed: Annotated[Mapping[str, str], Doc("Recordings that were left out, and why.")]
+    drivers: Annotated[
+        tuple[Prediction, ...] | None,
+        LEFT_OUT,
+        Doc("What driver models say of matches; only where some were asked for."),
+    ] = None
