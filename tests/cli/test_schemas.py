@@ -331,6 +331,9 @@ def of_catalogue(run: Run, out: Path, traffic: Path) -> None:
     assert {x["relation"] for x in told["facts"]} >= {"runs", "implies", "empty"}
     assert told["faults"]
     examine(told, folder=out / "report")
+    checked = run("check", out / "report", "--jobs", 1)
+    assert "test" in {x["kind"] for x in checked["findings"]}
+    examine(checked)
     examine(run("catalogue", tests, *asked, "--no-classes"))
 
 

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import partial
 from html import escape
 from pathlib import Path
@@ -12,6 +12,7 @@ from roadproof.api import kernel as kernels
 from roadproof.api.row import Row
 from roadproof.api.settings import one_of, work_of
 from roadproof.effort import Effort
+from roadproof.evidence.answers import check as kept
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Acceptance, Finding, Ruled, exit_code, summary
@@ -30,7 +31,6 @@ from roadproof.verdict import ExitCode
 if TYPE_CHECKING:
     from roadproof.formats.table import Frame
 
-SCHEMA = "roadproof/check/2"
 Solver: TypeAlias = Literal["z3", "cvc5"]
 Kernel: TypeAlias = Literal["coq"]
 
@@ -46,7 +46,7 @@ class Checked:
     """
 
     findings: tuple[Finding, ...]
-    solver: str
+    solver: Solver | Kernel
     library: Library
     specs: tuple[Path, ...] = ()
     kernel: kernels.Answered | None = None
@@ -69,15 +69,16 @@ class Checked:
 
     def as_data(self) -> dict[str, Any]:
         """As the plain data of ``--json``."""
-        data: dict[str, Any] = {**heading(SCHEMA, self.library), "solver": self.solver}
-        if self.kernel is not None:
-            data["kernel"] = write(self.kernel.kept)
-        findings = [_entry(x) for x in self.findings]
-        return {
-            **data,
-            "findings": findings,
-            "not_checked": {k: list(v) for k, v in self.not_checked.items()},
-        }
+        answer = kept.Answer(
+            **heading(kept.SCHEMA, self.library),
+            solver=self.solver,
+            kernel=None if self.kernel is None else self.kernel.kept,
+            findings=tuple(
+                kept.ClaimFinding(**vars(x), accepted=x.outcome is Acceptance.ACCEPTED) for x in self.findings
+            ),
+            not_checked=self.not_checked,
+        )
+        return write(answer)
 
     def rows(self) -> list[Row]:
         """A row for each claim."""
@@ -112,15 +113,6 @@ class Checked:
         kernel = [] if self.kernel is None else [str(self.kernel)]
         lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
         return "\n".join([*lines, summary(self.findings, self.solver), *kernel])
-
-
-def _entry(finding: Finding) -> dict[str, Any]:
-    """A finding as plain data; of the kernel only where it was asked."""
-    plain = {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(finding).items()}
-    data = {**plain, "accepted": finding.outcome is Acceptance.ACCEPTED}
-    if not finding.kernel:
-        del data["kernel"]
-    return data
 
 
 def check(

@@ -3,7 +3,10 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers.shared import KernelWord, Reason
+from roadproof.evidence.codec import LEFT_OUT, Doc
 from roadproof.verdict import ExitCode
 
 
@@ -31,28 +34,34 @@ _EXIT = {
 }
 
 
-NO_EVIDENCE = "none"  # the kind of an answer that promises nothing, or nothing that is for all time
+Kind: TypeAlias = Literal["certificate", "drive", "index", "journal", "test", "none", ""]
+NO_EVIDENCE: Final = "none"  # the kind of an answer that promises nothing, or nothing that is for all time
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One claim of a file or of an index; ``reason`` says why it is not accepted.
+    """One claim of a file or of an index; the evidence itself gives verdict, label and claim."""
 
-    ``verdict``, ``label`` and ``claim`` are those that the evidence itself gives. ``checked`` and
-    ``unchecked`` say in words what was looked at, and what was not. ``kernel``: what Coq says of a
-    certificate or drive, where it was asked.
-    """
-
-    where: str
-    kind: str
+    where: Annotated[str, Doc("The file, or the entry of an index.")]
+    kind: Annotated[
+        Kind,
+        Doc(
+            "test: a test of a catalogue, judged again; none: an answer that promises nothing; empty: what "
+            "the file is cannot be told."
+        ),
+    ]
     outcome: Acceptance
-    reason: str = ""
-    verdict: str = ""
-    label: str = ""
+    reason: Annotated[Reason, Doc("Why it is not accepted; empty where it is.")] = ""
+    verdict: Annotated[
+        str, Doc("As the evidence itself gives it, such as PROVED; empty where nothing can be said.")
+    ] = ""
+    label: Annotated[str, Doc("What it is of, such as P1 scenario 4 base.")] = ""
     claim: str = ""
-    checked: tuple[str, ...] = ()
-    unchecked: tuple[str, ...] = ()
-    kernel: str = ""
+    checked: Annotated[tuple[str, ...], Doc("What was looked at, in words.")] = ()
+    unchecked: Annotated[tuple[str, ...], Doc("What was not, in words.")] = ()
+    kernel: Annotated[
+        KernelWord, LEFT_OUT, Doc("What Coq says of a certificate or drive, where it was asked.")
+    ] = ""
 
     def __str__(self) -> str:
         """The finding in a line."""

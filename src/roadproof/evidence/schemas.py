@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from roadproof.evidence.answers import (
+    check,
     classify,
     compare,
     coverage,
@@ -27,6 +28,7 @@ TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
     proofs.Answer: "roadproof prove --json: claims, proved or refuted",
     compare.Answer: "roadproof compare --json: which of two formulas implies the other",
+    check.Answer: "roadproof check --json: what evidence shows",
     monitor.Answer: "roadproof monitor --json: where a formula holds on one trace",
     traffic.Answer: (
         "results.json of roadproof evaluate, and its --json: dangers in recordings, and what matches them"

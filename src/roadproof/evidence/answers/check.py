@@ -1,0 +1,36 @@
+"""The answer of ``roadproof check``: what evidence shows."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal
+
+from roadproof.evidence.answers.shared import Fingerprint, KeptKernel, PlainHeading
+from roadproof.evidence.codec import LEFT_OUT, Doc
+from roadproof.evidence.finding import Finding
+
+SCHEMA: Final = "roadproof/check/2"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClaimFinding(Finding):
+    """One claim of a file or of an index."""
+
+    accepted: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(PlainHeading):
+    """What evidence shows."""
+
+    schema: Literal["roadproof/check/2"] = SCHEMA
+    library: Annotated[
+        Fingerprint,
+        Doc("Of the library at hand with the files of --spec, without those beside the evidence."),
+    ]
+    solver: Annotated[Literal["z3", "cvc5", "coq"], Doc("Who was asked about certificates.")]
+    kernel: Annotated[KeptKernel | None, LEFT_OUT] = None
+    findings: tuple[ClaimFinding, ...]
+    not_checked: Annotated[
+        Mapping[str, tuple[str, ...]],
+        Doc("By folder, the fields of its index and the files in it that nothing is compared with."),
+    ]
