@@ -20,7 +20,6 @@ from roadproof.spec.words import words_of
 from roadproof.verdict import ExitCode
 
 SUMMARY = "list scenarios, definitions, spec sets, options and parameters"
-SCHEMA = "roadproof/list/1"
 
 _EXAMPLES = """\
 examples:
@@ -47,41 +46,47 @@ def run(args: argparse.Namespace) -> int:
 
 def take_inventory(specification: Specification) -> dict[str, Any]:
     """What there is to talk about under one spec set and choice of options, as plain data."""
+    from roadproof.evidence.answers import library as kept
+    from roadproof.evidence.answers.shared import Binding
+    from roadproof.evidence.codec import write
     from roadproof.evidence.heading import heading
 
     library = specification.library
     scenarios = [name for name in specification.definitions if number_in(name) is not None]
     others = [d for name, d in specification.definitions.items() if name not in scenarios]
-    return {
-        **heading(SCHEMA, library),
-        "set": specification.set_name,
-        "scenarios": [
-            {
-                "name": name,
-                "arguments": list(roles),
-                "doc": specification.describe(specification.definitions[name]),
-                "words": words_of(specification, number_in(name) or 0).as_data(),
-            }
+    answer = kept.Answer(
+        **heading(kept.SCHEMA, library),
+        set=specification.set_name,
+        scenarios=tuple(
+            kept.Scenario(
+                name=name,
+                arguments=tuple(roles),
+                doc=specification.describe(specification.definitions[name]),
+                words=words_of(specification, number_in(name) or 0),
+            )
             for name, roles in signatures(specification, scenarios).items()
-        ],
-        "definitions": [
-            {
-                "name": definition.name,
-                "parameters": [{"name": b.name, "sort": b.sort} for b in definition.parameters],
-                "doc": specification.describe(definition),
-            }
+        ),
+        definitions=tuple(
+            kept.Definition(
+                name=definition.name,
+                parameters=tuple(Binding(name=b.name, sort=b.sort) for b in definition.parameters),
+                doc=specification.describe(definition),
+            )
             for definition in others
-        ],
-        "sets": [{"name": s.name, "extends": s.parent, "doc": s.doc} for s in library.sets.values()],
-        "options": [
-            {"name": o.name, "values": list(o.values), "chosen": specification.options[o.name], "doc": o.doc}
+        ),
+        sets=tuple(
+            kept.SpecificationSet(name=s.name, extends=s.parent, doc=s.doc) for s in library.sets.values()
+        ),
+        options=tuple(
+            kept.Option(name=o.name, values=o.values, chosen=specification.options[o.name], doc=o.doc)
             for o in library.options.values()
-        ],
-        "parameters": [
-            {"name": p.name, "value": str(p.value), "unit": p.unit, "bound": p.bound, "doc": p.doc}
+        ),
+        parameters=tuple(
+            kept.Parameter(name=p.name, value=str(p.value), unit=p.unit, bound=p.bound, doc=p.doc)
             for p in library.parameters.values()
-        ],
-    }
+        ),
+    )
+    return write(answer)
 
 
 def _as_text(specification: Specification) -> str:

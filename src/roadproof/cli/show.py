@@ -9,6 +9,8 @@ from typing import Any
 
 from roadproof.cli.options import add_specification_options, select_specification, write_json
 from roadproof.errors import InputError
+from roadproof.evidence.answers import show as kept
+from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
@@ -26,7 +28,6 @@ from roadproof.spec.words import Words, words_of
 from roadproof.verdict import ExitCode
 
 SUMMARY = "show a scenario, a definition or a formula"
-SCHEMA = "roadproof/show/1"
 
 _WIDTH = 100
 _NAME = re.compile(r"([A-Za-z_]\w*)(?:@([A-Za-z_]\w*))?")
@@ -188,17 +189,18 @@ def _as_latex(exhibit: Exhibit) -> str:
 
 def _as_json(exhibit: Exhibit, specification: Specification) -> dict[str, Any]:
     claim = exhibit.claim
-    return {
-        **heading(SCHEMA, specification.library),
-        "set": specification.set_name,
-        "options": dict(specification.options),
-        "scenario": None if exhibit.about is None else exhibit.about.words.as_data(),
-        "formula": None if claim is None else {"text": text(claim), "tree": tree(claim)},
-        "definitions": [
-            {"name": definition.name, "text": text(definition), "tree": tree(definition)}
-            for definition in exhibit.definitions
-        ],
-        "parameters": [
-            {"name": p.name, "value": str(p.value), "unit": p.unit, "doc": p.doc} for p in exhibit.parameters
-        ],
-    }
+    answer = kept.Answer(
+        **heading(kept.SCHEMA, specification.library),
+        set=specification.set_name,
+        options=specification.options,
+        scenario=None if exhibit.about is None else exhibit.about.words,
+        formula=None if claim is None else kept.ShownFormula(text=text(claim), tree=tree(claim)),
+        definitions=tuple(
+            kept.Definition(name=x.name, text=text(x), tree=tree(x)) for x in exhibit.definitions
+        ),
+        parameters=tuple(
+            kept.Parameter(name=p.name, value=str(p.value), unit=p.unit, doc=p.doc)
+            for p in exhibit.parameters
+        ),
+    )
+    return write(answer)

@@ -13,12 +13,14 @@ from roadproof.evidence.answers import (
     coverage,
     drives,
     explore,
+    library,
     monitor,
     order,
     overlap,
     proofs,
     redundancy,
     shared,
+    show,
     traffic,
 )
 from roadproof.evidence.codec import fields_of, notes_of
@@ -28,6 +30,8 @@ TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
     proofs.Answer: "roadproof prove --json: claims, proved or refuted",
     compare.Answer: "roadproof compare --json: which of two formulas implies the other",
+    library.Answer: "roadproof list --json: what the library holds",
+    show.Answer: "roadproof show --format json: a scenario, a definition or a formula",
     check.Answer: "roadproof check --json: what evidence shows",
     monitor.Answer: "roadproof monitor --json: where a formula holds on one trace",
     traffic.Answer: (

@@ -393,7 +393,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
                 _token_at(bound[0]),
                 f"Write where {name} {bound[1]} 0.",
             )
-        comparison = "" if bound is None else bound[1]
+        comparison: syntax.ParameterBound = "" if bound is None else bound[1]
         return syntax.ParameterDeclaration(str(name), value, str(unit), comparison, _doc(doc), _at(meta))
 
     def edge(self, meta: Meta, items: list[Any]) -> tuple[Fraction, str, Position]:

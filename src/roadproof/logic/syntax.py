@@ -12,6 +12,7 @@ from roadproof.errors import Position
 
 BinaryOperator: TypeAlias = Literal["+", "-", "*", "/", "^", "<", "<=", ">", ">=", "=", "!=", "->", "<->"]
 TemporalOperator: TypeAlias = Literal["F", "G", "U"]
+ParameterBound: TypeAlias = Literal["", ">", ">="]
 
 
 def _nowhere() -> Position:
@@ -136,7 +137,7 @@ class ParameterDeclaration:
     name: str
     value: Fraction
     unit: str
-    bound: str
+    bound: ParameterBound
     doc: str
     at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 

@@ -7,7 +7,6 @@ scenario that has no title is called by its description.
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any
 
 from roadproof.spec.library import Specification
 from roadproof.spec.scenarios import (
@@ -47,17 +46,6 @@ class Words:
         ('scenario 4: deceleration ahead, lane keep, main road', 'scenario 40')
         """
         return f"scenario {self.number}" + (f": {self.name}" if self.name else "")
-
-    def as_data(self) -> dict[str, Any]:
-        """All of it as plain data."""
-        return {
-            "number": self.number,
-            "title": self.title,
-            "sector": self.sector,
-            "sv": self.sv,
-            "pov": self.pov,
-            "sentence": self.sentence,
-        }
 
 
 Called = Mapping[int, Words]

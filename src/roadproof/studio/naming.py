@@ -5,6 +5,7 @@ from typing import Any
 
 from roadproof.api.drafting import mistakes
 from roadproof.errors import RoadproofError
+from roadproof.evidence.codec import write
 from roadproof.evidence.strict import Fields
 from roadproof.logic.show import as_syntax, decimal, text
 from roadproof.logic.syntax import Definition
@@ -41,7 +42,7 @@ def names(ask: Mapping[str, Any], say: object) -> dict[str, Any]:
             {"name": o.name, "values": list(o.values), "doc": o.doc} for o in library.options.values()
         ],
         "scenarios": [
-            words_of(home, number).as_data()
+            write(words_of(home, number))
             for name in home.definitions
             if (number := number_in(name)) is not None
         ],

@@ -59,6 +59,17 @@ Seconds: TypeAlias = Annotated[
 
 
 @dataclass(frozen=True, kw_only=True)
+class Binding:
+    """A name with what it stands for."""
+
+    name: str
+    sort: Annotated[str, Doc("vehicle, vehicles, lane, lanelet, or the unit of a number.")]
+
+
+KeptBinding: TypeAlias = Annotated[Binding, Shared("binding")]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Kernel:
     """What Coq needed, and the axioms that all that it accepted stands on."""
 

@@ -1,0 +1,78 @@
+"""The answer of ``roadproof list``: what the library holds."""
+
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal
+
+from roadproof.evidence.answers.shared import (
+    KeptBinding,
+    KeptWords,
+    PlainHeading,
+    Rational,
+    SetName,
+)
+from roadproof.evidence.codec import Doc, Rule
+from roadproof.logic.syntax import ParameterBound
+
+SCHEMA: Final = "roadproof/list/1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scenario:
+    """A scenario that can be asked about."""
+
+    name: Annotated[str, Rule(pattern="^scenario_[0-9]+$")]
+    arguments: Annotated[tuple[str, ...], Doc("Vehicles and lane that it is about.")]
+    doc: str
+    words: KeptWords
+
+
+@dataclass(frozen=True, kw_only=True)
+class Definition:
+    """A definition that is no scenario."""
+
+    name: str
+    parameters: tuple[KeptBinding, ...]
+    doc: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpecificationSet:
+    """A spec set."""
+
+    name: SetName
+    extends: Annotated[str, Doc("The set whose definitions it replaces; empty where there is none.")]
+    doc: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Option:
+    """An option with its readings."""
+
+    name: str
+    values: Annotated[tuple[str, ...], Rule(least=1), Doc("The first is the default.")]
+    chosen: str
+    doc: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """A parameter with its declared value."""
+
+    name: str
+    value: Annotated[Rational, Doc("The declared value, in unit.")]
+    unit: Annotated[str, Doc("Such as s or m/s^2; empty where it has none.")]
+    bound: Annotated[ParameterBound, Doc("Its declared bound against 0.")]
+    doc: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(PlainHeading):
+    """What the library holds."""
+
+    schema: Literal["roadproof/list/1"] = SCHEMA
+    set: SetName
+    scenarios: tuple[Scenario, ...]
+    definitions: tuple[Definition, ...]
+    sets: tuple[SpecificationSet, ...]
+    options: tuple[Option, ...]
+    parameters: tuple[Parameter, ...]

@@ -1,0 +1,57 @@
+"""The answer of ``roadproof show --format json``: a scenario, a definition or a formula."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Final, Literal
+
+from roadproof.evidence.answers.shared import (
+    Formula,
+    KeptWords,
+    Options,
+    PlainHeading,
+    Rational,
+    SetName,
+)
+from roadproof.evidence.codec import Doc
+from roadproof.evidence.json_schema import Whole
+
+SCHEMA: Final = "roadproof/show/1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShownFormula:
+    """A formula as text and as a syntax tree."""
+
+    text: Formula
+    tree: Annotated[Any, Whole("tree.json#/$defs/claim")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Definition:
+    """A definition as text and as a syntax tree."""
+
+    name: str
+    text: str
+    tree: Annotated[Any, Whole("tree.json#/$defs/definition")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """A parameter that a formula or a definition speaks of."""
+
+    name: str
+    value: Annotated[Rational, Doc("The declared value, in unit.")]
+    unit: str
+    doc: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(PlainHeading):
+    """A scenario, a definition or a formula."""
+
+    schema: Literal["roadproof/show/1"] = SCHEMA
+    set: SetName
+    options: Options
+    scenario: Annotated[KeptWords | None, Doc("The scenario in words; null where something else is shown.")]
+    formula: Annotated[ShownFormula | None, Doc("The formula; null where a definition is shown.")]
+    definitions: tuple[Definition, ...]
+    parameters: tuple[Parameter, ...]
