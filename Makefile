@@ -51,7 +51,7 @@ interop: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m interop $(ARGS)
 
 # Small faults in the source, each tried against the tests that run its line (docs/tests.md); hours, taken
-# up again where it stopped. ARGS='--only judge/ --most 20' asks for less.
+# up again where it stopped. ARGS='--only semantics/exact/ --most 20' asks for less.
 mutants: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m mutants record --jobs $(JOBS)
 	PYTHONPATH=tests nice $(BIN)/python -m mutants run --jobs $(JOBS) $(ARGS)

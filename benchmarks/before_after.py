@@ -40,7 +40,7 @@ LINES: dict[str, str] = {
 
 def run(home: Path, line: str) -> float:
     """Seconds of processor time. Raises ``CalledProcessError`` where it fails."""
-    command = [sys.executable, "-m", "roadproof.cli.main", *line.split()]
+    command = [sys.executable, "-m", "roadproof.frontends.cli.main", *line.split()]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     here = {name: value for name, value in environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     here["PYTHONPATH"] = str(home / "src")

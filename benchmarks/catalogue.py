@@ -15,7 +15,7 @@ from pathlib import Path
 import roadproof as rp
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.showing import Freedom, show
-from roadproof.api.cataloguing import Catalogued
+from roadproof.frontends.api.cataloguing import Catalogued
 
 THOUSAND = 1000
 

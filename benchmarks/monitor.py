@@ -20,16 +20,16 @@ from time import perf_counter
 
 import numpy as np
 
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import apply_definition
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.monitoring import Batch, Monitor, compile
-from roadproof.monitoring.boolean import unpack
-from roadproof.monitoring.recursive import Reading, Trace, answer
-from roadproof.monitoring.semantics import interval_steps
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import apply_definition
-from roadproof.spec.library import bundled_library
+from roadproof.semantics.sampled import Batch, Monitor, compile
+from roadproof.semantics.sampled.boolean import unpack
+from roadproof.semantics.sampled.recursive import Reading, Trace, answer
+from roadproof.semantics.sampled.semantics import interval_steps
 
 SCENARIOS = (1, 3, 4, 5, 6, 7, 8)
 LANE_WIDTH = 3.5

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from preventing import stepping
 from preventing.labels import labels
 from preventing.read import boundary
-from roadproof.preventing.manoeuvres import CUT_IN
+from roadproof.drivers.manoeuvres import CUT_IN
 
 KMH = float(Fraction(5, 18))
 READINGS = {

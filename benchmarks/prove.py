@@ -15,14 +15,14 @@ from collections.abc import Callable
 from functools import partial
 from multiprocessing.connection import Connection
 
+from roadproof.engines.prove.prover import prove
+from roadproof.engines.solve.smt import ask
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import moment_of
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Specification, bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.proving.prover import prove
-from roadproof.solve.smt import ask
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
 
 CLAIMS = [
     *(f"scenario_{i}(SV,POV,L) -> dangerArises(SV,POV)" for i in (1, 3, 4, 5, 6, 7, 8)),
@@ -105,7 +105,7 @@ def verdict_of(specification: Specification, claim: str) -> str:
 
 
 def exit_code_of(words: list[str]) -> str:
-    command = [sys.executable, "-m", "roadproof.cli.main", *words]
+    command = [sys.executable, "-m", "roadproof.frontends.cli.main", *words]
     return str(subprocess.run(command, capture_output=True, check=True).returncode)
 
 

@@ -116,7 +116,10 @@ def run(folder: Path, number: int, load: int, jobs: int) -> None:
     # Another seed for the order of sets each time, as users have it.
     environment = {**os.environ, "PYTHONHASHSEED": str(1 + 2 * load + jobs)}
     done = subprocess.run(
-        [sys.executable, "-m", "roadproof.cli.main", *line], capture_output=True, text=True, env=environment
+        [sys.executable, "-m", "roadproof.frontends.cli.main", *line],
+        capture_output=True,
+        text=True,
+        env=environment,
     )
     seconds = time.monotonic() - begun
     said = "" if done.returncode in (0, 10, 20) else done.stderr  # else it only says how far it is

@@ -12,11 +12,11 @@ import sys
 import time
 from pathlib import Path
 
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats.recording import Recording
-from roadproof.simulation.simulate import Traffic
-from roadproof.simulation.synthetic import simulate
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.simulate.simulate import Traffic
+from roadproof.recordings.simulate.synthetic import simulate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from traffic.reference import Reference, Row

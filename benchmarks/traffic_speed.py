@@ -17,14 +17,14 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-from roadproof.evaluation.experiment import Experiment, run_experiment
-from roadproof.evaluation.questions import default_settings
-from roadproof.formats.highd import SAMPLE_KINDS
-from roadproof.formats.table import read_columns
-from roadproof.formats.write_highd import write_highd
-from roadproof.hands import Hands
-from roadproof.simulation.simulate import Traffic
-from roadproof.simulation.synthetic import simulate
+from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
+from roadproof.recordings.evaluate.questions import default_settings
+from roadproof.recordings.formats.highd import SAMPLE_KINDS
+from roadproof.recordings.formats.table import read_columns
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.simulate import Traffic
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.runtime.executors import Hands
 
 
 def seconds(work: Callable[[], object]) -> float:

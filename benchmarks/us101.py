@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.formats.recording import Recording
-from roadproof.formats.sources import find_sources
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.sources import find_sources
 
 
 def share_a_lane(recording: Recording, first: int, second: int, begin: int, end: int) -> bool:

@@ -11,14 +11,14 @@ import time
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.effort import Effort
-from roadproof.encode.build import NONE, build_problem
-from roadproof.searching.ask import Outcome, Search, ask
-from roadproof.searching.question import pose
-from roadproof.solve.exact import solve_exactly
-from roadproof.solve.milp import prepare
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import Scenario, applied
+from roadproof.engines.encode.build import NONE, build_problem
+from roadproof.engines.search.ask import Outcome, Search, ask
+from roadproof.engines.search.question import pose
+from roadproof.engines.solve.exact import solve_exactly
+from roadproof.engines.solve.milp import prepare
+from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 STAGES = ("encode", "solve", "shape", "judge", "all")

@@ -1,13 +1,13 @@
 """Questions of tests as text: the doors of the command line, without one."""
 
-from roadproof.effort import Effort
-from roadproof.proving import prover
-from roadproof.proving.prover import Result
-from roadproof.searching.ask import Search
-from roadproof.searching.question import Posed, SearchOptions, Setting, pose
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
-from roadproof.spec.scenarios import read_query
+from roadproof.engines.prove import prover
+from roadproof.engines.prove.prover import Result
+from roadproof.engines.search.ask import Search
+from roadproof.engines.search.question import Posed, SearchOptions, Setting, pose
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import read_query
+from roadproof.library.specification import Specification, bundled_library
+from roadproof.runtime.budget import Effort
 from roadproof.world.models import load_road, load_vehicle
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cache import SWITCH, private_folder, remembered
 from roadproof.logic import parse
 from roadproof.logic.parse import parse_bundled, parse_library
+from roadproof.runtime.cache import SWITCH, private_folder, remembered
 
 
 @pytest.fixture(autouse=True)

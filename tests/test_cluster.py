@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from roadproof import cluster
+from roadproof.analysis.study.pool import work
 from roadproof.errors import InputError, LostError, UsageError
-from roadproof.hands import Cluster, Hands
-from roadproof.study.pool import work
-from roadproof.workers import is_worker
+from roadproof.runtime import dask_executor
+from roadproof.runtime.executors import Cluster, Hands
+from roadproof.runtime.process_pool import is_worker
 
 pytest.importorskip("distributed", reason="dask is not installed: pip install 'roadproof[cluster]'")
 
@@ -70,12 +70,12 @@ def test_an_error_is_raised_as_it_is_and_ends_the_others() -> None:
 
 def test_other_versions_are_refused_before_any_work(monkeypatch: pytest.MonkeyPatch) -> None:
     list(work(square, range(2), HERE))
-    monkeypatch.setattr(cluster, "_our_version", lambda: "0.0.7")
+    monkeypatch.setattr(dask_executor, "_our_version", lambda: "0.0.7")
     with pytest.raises(UsageError, match=r"roadproof is 0\.0\.7 here and .* on workers; install the same"):
         list(work(square, range(2), HERE))
 
 
 def test_a_scheduler_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster, "_PATIENCE", 1)
+    monkeypatch.setattr(dask_executor, "_PATIENCE", 1)
     with pytest.raises(InputError, match="no scheduler answers within 1 s"):
         list(work(square, range(2), Hands(cluster=Cluster("tcp://127.0.0.1:9"))))

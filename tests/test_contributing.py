@@ -17,18 +17,18 @@ SURVEY = dict(re.findall(r"`(src/roadproof/\S+\.py)`[^\n]*\n\n```python\n(.*?)``
 NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass Named:")
 READERS_OF_NODES = {
     *(
-        "judge/exact.py",
-        "judge/blame.py",
-        "judge/robust.py",
-        "logic/pins.py",
-        "report/viewer_data.py",
-        "monitoring/recursive.py",
-        "monitoring/semantics.py",
-        "encode/unroll.py",
+        "semantics/exact/exact.py",
+        "semantics/exact/blame.py",
+        "semantics/exact/robust.py",
+        "logic/fixed_parameters.py",
+        "frontends/report/viewer_data.py",
+        "semantics/sampled/recursive.py",
+        "semantics/sampled/semantics.py",
+        "engines/encode/unroll.py",
     ),
-    *("proving/grounding.py", "evidence/derivation.py", "evidence/state.py", "evidence/refutation.py"),
+    *("engines/prove/grounding.py", "evidence/derivation.py", "evidence/state.py", "evidence/refutation.py"),
     *("logic/formula.py", "logic/fragment.py", "logic/motion.py", "logic/restore.py"),
-    *("deriving/derive.py", "kernel/printer.py"),
+    *("evidence/derivations/derive.py", "evidence/kernel/printer.py"),
     *("analysis/catalogue/nearest.py", "evidence/periodic.py"),
 }
 
@@ -97,17 +97,17 @@ def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
 REFUSALS = """
 from fractions import Fraction as F
 import numpy as np
-from roadproof.encode.along import names_places
-from roadproof.encode.motion import Layout
-from roadproof.encode.unroll import Grid
-from roadproof.judge import judge
+from roadproof.engines.encode.along import names_places
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.unroll import Grid
+from roadproof.semantics.exact import judge
 from roadproof.logic.latex import latex
-from roadproof.proving.prover import prove
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.evaluation.one_trace import sample_drive
-from roadproof.evaluation.traces import gather
-from roadproof.monitoring import Batch, compile
+from roadproof.engines.prove.prover import prove
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.evaluate.one_trace import sample_drive
+from roadproof.recordings.evaluate.traces import gather
+from roadproof.semantics.sampled import Batch, compile
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 
@@ -147,17 +147,17 @@ def test_a_reader_that_does_not_know_a_signal_refuses_it_by_name(copy):
 AGREEMENT = """
 from fractions import Fraction as F
 import random
-from roadproof.encode.along import names_places
-from roadproof.encode.build import NONE, ground
-from roadproof.encode.circuit import evaluate
-from roadproof.encode.motion import Layout
-from roadproof.encode.unroll import Grid, unroll
-from roadproof.judge import judge
-from roadproof.monitoring import compile
-from roadproof.signals import STARTING
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.evaluation.one_trace import sample_drive
+from roadproof.engines.encode.along import names_places
+from roadproof.engines.encode.build import NONE, ground
+from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.unroll import Grid, unroll
+from roadproof.semantics.exact import judge
+from roadproof.semantics.sampled import compile
+from roadproof.world.signals import STARTING
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.evaluate.one_trace import sample_drive
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at
@@ -210,7 +210,7 @@ assert names_places(read_claim(base, "soon(SV) > 9 m").formula, cars)
 assert not names_places(read_claim(base, "soon(SV) > s(POV)").formula, cars)
 """
 ASKED = ("F soon(SV) > s(POV) + 40 m", "soon(SV) > 60 m and s(SV) < 41 m")
-WITNESS = "from roadproof.cli.main import main\nraise SystemExit(main(['witness', {!r}]))"
+WITNESS = "from roadproof.frontends.cli.main import main\nraise SystemExit(main(['witness', {!r}]))"
 
 
 def test_when_all_is_done_the_readers_agree(copy):
@@ -250,7 +250,7 @@ def forge(path, *changes):
 
 
 def test_a_survey_is_three_new_files_that_need_no_line_elsewhere(copy):
-    folders = ("analysis", "evidence/answers", "cli")
+    folders = ("analysis", "evidence/answers", "frontends/cli")
     assert list(SURVEY) == [f"src/roadproof/{folder}/alone.py" for folder in folders]
     add_survey(copy)
     for words in (["check"], ["format", "--check"]):

@@ -4,8 +4,8 @@ import pickle
 
 import pytest
 
-from roadproof import effort
-from roadproof.effort import Effort, Late, Meter, backstop
+from roadproof.runtime import budget
+from roadproof.runtime.budget import Effort, Late, Meter, backstop
 
 
 class Clock:
@@ -13,7 +13,7 @@ class Clock:
 
     def __init__(self, monkeypatch):
         self.now = 0.0
-        monkeypatch.setattr(effort.time, "monotonic", lambda: self.now)
+        monkeypatch.setattr(budget.time, "monotonic", lambda: self.now)
 
 
 @pytest.fixture

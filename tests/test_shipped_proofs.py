@@ -6,11 +6,11 @@ from typing import Literal
 
 import pytest
 
-from roadproof.api.checking import check
+from roadproof.engines.prove.properties import template_properties
 from roadproof.evidence.certificate import read_certificate
 from roadproof.evidence.finding import Acceptance
-from roadproof.proving.properties import template_properties
-from roadproof.spec.library import bundled_library
+from roadproof.frontends.api.checking import check
+from roadproof.library.specification import bundled_library
 from roadproof.verdict import Verdict
 
 PROOFS = Path(__file__).parents[1] / "proofs"

@@ -7,15 +7,15 @@ from typing import get_args
 
 import pytest
 
-from roadproof.formats.recording import Recording
-from roadproof.judge.polynomial import polynomial
-from roadproof.judge.signals import DriveSignals
 from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim
-from roadproof.signals import FIXED, LIMITED, RECORDED, SIGNALS, SIZES, STARTING, SignalName, SizeName
-from roadproof.units import SI, UNITS
+from roadproof.recordings.formats.recording import Recording
+from roadproof.semantics.exact.polynomial import polynomial
+from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.motion import State
+from roadproof.world.signals import FIXED, LIMITED, RECORDED, SIGNALS, SIZES, STARTING, SignalName, SizeName
+from roadproof.world.units import SI, UNITS
 from roadproof.world.vehicle import Vehicle
 
 SOURCE = Path(__file__).parents[1] / "src" / "roadproof"

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from roadproof import shipped
 from roadproof.errors import Position, TextError
+from roadproof.runtime import package_data
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 PROVED, REFUTED, UNKNOWN = Verdict.PROVED, Verdict.REFUTED, Verdict.UNKNOWN
@@ -57,10 +57,10 @@ def test_the_nearest_reader_says_where() -> None:
 def test_shipped_folders_are_found_in_a_checkout_and_in_a_wheel(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert (shipped.shipped("models") / "roads" / "main-2.toml").is_file()
+    assert (package_data.shipped("models") / "roads" / "main-2.toml").is_file()
     package = tmp_path / "site-packages" / "roadproof"
     (package / "models").mkdir(parents=True)
-    monkeypatch.setattr(shipped, "__file__", str(package / "shipped.py"))
-    assert shipped.shipped("models") == package / "models"
+    monkeypatch.setattr(package_data, "__file__", str(package / "runtime" / "package_data.py"))
+    assert package_data.shipped("models") == package / "models"
     with pytest.raises(FileNotFoundError, match="without its folder 'proofs'"):
-        shipped.shipped("proofs")
+        package_data.shipped("proofs")

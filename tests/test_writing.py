@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli.main import main
 from roadproof.errors import InputError
-from roadproof.files import whole_file, write_whole
+from roadproof.frontends.cli.main import main
+from roadproof.runtime.files import whole_file, write_whole
 
 
 def test_a_pipe_is_written_to(tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_a_full_disk_is_told(
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
 def test_stdout_on_a_full_disk_is_told() -> None:
     with open("/dev/full", "w") as full:
-        command = [sys.executable, "-m", "roadproof.cli.main", "list"]
+        command = [sys.executable, "-m", "roadproof.frontends.cli.main", "list"]
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True)
     assert done.returncode == 3
     assert done.stderr.startswith("roadproof: cannot write the answer: no space left on device")

@@ -14,51 +14,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from roadproof.api.asking import ask as ask
-    from roadproof.api.cataloguing import catalogue as catalogue
-    from roadproof.api.checking import check as check
-    from roadproof.api.classifying import classify as classify
-    from roadproof.api.comparing import compare as compare
-    from roadproof.api.converting import convert as convert
-    from roadproof.api.covering import coverage as coverage
-    from roadproof.api.definitions import Definitions as Definitions
-    from roadproof.api.definitions import load as load
-    from roadproof.api.diagnosing import Proofreader as Proofreader
-    from roadproof.api.diagnosing import diagnose as diagnose
-    from roadproof.api.drives import witness as witness
-    from roadproof.api.driving import drive as drive
-    from roadproof.api.driving import motion as motion
-    from roadproof.api.exploring import explore as explore
-    from roadproof.api.exporting import export as export
-    from roadproof.api.phrases import POV as POV
-    from roadproof.api.phrases import POV1 as POV1
-    from roadproof.api.phrases import POV2 as POV2
-    from roadproof.api.phrases import SV as SV
-    from roadproof.api.phrases import F as F
-    from roadproof.api.phrases import G as G
-    from roadproof.api.phrases import L as L
-    from roadproof.api.phrases import U as U
-    from roadproof.api.phrases import adjacent_lanes as adjacent_lanes
-    from roadproof.api.phrases import call as call
-    from roadproof.api.phrases import every as every
-    from roadproof.api.phrases import lane as lane
-    from roadproof.api.phrases import lanelets as lanelets
-    from roadproof.api.phrases import lanes as lanes
-    from roadproof.api.phrases import parameter as parameter
-    from roadproof.api.phrases import some as some
-    from roadproof.api.phrases import vehicle as vehicle
-    from roadproof.api.phrases import zone as zone
-    from roadproof.api.preventing import preventable as preventable
-    from roadproof.api.proofs import prove as prove
-    from roadproof.api.recordings import evaluate as evaluate
-    from roadproof.api.reporting import page as page
-    from roadproof.api.roads import roads as roads
-    from roadproof.api.simulating import simulate as simulate
-    from roadproof.api.studies import order as order
-    from roadproof.api.studies import overlap as overlap
-    from roadproof.api.studies import redundancy as redundancy
-    from roadproof.api.traces import monitor as monitor
-    from roadproof.api.traces import trace as trace
     from roadproof.errors import InputError as InputError
     from roadproof.errors import MissingSolverError as MissingSolverError
     from roadproof.errors import RoadproofError as RoadproofError
@@ -66,11 +21,56 @@ if TYPE_CHECKING:
     from roadproof.errors import TextError as TextError
     from roadproof.errors import TextErrors as TextErrors
     from roadproof.errors import UsageError as UsageError
-    from roadproof.hands import Cluster as Cluster
-    from roadproof.hands import Hands as Hands
-    from roadproof.hands import Shard as Shard
-    from roadproof.stages import Cancelled as Cancelled
-    from roadproof.stages import Stage as Stage
+    from roadproof.frontends.api.asking import ask as ask
+    from roadproof.frontends.api.cataloguing import catalogue as catalogue
+    from roadproof.frontends.api.checking import check as check
+    from roadproof.frontends.api.classifying import classify as classify
+    from roadproof.frontends.api.comparing import compare as compare
+    from roadproof.frontends.api.converting import convert as convert
+    from roadproof.frontends.api.covering import coverage as coverage
+    from roadproof.frontends.api.definitions import Definitions as Definitions
+    from roadproof.frontends.api.definitions import load as load
+    from roadproof.frontends.api.diagnosing import Proofreader as Proofreader
+    from roadproof.frontends.api.diagnosing import diagnose as diagnose
+    from roadproof.frontends.api.drives import witness as witness
+    from roadproof.frontends.api.driving import drive as drive
+    from roadproof.frontends.api.driving import motion as motion
+    from roadproof.frontends.api.exploring import explore as explore
+    from roadproof.frontends.api.exporting import export as export
+    from roadproof.frontends.api.phrases import POV as POV
+    from roadproof.frontends.api.phrases import POV1 as POV1
+    from roadproof.frontends.api.phrases import POV2 as POV2
+    from roadproof.frontends.api.phrases import SV as SV
+    from roadproof.frontends.api.phrases import F as F
+    from roadproof.frontends.api.phrases import G as G
+    from roadproof.frontends.api.phrases import L as L
+    from roadproof.frontends.api.phrases import U as U
+    from roadproof.frontends.api.phrases import adjacent_lanes as adjacent_lanes
+    from roadproof.frontends.api.phrases import call as call
+    from roadproof.frontends.api.phrases import every as every
+    from roadproof.frontends.api.phrases import lane as lane
+    from roadproof.frontends.api.phrases import lanelets as lanelets
+    from roadproof.frontends.api.phrases import lanes as lanes
+    from roadproof.frontends.api.phrases import parameter as parameter
+    from roadproof.frontends.api.phrases import some as some
+    from roadproof.frontends.api.phrases import vehicle as vehicle
+    from roadproof.frontends.api.phrases import zone as zone
+    from roadproof.frontends.api.preventing import preventable as preventable
+    from roadproof.frontends.api.proofs import prove as prove
+    from roadproof.frontends.api.recordings import evaluate as evaluate
+    from roadproof.frontends.api.reporting import page as page
+    from roadproof.frontends.api.roads import roads as roads
+    from roadproof.frontends.api.simulating import simulate as simulate
+    from roadproof.frontends.api.studies import order as order
+    from roadproof.frontends.api.studies import overlap as overlap
+    from roadproof.frontends.api.studies import redundancy as redundancy
+    from roadproof.frontends.api.traces import monitor as monitor
+    from roadproof.frontends.api.traces import trace as trace
+    from roadproof.runtime.executors import Cluster as Cluster
+    from roadproof.runtime.executors import Hands as Hands
+    from roadproof.runtime.executors import Shard as Shard
+    from roadproof.runtime.progress import Cancelled as Cancelled
+    from roadproof.runtime.progress import Stage as Stage
     from roadproof.verdict import Verdict as Verdict
 
     __version__: str
@@ -84,39 +84,39 @@ _ERRORS = (
     "SharedError",
 )
 _HOMES = {
-    "load": "api.definitions",
-    "Definitions": "api.definitions",
-    "prove": "api.proofs",
-    "witness": "api.drives",
-    "motion": "api.driving",
-    "drive": "api.driving",
-    "diagnose": "api.diagnosing",
-    "Proofreader": "api.diagnosing",
-    "compare": "api.comparing",
-    "overlap": "api.studies",
-    "order": "api.studies",
-    "redundancy": "api.studies",
-    "coverage": "api.covering",
-    "classify": "api.classifying",
-    "catalogue": "api.cataloguing",
-    "explore": "api.exploring",
-    "preventable": "api.preventing",
-    "ask": "api.asking",
-    "monitor": "api.traces",
-    "trace": "api.traces",
-    "evaluate": "api.recordings",
-    "roads": "api.roads",
-    "convert": "api.converting",
-    "simulate": "api.simulating",
-    "export": "api.exporting",
-    "page": "api.reporting",
-    "check": "api.checking",
+    "load": "frontends.api.definitions",
+    "Definitions": "frontends.api.definitions",
+    "prove": "frontends.api.proofs",
+    "witness": "frontends.api.drives",
+    "motion": "frontends.api.driving",
+    "drive": "frontends.api.driving",
+    "diagnose": "frontends.api.diagnosing",
+    "Proofreader": "frontends.api.diagnosing",
+    "compare": "frontends.api.comparing",
+    "overlap": "frontends.api.studies",
+    "order": "frontends.api.studies",
+    "redundancy": "frontends.api.studies",
+    "coverage": "frontends.api.covering",
+    "classify": "frontends.api.classifying",
+    "catalogue": "frontends.api.cataloguing",
+    "explore": "frontends.api.exploring",
+    "preventable": "frontends.api.preventing",
+    "ask": "frontends.api.asking",
+    "monitor": "frontends.api.traces",
+    "trace": "frontends.api.traces",
+    "evaluate": "frontends.api.recordings",
+    "roads": "frontends.api.roads",
+    "convert": "frontends.api.converting",
+    "simulate": "frontends.api.simulating",
+    "export": "frontends.api.exporting",
+    "page": "frontends.api.reporting",
+    "check": "frontends.api.checking",
     "Verdict": "verdict",
-    "Stage": "stages",
-    "Cancelled": "stages",
-    **dict.fromkeys(_PHRASES, "api.phrases"),
+    "Stage": "runtime.progress",
+    "Cancelled": "runtime.progress",
+    **dict.fromkeys(_PHRASES, "frontends.api.phrases"),
     **dict.fromkeys(_ERRORS, "errors"),
-    **dict.fromkeys(("Hands", "Shard", "Cluster"), "hands"),
+    **dict.fromkeys(("Hands", "Shard", "Cluster"), "runtime.executors"),
 }
 __all__ = [*_HOMES, "__version__"]
 

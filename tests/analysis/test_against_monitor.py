@@ -16,10 +16,10 @@ from roadproof.analysis.coverage.claims import in_either_role, sectors_of
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.analysis.meeting import Meeting, conjunctions
-from roadproof.cli.main import main
-from roadproof.effort import Effort
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import Scenario
+from roadproof.frontends.cli.main import main
+from roadproof.library.scenarios import Scenario
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 pytest.importorskip("polars")

@@ -10,14 +10,14 @@ from asking import prove
 from monitoring.cases import random_traffic
 from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.redundancy import changes_of
-from roadproof.effort import Effort
+from roadproof.library.bind import default_values
+from roadproof.library.compose import equivalence, implication
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.specification import Specification, bundled_library
 from roadproof.logic.rewrite import with_values
-from roadproof.monitoring import compile
-from roadproof.spec.bind import default_values
-from roadproof.spec.compose import equivalence, implication
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
-from roadproof.spec.scenarios import Scenario, applied
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.sampled import compile
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()

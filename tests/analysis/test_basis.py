@@ -6,12 +6,12 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.basis import Basis
-from roadproof.api.settings import basis_of
-from roadproof.cli.main import main
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import Scenario, applied
+from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.cli.main import main
+from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.specification import bundled_library
 from roadproof.world.models import load_vehicle
 
 

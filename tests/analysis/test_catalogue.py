@@ -22,17 +22,17 @@ from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import Division, divide
-from roadproof.api.cataloguing import Catalogued, catalogue
-from roadproof.api.settings import basis_of
-from roadproof.cli.main import main
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
-from roadproof.judge.algebraic import approximate
-from roadproof.judge.exact import judge
-from roadproof.report.catalogue import as_text
-from roadproof.spec.bind import bind
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, name_of, vehicles_of
+from roadproof.frontends.api.cataloguing import Catalogued, catalogue
+from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.catalogue import as_text
+from roadproof.library.bind import bind
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
+from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.exact import judge
 
 HOME = rp.load()
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"

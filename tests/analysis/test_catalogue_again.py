@@ -12,11 +12,11 @@ import roadproof as rp
 from evidence.folders import read, write
 from evidence.test_every_field import another, leaves, path_of
 from roadproof.analysis.catalogue import examination
-from roadproof.api import judging_again
-from roadproof.cli.main import main
+from roadproof.engines.prove.properties import find_label
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.folder import survey
-from roadproof.proving.properties import find_label
+from roadproof.frontends.api import judging_again
+from roadproof.frontends.cli.main import main
 from roadproof.verdict import ExitCode
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"

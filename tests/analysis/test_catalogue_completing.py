@@ -29,15 +29,15 @@ from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
 from roadproof.analysis.coverage import claims, found, settling, study
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.classes import near_miss
-from roadproof.api.cataloguing import Catalogued, catalogue
-from roadproof.cli.main import main
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.judge.exact import judge
-from roadproof.report import catalogue_drives
-from roadproof.report.catalogue_drives import Drawn, draw_tests
-from roadproof.report.figures import make_page, shorten
-from roadproof.spec.bind import bind, values_with
+from roadproof.frontends.api.cataloguing import Catalogued, catalogue
+from roadproof.frontends.cli.main import main
+from roadproof.frontends.report import catalogue_drives
+from roadproof.frontends.report.catalogue_drives import Drawn, draw_tests
+from roadproof.frontends.report.figures import make_page, shorten
+from roadproof.library.bind import bind, values_with
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
 HOME = rp.load()

@@ -23,21 +23,21 @@ from roadproof.analysis.catalogue.decisions import (
     decide_trace,
 )
 from roadproof.analysis.catalogue.sides import read_side_name, side_name
-from roadproof.evaluation.evaluate import evaluate_recording
-from roadproof.evaluation.one_trace import cut_trace, sample_drive
+from roadproof.drivers import margins
+from roadproof.drivers.claims import SIDES, Side
+from roadproof.drivers.driving import OWN_LANE, Reading, drive_of, road_of
+from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
+from roadproof.drivers.margins import State, controller_hits, controller_margin, margin
+from roadproof.drivers.models import MODELS, SCENARIOS, unpreventable
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
 from roadproof.evidence.finding import Acceptance
-from roadproof.judge.exact import judge
+from roadproof.library.bind import bind, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic.rewrite import with_values
-from roadproof.preventing import margins
-from roadproof.preventing.claims import SIDES, Side
-from roadproof.preventing.driving import OWN_LANE, Reading, drive_of, road_of
-from roadproof.preventing.manoeuvres import KMH, MANOEUVRES, signals_of
-from roadproof.preventing.margins import State, controller_hits, controller_margin, margin
-from roadproof.preventing.models import MODELS, SCENARIOS, unpreventable
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.recordings.evaluate.evaluate import evaluate_recording
+from roadproof.recordings.evaluate.one_trace import cut_trace, sample_drive
+from roadproof.semantics.exact.exact import judge
 from roadproof.world.drive import Drive, Piece
 from traffic.test_drivers import EACH, drives, questions_with
 

@@ -11,8 +11,8 @@ import roadproof as rp
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.fragments import _by_itself
 from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.cli.main import main
 from roadproof.errors import InputError
+from roadproof.frontends.cli.main import main
 
 HOME = rp.load()
 BRAKING = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives" / "braking.json"

@@ -16,8 +16,8 @@ from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import choices, roles_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
-from roadproof.cli.main import main
 from roadproof.errors import InputError
+from roadproof.frontends.cli.main import main
 
 HOME = rp.load()
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"

@@ -11,7 +11,7 @@ import roadproof as rp
 from roadproof.analysis.catalogue import digests
 from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import read_pair, read_samples
+from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 
 SAMPLES = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "samples"
 Row = dict[str, str]

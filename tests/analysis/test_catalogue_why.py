@@ -12,12 +12,12 @@ from roadproof.analysis.catalogue.asked import Asked, Happens
 from roadproof.analysis.catalogue.nearest import first_false_part
 from roadproof.analysis.catalogue.why import Course, Why, why_none
 from roadproof.evidence.drive_file import load_drive
-from roadproof.judge.exact import judge
-from roadproof.judge.signals import DriveSignals
+from roadproof.library.bind import bind
+from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.spec.bind import bind
-from roadproof.spec.scenarios import Scenario, applied, name_of, vehicles_of
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.world.drive import Drive, Piece
 
 HOME = rp.load()

@@ -16,11 +16,11 @@ import roadproof as rp
 from analysis.heard import Asked
 from evidence.folders import check
 from roadproof.analysis.claims import Claims, name_of
-from roadproof.api.proofs import claims_of
-from roadproof.cli.main import main
 from roadproof.errors import UsageError
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
+from roadproof.frontends.api.proofs import claims_of
+from roadproof.frontends.cli.main import main
 from roadproof.verdict import Verdict
 
 SYMMETRIC = "danger(SV,POV) -> danger(POV,SV)"
@@ -62,7 +62,7 @@ ACCEPTED = sorted(
 _KILLED = """
 import os, signal, sys
 from roadproof.analysis.claims import Claims
-from roadproof.cli.main import main
+from roadproof.frontends.cli.main import main
 
 settle = Claims.settle
 
@@ -98,7 +98,7 @@ def test_what_was_taken_up_is_told_as_before(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = count(0, 0.045006)  # 0.05 s, but 0.04 s once it has been rounded to four digits
-    monkeypatch.setattr("roadproof.elapsed.time", SimpleNamespace(monotonic=lambda: next(clock)))
+    monkeypatch.setattr("roadproof.runtime.timing.time", SimpleNamespace(monotonic=lambda: next(clock)))
     told: list[tuple[str, Any]] = []
     for _ in range(2):
         target = tmp_path / "answer.json"

@@ -28,23 +28,29 @@ from roadproof.analysis.classify.drives import find_examples, patched, with_zone
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import Claimed, classification_of
 from roadproof.analysis.classify.text import claims_of, ranges, with_classes, write_classes
-from roadproof.cli.main import main
-from roadproof.effort import Effort, Late
+from roadproof.analysis.study.evidence_store import Shelf
+from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.journal import seal_of
 from roadproof.evidence.judged import judge_file
+from roadproof.frontends.cli.main import main
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import components
+from roadproof.library.specification import (
+    Source,
+    Specification,
+    build_library,
+    bundled_library,
+    load_library,
+)
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.monitoring import compile
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Source, Specification, build_library, bundled_library, load_library
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import components
-from roadproof.study.frame import conduct
-from roadproof.study.shelf import Shelf
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.runtime.budget import Effort, Late
+from roadproof.semantics.sampled import compile
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
@@ -394,7 +400,7 @@ def test_classes_that_recordings_contradict(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     told = Shares(["01"], 3, 2, classified=Counter({2: 2}), broken=["recording 01: two classes"])
-    monkeypatch.setattr("roadproof.api.classifying.count_shares", lambda *arguments, **more: told)
+    monkeypatch.setattr("roadproof.frontends.api.classifying.count_shares", lambda *arguments, **more: told)
     assert main(["classify", "--among", "7", "--jobs", "1"]) == 30
     said = capsys.readouterr().out
     assert "3 traces, 1 (33.3 %) in none of these scenarios" in said

@@ -22,14 +22,14 @@ from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.needed import find_need, replaced_by
 from roadproof.analysis.coverage.simple import HORIZON, simple_drives
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.cli.main import main
-from roadproof.effort import Effort
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.replay import first_breach
+from roadproof.frontends.cli.main import main
+from roadproof.library.specification import Source, build_library, bundled_library
 from roadproof.logic.show import text
-from roadproof.spec.library import Source, build_library, bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.replay import first_breach
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle

@@ -14,12 +14,12 @@ from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap, find_among_simple
 from roadproof.analysis.coverage.settling import Settling
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.cli.main import main
-from roadproof.effort import Effort
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.replay import first_breach
-from roadproof.spec.library import bundled_library
+from roadproof.frontends.cli.main import main
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.replay import first_breach
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle

@@ -11,7 +11,7 @@ from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic, with_counts
 from roadproof.analysis.coverage.surveyed import verdict_on
 from roadproof.errors import InputError
-from roadproof.spec.library import bundled_library
+from roadproof.library.specification import bundled_library
 from roadproof.verdict import Verdict
 
 BASIS = Basis(bundled_library().select())

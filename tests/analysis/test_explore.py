@@ -32,17 +32,17 @@ from roadproof.analysis.explore.search import (
 )
 from roadproof.analysis.explore.study import Exploration
 from roadproof.analysis.explore.values import explore
-from roadproof.cli.main import main
-from roadproof.effort import Effort, Late
+from roadproof.analysis.study.frame import conduct
+from roadproof.engines.search.ask import Search
+from roadproof.engines.search.grid import common_step, durations
+from roadproof.engines.search.question import SearchOptions, Setting, pose
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.journal import seal_of
 from roadproof.evidence.judged import Judged, judge_file
-from roadproof.searching.ask import Search
-from roadproof.searching.grid import common_step, durations
-from roadproof.searching.question import SearchOptions, Setting, pose
-from roadproof.spec.elaborate import read_claim, read_term
-from roadproof.spec.library import bundled_library
-from roadproof.study.frame import conduct
+from roadproof.frontends.cli.main import main
+from roadproof.library.elaborate import read_claim, read_term
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort, Late
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()

@@ -12,12 +12,12 @@ from roadproof.analysis.explore.extreme import Sought, find_extreme
 from roadproof.analysis.explore.knobs import Knob
 from roadproof.analysis.explore.measure import read_measure
 from roadproof.analysis.explore.values import explore
-from roadproof.cli.main import main
-from roadproof.effort import Effort
-from roadproof.searching.ask import Search
-from roadproof.searching.question import SearchOptions, Setting
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.engines.search.ask import Search
+from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.frontends.cli.main import main
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")

@@ -21,14 +21,14 @@ from roadproof.analysis.order.deciding import (
 from roadproof.analysis.order.kinds import Kind, families_of, kinds_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
 from roadproof.analysis.order.study import Order
-from roadproof.cli.main import main
-from roadproof.effort import Effort
-from roadproof.report.order import as_dot, as_text, compose_order
-from roadproof.searching.ask import ask
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import Scenario
-from roadproof.spec.words import called
+from roadproof.engines.search.ask import ask
+from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.order import as_dot, as_text, compose_order
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import Scenario
+from roadproof.library.specification import bundled_library
+from roadproof.library.words import called
+from roadproof.runtime.budget import Effort
 
 BASE = bundled_library().select("base")
 

@@ -14,12 +14,13 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.overlap import Core, Overlap, PairVerdict, pairs_of
 from roadproof.analysis.placing import placed
-from roadproof.cli.main import main
-from roadproof.effort import Effort
+from roadproof.analysis.study.frame import conduct
+from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
-from roadproof.report.overlap import (
+from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.overlap import (
     as_csv,
     as_matrix,
     as_text,
@@ -27,14 +28,13 @@ from roadproof.report.overlap import (
     draw_overlap,
     sectors_among,
 )
-from roadproof.solve.smt import ask
-from roadproof.spec.compose import negation, of_parts
-from roadproof.spec.elaborate import apply_definition, read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, read_numbers, without_sectors
-from roadproof.spec.words import Words, called
-from roadproof.study.frame import conduct
+from roadproof.library.compose import negation, of_parts
+from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, read_numbers, without_sectors
+from roadproof.library.specification import bundled_library
+from roadproof.library.words import Words, called
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")

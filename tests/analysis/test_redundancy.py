@@ -11,19 +11,19 @@ from judge.cases import drives
 from roadproof.analysis import redundancy
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.redundancy import Change, ChangeFinding, Learned, _Examining, changes_of
-from roadproof.cli.main import main
-from roadproof.effort import Effort
+from roadproof.engines.search.ask import Outcome, Search
+from roadproof.engines.search.ask import ask as ask_for_drive
+from roadproof.engines.solve.smt import ask
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.exact import judge
-from roadproof.searching.ask import Outcome, Search
-from roadproof.searching.ask import ask as ask_for_drive
-from roadproof.solve.smt import ask
-from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, without_sectors
+from roadproof.frontends.cli.main import main
+from roadproof.library.bind import bind
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, without_sectors
+from roadproof.library.specification import Specification, bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road

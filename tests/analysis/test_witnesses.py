@@ -13,9 +13,9 @@ import roadproof as rp
 from analysis.heard import Asked
 from evidence.folders import check
 from roadproof.analysis.witnesses import Witnessing
-from roadproof.cli.main import main
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
+from roadproof.frontends.cli.main import main
 
 IMPOSSIBLE = "given A, B: vehicle: s(A) > s(B) + 5 m and s(B) > s(A)"
 NONE = "v_lon(SV) > 500 km/h"
@@ -41,7 +41,7 @@ def accepted(out: Path) -> list[str]:
 _KILLED = """
 import os, signal
 from roadproof.analysis.witnesses import Witnessing
-from roadproof.cli.main import main
+from roadproof.frontends.cli.main import main
 
 settle = Witnessing.settle
 

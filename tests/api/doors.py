@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import roadproof as rp
-from roadproof.api.answer import Answer
-from roadproof.cli.main import main
+from roadproof.frontends.api.answer import Answer
+from roadproof.frontends.cli.main import main
 
 SYMMETRIC = "danger(SV,POV) -> danger(POV,SV)"
 FALSE = "fasterThan(SV,POV) -> danger(SV,POV)"

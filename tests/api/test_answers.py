@@ -13,10 +13,10 @@ import pytest
 import roadproof as rp
 from api.doors import ASKED, FALSE, MINE, SYMMETRIC, Asked, tell, without_clock, without_seconds
 from roadproof.analysis.claims import name_of
-from roadproof.api.answer import Answer
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel
+from roadproof.frontends.api.answer import Answer
 from roadproof.verdict import Verdict
 
 # What each answer says and shows, in order.

@@ -5,8 +5,8 @@ import json
 import pytest
 
 import roadproof as rp
-from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError
+from roadproof.frontends.cli.main import main
 from roadproof.verdict import Verdict
 
 BEHIND = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) <= s(POV)"

@@ -3,8 +3,8 @@
 import pytest
 
 import roadproof as rp
-from roadproof.api.drafting import Draft, Mistake, mistakes, place_in, sources_of
 from roadproof.errors import InputError, Position
+from roadproof.frontends.api.drafting import Draft, Mistake, mistakes, place_in, sources_of
 from roadproof.logic.formula import Named
 
 LOOSE = """\

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.api.driving import drive, motion
 from roadproof.evidence.judged import Judged
+from roadproof.frontends.api.driving import drive, motion
 from roadproof.world.drive import Motion
 
 BRAKING = [(1, 0, -4), (2, -4, 0), (1, -4, 4)]

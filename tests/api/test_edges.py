@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.api.completing import _free
-from roadproof.api.kernel import Asked, write
-from roadproof.api.restricting import drivers_of
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.kernel import coq
+from roadproof.evidence.kernel import coq
+from roadproof.frontends.api.completing import _free
+from roadproof.frontends.api.kernel import Asked, write
+from roadproof.frontends.api.restricting import drivers_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 

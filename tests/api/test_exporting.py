@@ -10,9 +10,9 @@ import roadproof as rp
 from exporting.kept import kept, motion, subject
 from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.evidence.judged import Judged
-from roadproof.exporting.registry import FORMATS
-from roadproof.files import write_json
-from roadproof.spec.library import bundled_library
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.export.registry import FORMATS
+from roadproof.runtime.files import write_json
 from roadproof.world.drive import Drive
 
 

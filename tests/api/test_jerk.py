@@ -15,26 +15,26 @@ from planting import plant
 from roadproof.analysis.catalogue.reading import is_test
 from roadproof.analysis.coverage import minimal
 from roadproof.analysis.coverage.minimal import simplest
-from roadproof.api.driving import drive, motion
-from roadproof.deriving.prepare import prepare
-from roadproof.effort import Effort
+from roadproof.engines.prove.motion import prove_of_motions
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import sample_drive
+from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged, judge_file
-from roadproof.kernel.accept import Word
-from roadproof.kernel.drive import drive_lines, shown
+from roadproof.evidence.kernel.accept import Word
+from roadproof.evidence.kernel.drive import drive_lines, shown
+from roadproof.frontends.api.driving import drive, motion
+from roadproof.frontends.report.viewer_data import viewer_data
+from roadproof.frontends.studio.dropping import drop
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import motion as schemas
 from roadproof.logic import terms as t
-from roadproof.proving.motion import prove_of_motions
-from roadproof.report.viewer_data import viewer_data
-from roadproof.signals import SIGNALS
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.studio.dropping import drop
+from roadproof.recordings.evaluate.one_trace import sample_drive
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Motion, Piece
 from roadproof.world.motion import state_at
+from roadproof.world.signals import SIGNALS
 
 LIBRARY = bundled_library()
 BRAKING = [(1, 0, -4), (2, -4, 0), (1, -4, 4)]
@@ -44,7 +44,7 @@ VEHICLES = {
     "POV": motion(70, 2.8, 28, along=BRAKING, across=[(1, 0.1), (1, -0.1)]),
 }
 FILE = drive(4, VEHICLES, rp.load("ext")).file
-VIEWER = Path(__file__).parents[2] / "src" / "roadproof" / "report" / "viewer" / "drive.js"
+VIEWER = Path(__file__).parents[2] / "src" / "roadproof" / "frontends" / "report" / "viewer" / "drive.js"
 
 
 # --- monitor ---------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roadproof as rp
-from roadproof.api.phrases import Phrase
+from roadproof.frontends.api.phrases import Phrase
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim

@@ -5,8 +5,8 @@ import multiprocessing
 import pytest
 
 import roadproof as rp
-from roadproof.cli.main import main
-from roadproof.searching import compare as comparing
+from roadproof.engines.search import compare as comparing
+from roadproof.frontends.cli.main import main
 
 BEFORE, AFTER = "F[0, 1.2 s] danger(SV,POV)", "F[0, 0.6 s] danger(SV,POV)"
 

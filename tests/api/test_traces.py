@@ -11,9 +11,9 @@ import pytest
 
 import roadproof as rp
 from api.doors import tell
-from roadproof.api.traces import Monitored
 from roadproof.evidence.answers.monitor import Override
 from roadproof.evidence.judged import Judged
+from roadproof.frontends.api.traces import Monitored
 
 MARGIN = "s(POV) - s(SV) > 10 m"
 

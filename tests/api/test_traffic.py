@@ -8,8 +8,8 @@ import pytest
 
 import roadproof as rp
 from api.doors import tell
-from roadproof.api.recordings import Evaluated
-from roadproof.api.simulating import Simulated
+from roadproof.frontends.api.recordings import Evaluated
+from roadproof.frontends.api.simulating import Simulated
 
 
 @pytest.fixture(scope="module")

@@ -14,14 +14,14 @@ from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.api import covering
-from roadproof.cli.main import main
+from roadproof.analysis.study.evidence_store import Shelf
+from roadproof.analysis.study.frame import conduct
 from roadproof.errors import UsageError
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
-from roadproof.spec.query import Query
-from roadproof.study.frame import conduct
-from roadproof.study.shelf import Shelf
+from roadproof.frontends.api import covering
+from roadproof.frontends.cli.main import main
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification, bundled_library
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.models import load_road
 from roadproof.world.road import Road

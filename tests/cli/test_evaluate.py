@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli.main import main
-from roadproof.evaluation import results
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate import results
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"
 TABLES = {f"{x}.{e}" for x in ("results", "comparison") for e in ("txt", "md", "csv", "tex")}

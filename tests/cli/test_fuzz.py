@@ -19,13 +19,13 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli.main import COMMANDS, answer
+from roadproof.analysis.study import pool
+from roadproof.engines.search import ask
+from roadproof.engines.search.compare import compare
 from roadproof.errors import RoadproofError
-from roadproof.searching import ask
-from roadproof.searching.compare import compare
-from roadproof.shipped import shipped
-from roadproof.studio.server import serve
-from roadproof.study import pool
+from roadproof.frontends.cli.main import COMMANDS, answer
+from roadproof.frontends.studio.server import serve
+from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
 
 SEEDS = range(4)
@@ -140,7 +140,7 @@ def begin(*_: object, **__: object) -> Iterator[tuple[int, object]]:
 
 def options_of(name: str) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=name)
-    import_module(f"roadproof.cli.{name}").add_arguments(parser)
+    import_module(f"roadproof.frontends.cli.{name}").add_arguments(parser)
     return parser
 
 

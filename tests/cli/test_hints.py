@@ -11,17 +11,17 @@ from pathlib import Path
 import pytest
 
 import roadproof
-from roadproof.cli.main import COMMANDS
+from roadproof.frontends.cli.main import COMMANDS
 
 SOURCE = Path(roadproof.__file__).parent
 # What is raised for an option is raised only by commands that have it: these read it, or what it made.
 READERS = {
-    "roadproof.cli.numbers": {"--cluster", "--jobs", "--json", "--shard"},
-    "roadproof.hands": {"--jobs"},
-    "roadproof.study.frame": {"--out", "--shard"},
-    "roadproof.cli.options": {"--option", "--param", "--set"},
-    "roadproof.study.pool": {"--jobs"},
-    "roadproof.workers": {"--jobs"},
+    "roadproof.frontends.cli.numbers": {"--cluster", "--jobs", "--json", "--shard"},
+    "roadproof.runtime.executors": {"--jobs"},
+    "roadproof.analysis.study.frame": {"--out", "--shard"},
+    "roadproof.frontends.cli.options": {"--option", "--param", "--set"},
+    "roadproof.analysis.study.pool": {"--jobs"},
+    "roadproof.runtime.process_pool": {"--jobs"},
     "roadproof.analysis.explore.asking": {"--vary", "--steps", "--precision"},
     # Raised for a catalogue that is asked for, and never for one that is judged again.
     "roadproof.analysis.catalogue.examination": {"--no-classes"},
@@ -83,7 +83,7 @@ def hints_in(module: str) -> frozenset[str]:
 
 def options_of(command: str) -> set[str]:
     parser = argparse.ArgumentParser()
-    import_module(f"roadproof.cli.{command}").add_arguments(parser)
+    import_module(f"roadproof.frontends.cli.{command}").add_arguments(parser)
     return {text for option in parser._actions for text in option.option_strings}
 
 
@@ -92,7 +92,7 @@ def test_errors_name_options_that_the_command_has(command: str) -> None:
     known = options_of(command)
     wrong = {
         (module, option)
-        for module in reached_from(f"roadproof.cli.{command}")
+        for module in reached_from(f"roadproof.frontends.cli.{command}")
         for option in hints_in(module) - READERS.get(module, set())
         if option not in known
     }
@@ -100,6 +100,6 @@ def test_errors_name_options_that_the_command_has(command: str) -> None:
 
 
 def test_messages_are_found() -> None:
-    assert "--jobs" in hints_in("roadproof.workers")
-    assert "roadproof.encode.unroll" in reached_from("roadproof.cli.witness")
+    assert "--jobs" in hints_in("roadproof.runtime.process_pool")
+    assert "roadproof.engines.encode.unroll" in reached_from("roadproof.frontends.cli.witness")
     assert len({option for command in COMMANDS for option in options_of(command)}) > 40

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli.main import main
+from roadproof.frontends.cli.main import main
 
 CLOCK = "cut off by the clock after 0.0001 s, not by the count of work"
 PROOF = str(Path(__file__).parents[2] / "proofs/P1-scenario-04-base.json")

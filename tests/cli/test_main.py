@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli import main as command_line
-from roadproof.cli.main import COMMANDS, TRACEBACK, main
 from roadproof.errors import MissingSolverError
+from roadproof.frontends.cli import main as command_line
+from roadproof.frontends.cli.main import COMMANDS, TRACEBACK, main
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"
 
@@ -60,7 +60,7 @@ def test_every_subcommand_keeps_the_contract() -> None:
     from importlib import import_module
 
     for name, summary in COMMANDS.items():
-        module = import_module(f"roadproof.cli.{name}")
+        module = import_module(f"roadproof.frontends.cli.{name}")
         assert summary == module.SUMMARY
         assert callable(module.add_arguments)
         assert callable(module.run)
@@ -114,7 +114,7 @@ def _processor_seconds(arguments: list[str]) -> float:
 def test_nothing_heavy_is_imported(arguments: list[str]) -> None:
     heavy = ["z3", "cvc5", "cvxpy", "polars", "matplotlib", "sympy", "numpy"]
     code = (
-        "import sys\nfrom roadproof.cli.main import main\n"
+        "import sys\nfrom roadproof.frontends.cli.main import main\n"
         f"try:\n    main({arguments!r})\nexcept SystemExit:\n    pass\n"
         f"print([m for m in {heavy!r} if m in sys.modules], file=sys.stderr)"
     )
@@ -155,7 +155,7 @@ def test_an_interrupt_ends_quietly() -> None:
     import signal
 
     code = (
-        "import time\nfrom roadproof.cli import main as m\n"
+        "import time\nfrom roadproof.frontends.cli import main as m\n"
         "def wait(_):\n    print('ready', flush=True)\n    time.sleep(60)\n"
         "m._run = wait\nraise SystemExit(m.main(['list']))"
     )

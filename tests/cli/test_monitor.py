@@ -7,16 +7,16 @@ from typing import Any
 
 import pytest
 
-from roadproof.api import traces
-from roadproof.cli.main import main
-from roadproof.evaluation.evaluate import evaluate_recording
-from roadproof.evaluation.questions import ask, default_settings
 from roadproof.evidence.drive_file import load_drive
-from roadproof.exporting.csv_table import csv_of
-from roadproof.formats.highd import read_highd
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.frontends.api import traces
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate.evaluate import evaluate_recording
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.export.csv_table import csv_of
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from traffic.faults import plant_fault
 
 ROAD = {

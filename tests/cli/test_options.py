@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli import options, prove
-from roadproof.cli.main import main
 from roadproof.errors import InputError, UsageError
-from roadproof.spec.library import bundled_library
+from roadproof.frontends.cli import options, prove
+from roadproof.frontends.cli.main import main
+from roadproof.library.specification import bundled_library
 
 
 def parsed(*arguments: str) -> argparse.Namespace:
@@ -116,11 +116,11 @@ def test_json_to_what_names_no_file(
 def test_a_target_that_cannot_be_written_ends_a_run_before_its_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("roadproof.cli.prove.run", lambda args: pytest.fail("the work began"))
+    monkeypatch.setattr("roadproof.frontends.cli.prove.run", lambda args: pytest.fail("the work began"))
     for target, said in ((tmp_path / "none" / "x.json", "No such file"), (tmp_path, "Is a directory")):
         assert main(["prove", "true", "--json", str(target)]) == 3
         assert said in capsys.readouterr().err
-    monkeypatch.setattr("roadproof.cli.prove.run", lambda args: 0)
+    monkeypatch.setattr("roadproof.frontends.cli.prove.run", lambda args: 0)
     out = tmp_path / "out"
     for target in ("-", str(tmp_path / "x.json"), str(out / "x.json")):
         assert main(["prove", "true", "--out", str(out), "--json", target]) == 0

@@ -15,21 +15,21 @@ from pathlib import Path
 import pytest
 
 from roadproof.analysis.claims import Answered, Claims
-from roadproof.cli import supervising
-from roadproof.cli.main import main
+from roadproof.analysis.study.pool import in_order, work
+from roadproof.engines.prove.properties import Task
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
-from roadproof.proving.properties import Task
-from roadproof.study.pool import in_order, work
-from roadproof.workers import Lost, answers_of
+from roadproof.frontends.cli import supervising
+from roadproof.frontends.cli.main import main
+from roadproof.runtime.process_pool import Lost, answers_of
 
 HANGS = 60.0
 
 # A command whose jobs keep z3 busy for ever, in its own process or in those of two workers.
 _BUSY = """
 import os, sys
-from roadproof.cli import main
-from roadproof.study.pool import work
-from roadproof.solve.smt import Session
+from roadproof.frontends.cli import main
+from roadproof.analysis.study.pool import work
+from roadproof.engines.solve.smt import Session
 
 HARD = '(declare-const x Int)(declare-const y Int)(declare-const z Int)' \\
     '(assert (= (+ (* x x x) (* y y y) (* z z z)) 42))(check-sat)'
@@ -233,7 +233,7 @@ def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(
 
 _SLOW = """
 import sys, time
-from roadproof.cli import main, progress, supervising
+from roadproof.frontends.cli import main, progress, supervising
 supervising.BEAT = 0.2
 
 def run(arguments):
@@ -273,12 +273,12 @@ def test_the_time_left_is_estimated_of_pieces_that_are_alike_only(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The first claims of a long run took a second each, the last one two minutes."""
-    from roadproof.cli import progress
+    from roadproof.frontends.cli import progress
 
     lines: list[str] = []
     monkeypatch.setattr(progress, "tell", lambda text, last=False: lines.append(text))
     clock = iter([0.0, *(10.0 * k for k in range(20))])
-    monkeypatch.setattr("roadproof.cli.progress.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("roadproof.frontends.cli.progress.time.monotonic", lambda: next(clock))
     for what in ("recordings", "claims"):
         told = progress.Counter()
         for done in range(4):
@@ -290,7 +290,7 @@ def test_the_time_left_is_estimated_of_pieces_that_are_alike_only(
 
 
 def test_the_time_left_is_told_where_it_is_known() -> None:
-    from roadproof.cli.progress import time_left
+    from roadproof.frontends.cli.progress import time_left
 
     assert time_left(10.0, 0, 4) == ""
     assert time_left(10.0, 4, 4) == ""

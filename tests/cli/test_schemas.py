@@ -16,17 +16,17 @@ from cli.test_coverage import components
 from roadproof.analysis.coverage import study
 from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.study import Coverage
-from roadproof.cli.main import COMMANDS, main
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.schemas import as_text, schemas
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
-from roadproof.spec.query import Query
+from roadproof.frontends.cli.main import COMMANDS, main
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification, bundled_library
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.verdict import Verdict
 
 ROOT = Path(__file__).parents[2]

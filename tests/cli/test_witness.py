@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from roadproof.cli.main import main
 from roadproof.evidence.drive_file import SCHEMA, load_drive
+from roadproof.frontends.cli.main import main
 
 
 def run(capsys, *arguments):

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 from hypothesis import strategies as st
 
-from roadproof.encode.unroll import Grid
+from roadproof.engines.encode.unroll import Grid
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.world.drive import Drive, Motion, Piece

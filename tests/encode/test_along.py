@@ -6,10 +6,10 @@ from fractions import Fraction
 import pytest
 
 from planting import plant
-from roadproof.encode import along
-from roadproof.encode.unroll import Grid
-from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import read_claim, signature
+from roadproof.engines.encode import along
+from roadproof.engines.encode.unroll import Grid
+from roadproof.library.bind import bind
+from roadproof.library.elaborate import read_claim, signature
 from roadproof.world.drive import Drive
 from searching.known import BASE, CAR, ROADS, VALUES, holds_on_samples, known
 

@@ -4,10 +4,10 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.encode.build import NONE, Assumptions, build_problem, ground
-from roadproof.encode.circuit import evaluate
-from roadproof.encode.motion import Layout
-from roadproof.encode.unroll import Grid, unroll
+from roadproof.engines.encode.build import NONE, Assumptions, build_problem, ground
+from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.world.models import load_road, load_vehicle

@@ -1,6 +1,6 @@
 """Conjunctions and disjunctions: what is decided is seen at once, and nothing is nested without need."""
 
-from roadproof.encode.circuit import All, AnyOf, Leaf, all_of, any_of
+from roadproof.engines.encode.circuit import All, AnyOf, Leaf, all_of, any_of
 
 A, B, C = Leaf("a"), Leaf("b"), Leaf("c")
 TRUE, FALSE = All(()), AnyOf(())

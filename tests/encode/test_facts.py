@@ -6,8 +6,8 @@ from math import inf
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadproof.encode.circuit import evaluate, implicant
-from roadproof.encode.inequalities import inequalities_of, polynomial_of
+from roadproof.engines.encode.circuit import evaluate, implicant
+from roadproof.engines.encode.inequalities import inequalities_of, polynomial_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 

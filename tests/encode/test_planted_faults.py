@@ -12,15 +12,15 @@ from hypothesis.errors import NoSuchExample
 from encode import cases
 from encode.test_motion import columns_of, motions, satisfied
 from planting import plant
-from roadproof.encode import inequalities, motion, place, unroll
-from roadproof.encode.circuit import All, AnyOf, Leaf, any_of, evaluate, implicant
-from roadproof.encode.motion import Layout
-from roadproof.encode.polynomial import Inequality, affine, variable
-from roadproof.encode.problem import Column, Problem, Row, Unknown
-from roadproof.encode.unroll import Grid
+from roadproof.engines.encode import inequalities, motion, place, unroll
+from roadproof.engines.encode.circuit import All, AnyOf, Leaf, any_of, evaluate, implicant
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.polynomial import Inequality, affine, variable
+from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.encode.unroll import Grid
+from roadproof.engines.solve import bounds, milp
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.solve import bounds, milp
 from roadproof.world.models import load_vehicle
 from solve.small import exactly, inner_is_safe, outer_is_safe, problems
 

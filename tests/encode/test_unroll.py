@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 
 from encode import cases
-from roadproof.encode.circuit import evaluate, size
-from roadproof.encode.unroll import Grid, unroll
+from roadproof.engines.encode.circuit import evaluate, size
+from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.errors import UsageError
-from roadproof.judge import judge
 from roadproof.logic import formula as f
-from roadproof.monitoring.batch import Batch
-from roadproof.monitoring.compiled import compile as compile_monitor
+from roadproof.semantics.exact import judge
+from roadproof.semantics.sampled.batch import Batch
+from roadproof.semantics.sampled.compiled import compile as compile_monitor
 
 quiet = settings(deadline=None, derandomize=True)
 

@@ -8,16 +8,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from roadproof.effort import Effort
+from roadproof.engines.prove.properties import find_label
+from roadproof.engines.solve import smt
 from roadproof.errors import RoadproofError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Finding, exit_code
 from roadproof.evidence.folder import conclude, survey
 from roadproof.evidence.journal import HEAD, seal_of
-from roadproof.proving.properties import find_label
-from roadproof.shipped import shipped
-from roadproof.solve import smt
-from roadproof.spec.library import load_library
+from roadproof.library.specification import load_library
+from roadproof.runtime.budget import Effort
+from roadproof.runtime.package_data import shipped
 
 # A template property, one more that is like it, the guarantee, a control with a drive and one with a trace.
 CHOSEN = ("P1-scenario-04-base", "P2-base", "P9-base", "C4-scenario-04-base-drive", None)

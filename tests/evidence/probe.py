@@ -6,15 +6,15 @@ one, without a finder.
 
 import re
 
-from roadproof.effort import Effort
+from roadproof.engines.solve.smt import Satisfiability, ask
 from roadproof.evidence import derivation
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import ZERO, at, moment_of
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import road_names
-from roadproof.solve.smt import Satisfiability, ask
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
+from roadproof.runtime.budget import Effort
 
 
 def saturated(specification: Specification, claim: str, rounds: int = 4, most: int = 60) -> str:

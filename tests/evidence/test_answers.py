@@ -11,6 +11,7 @@ import pytest
 
 from evidence.test_drive_file import FILE
 from roadproof.analysis.coverage.claims import claims_of
+from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence.answers.coverage import Entries, KeptClass
 from roadproof.evidence.answers.entry import Entry, mismatch
@@ -25,9 +26,8 @@ from roadproof.evidence.answers.reader import Background, first_set
 from roadproof.evidence.codec import read as read_as
 from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
-from roadproof.proving.properties import find_label
-from roadproof.spec.library import Library, bundled_library, load_library
-from roadproof.spec.scenarios import Scenario
+from roadproof.library.scenarios import Scenario
+from roadproof.library.specification import Library, bundled_library, load_library
 
 LIBRARY = bundled_library()
 SAID: dict[str, Any] = {"options": {}, "parameters": {}, "specs": []}

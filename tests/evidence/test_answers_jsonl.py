@@ -13,8 +13,8 @@ from roadproof.analysis.overlap import SCHEMA
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import NAME, answers_of, head_of, read_kept, seal_of
-from roadproof.spec.bind import default_values
-from roadproof.spec.library import bundled_library
+from roadproof.library.bind import default_values
+from roadproof.library.specification import bundled_library
 
 LIBRARY = bundled_library()
 PAIRS = ((5, 6), (3, 4))

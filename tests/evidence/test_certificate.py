@@ -10,17 +10,17 @@ import pytest
 
 from asking import prove
 from proving.claims import specification
-from roadproof.effort import Effort
+from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError
 from roadproof.evidence import derivation
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, read_certificate, refusal, to_json
 from roadproof.evidence.derivation import Lemma, Site
 from roadproof.evidence.times import ZERO
-from roadproof.shipped import shipped
-from roadproof.solve.smt import ask
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.runtime.package_data import shipped
 
 library = bundled_library()
 # A template property, one from set to set, one in two directions, and one with a lemma of many cases.

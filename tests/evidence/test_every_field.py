@@ -12,9 +12,9 @@ import pytest
 import roadproof as rp
 from evidence.folders import Place, check, read, reseal, write
 from evidence.kinds import MAKE, copy_of
+from roadproof.engines.prove.properties import find_label
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.folder import survey
-from roadproof.proving.properties import find_label
 
 # Without an index; and tests/analysis/test_catalogue_again.py changes that of a catalogue, beside its tests.
 INDEXED = [kind for kind in MAKE if kind not in ("witness", "catalogue")]

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from evidence.folders import changes, check, code, places, read, some_proofs, write
+from roadproof.engines.prove.properties import find_label, template_properties
 from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Acceptance
-from roadproof.proving.properties import find_label, template_properties
-from roadproof.shipped import shipped
-from roadproof.spec.library import bundled_library
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
 
 

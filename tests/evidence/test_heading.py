@@ -11,7 +11,7 @@ from evidence.folders import check, code, read, some_proofs, write
 from roadproof.evidence.finding import NO_EVIDENCE
 from roadproof.evidence.folder import OTHER_LIBRARY
 from roadproof.evidence.heading import heading
-from roadproof.spec.library import Library, Source, build_library, bundled_library
+from roadproof.library.specification import Library, Source, build_library, bundled_library
 
 
 def with_text(text: str) -> Library:

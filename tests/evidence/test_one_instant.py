@@ -8,18 +8,18 @@ from hypothesis import HealthCheck, Phase, find, given, settings
 from hypothesis import strategies as st
 
 from proving.claims import holds, specification
-from roadproof.effort import Effort
+from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError
 from roadproof.evidence import atoms as atoms_module
 from roadproof.evidence import cases, state
 from roadproof.evidence.atoms import Atoms, up_to_variables
 from roadproof.evidence.derivation import derive_lemma_queries
 from roadproof.evidence.times import Moment, read_moment
+from roadproof.library.elaborate import read_claim
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import rename, road_names, without_names
-from roadproof.solve.smt import ask
-from roadproof.spec.elaborate import read_claim
+from roadproof.runtime.budget import Effort
 
 U, V, W = (t.Variable(name, (1, -1)) for name in "uvw")
 B = t.Parameter("b_min", (1, -2))

@@ -9,10 +9,10 @@ from evidence.test_drive_file import FILE, LIBRARY
 from roadproof.errors import InputError
 from roadproof.evidence import judged
 from roadproof.evidence.judged import judge_file
-from roadproof.spec import bind
-from roadproof.spec.bind import default_values, values_with
-from roadproof.spec.library import Library, Source, build_library
-from roadproof.units import UNITS
+from roadproof.library import bind
+from roadproof.library.bind import default_values, values_with
+from roadproof.library.specification import Library, Source, build_library
+from roadproof.world.units import UNITS
 
 # The declared values in other units than SI; 130 km/h are 36 1/9 m/s.
 MINE = """

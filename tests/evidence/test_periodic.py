@@ -7,10 +7,10 @@ import pytest
 
 from roadproof.errors import InputError
 from roadproof.evidence.periodic import Loop, judge_periodic, unrolled
-from roadproof.judge import judge
-from roadproof.judge.truth import from_switches, interval
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.semantics.exact import judge
+from roadproof.semantics.exact.truth import from_switches, interval
 
 ATOMS = [f.Compare(t.Signal("v_lon", name), "<", t.number(0, (1, -1))) for name in ("A", "B")]
 

@@ -8,8 +8,8 @@ import pytest
 from roadproof.errors import InputError
 from roadproof.evidence.refutation import Countermodel, Instant, fault_of, trace_data
 from roadproof.evidence.traces import MOST_INSTANTS, read_trace
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.world.road import Lanelet, Road, pairs
 
 SPECIFICATION = bundled_library().select("base")

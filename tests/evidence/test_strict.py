@@ -8,6 +8,7 @@ import pytest
 
 from evidence.folders import answer
 from evidence.test_drive_file import FILE, LIBRARY, motion
+from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence import strict
 from roadproof.evidence.checking import Checker
@@ -16,7 +17,6 @@ from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import DEEPEST, Fields, parse_json, rational
 from roadproof.evidence.times import read_moment
-from roadproof.proving.properties import find_label
 from roadproof.world.drive import Drive
 
 TEXTS = [

@@ -9,14 +9,14 @@ import pytest
 
 from exporting.kept import TURN, motion, subject, subjects
 from exporting.test_opendrive import gap
-from roadproof.exporting import commonroad
-from roadproof.exporting.subject import Subject
-from roadproof.formats.commonroad import read_commonroad
-from roadproof.formats.recording import ZONES, Recording
-from roadproof.signals import RECORDED
+from roadproof.recordings.export import commonroad
+from roadproof.recordings.export.subject import Subject
+from roadproof.recordings.formats.commonroad import read_commonroad
+from roadproof.recordings.formats.recording import ZONES, Recording
 from roadproof.world.models import names_of
 from roadproof.world.motion import State
 from roadproof.world.road import Lanelet
+from roadproof.world.signals import RECORDED
 
 Element = ElementTree.Element
 

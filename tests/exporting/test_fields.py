@@ -17,9 +17,9 @@ import pytest
 
 from exporting.kept import TURN, motion, subject
 from roadproof.errors import UsageError
-from roadproof.exporting.polyline import polyline_of
-from roadproof.exporting.registry import FORMATS
-from roadproof.exporting.subject import Subject, subject_of
+from roadproof.recordings.export.polyline import polyline_of
+from roadproof.recordings.export.registry import FORMATS
+from roadproof.recordings.export.subject import Subject, subject_of
 from roadproof.world.road import Lanelet, Road
 
 

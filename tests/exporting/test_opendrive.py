@@ -10,9 +10,9 @@ import pytest
 
 from exporting.kept import motion, subject
 from roadproof.errors import InputError
-from roadproof.exporting import opendrive
-from roadproof.exporting.layout import MARGIN, lay_out, span_of
-from roadproof.exporting.subject import Subject
+from roadproof.recordings.export import opendrive
+from roadproof.recordings.export.layout import MARGIN, lay_out, span_of
+from roadproof.recordings.export.subject import Subject
 from roadproof.world.models import load_road, names_of
 from roadproof.world.opendrive import read_lanelets
 from roadproof.world.road import Lanelet, Road

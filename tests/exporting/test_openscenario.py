@@ -10,8 +10,8 @@ import pytest
 
 from exporting.kept import TURN, kept, motion, subject, subjects
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.exporting import openscenario
-from roadproof.exporting.subject import Subject
+from roadproof.recordings.export import openscenario
+from roadproof.recordings.export.subject import Subject
 from roadproof.world.motion import state_at
 
 Element = ElementTree.Element

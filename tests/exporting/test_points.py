@@ -6,7 +6,7 @@ from fractions import Fraction as F
 import pytest
 
 from exporting.kept import motion
-from roadproof.exporting import points
+from roadproof.recordings.export import points
 from roadproof.world.motion import State, state_at
 
 CAR = motion((None, "0", "0"))

@@ -9,9 +9,9 @@ import pytest
 from exporting.kept import SMOOTH, TURN, WEAVING, kept, motion, subject
 from planting import plant
 from roadproof.errors import InputError
-from roadproof.exporting import openscenario, polyline
-from roadproof.exporting.layout import span_of
-from roadproof.exporting.points import axle_to_centre, centre, heading, rear_axle
+from roadproof.recordings.export import openscenario, polyline
+from roadproof.recordings.export.layout import span_of
+from roadproof.recordings.export.points import axle_to_centre, centre, heading, rear_axle
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, state_at
 

@@ -16,17 +16,17 @@ import pytest
 
 from exporting.kept import kept, subjects
 from fuzz.held import CALLS
-from roadproof.api.definitions import load
-from roadproof.api.driving import drive
-from roadproof.api.driving import motion as given
-from roadproof.api.traces import Monitored, monitor, of_file
-from roadproof.evaluation.one_trace import OneTrace, read_pair, read_samples, sample_drive
-from roadproof.exporting.registry import FORMATS
-from roadproof.exporting.subject import Subject
-from roadproof.monitoring.compiled import compile
-from roadproof.signals import RECORDED
-from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import read_claim
+from roadproof.frontends.api.definitions import load
+from roadproof.frontends.api.driving import drive
+from roadproof.frontends.api.driving import motion as given
+from roadproof.frontends.api.traces import Monitored, monitor, of_file
+from roadproof.library.bind import bind
+from roadproof.library.elaborate import read_claim
+from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
+from roadproof.recordings.export.registry import FORMATS
+from roadproof.recordings.export.subject import Subject
+from roadproof.semantics.sampled.compiled import compile
+from roadproof.world.signals import RECORDED
 
 STEP = 0.04
 

@@ -12,14 +12,14 @@ import polars
 import pytest
 
 from exporting.kept import kept, motion, subject
-from roadproof.api.exporting import export
-from roadproof.api.traces import monitor, of_file
-from roadproof.evaluation.one_trace import OneTrace, read_pair
-from roadproof.exporting.registry import FORMATS
-from roadproof.exporting.subject import Subject
-from roadproof.formats.large import write_large
-from roadproof.formats.sources import find_source
-from roadproof.spec.scenarios import roles, vehicle_order
+from roadproof.frontends.api.exporting import export
+from roadproof.frontends.api.traces import monitor, of_file
+from roadproof.library.scenarios import roles, vehicle_order
+from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair
+from roadproof.recordings.export.registry import FORMATS
+from roadproof.recordings.export.subject import Subject
+from roadproof.recordings.formats.large import write_large
+from roadproof.recordings.formats.sources import find_source
 
 READ = {"openscenario": "made.xosc", "commonroad": "made.xml", "highd": "01_tracks.csv", "csv": "made.csv"}
 """Formats that are read as recordings, and the file to name. A road alone (OpenDRIVE) has no vehicle."""

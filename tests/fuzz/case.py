@@ -6,10 +6,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from roadproof.judge.truth import Cut, TruthSet
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
+from roadproof.semantics.exact.truth import Cut, TruthSet
 from roadproof.world.drive import Drive, Motion, Piece
 
 FOUND = Path(__file__).parent / "found"

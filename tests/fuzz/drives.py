@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from fuzz.case import Disagreement
 from judge.cases import comparisons, drives, formulas
 from judge.pinning import disagreement_on_drive
-from roadproof.judge import judge
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.monitoring import Batch, compile
+from roadproof.semantics.exact import judge
+from roadproof.semantics.sampled import Batch, compile
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 

@@ -14,20 +14,20 @@ from hypothesis import strategies as st
 from fuzz.case import Disagreement
 from fuzz.definition import DT, Definition, Held
 from logic.test_show import canonical
-from roadproof.encode.circuit import evaluate
-from roadproof.encode.unroll import Grid, unroll
-from roadproof.judge import judge
-from roadproof.judge.signals import AbstractSignals
+from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.unroll import Grid, unroll
+from roadproof.library.bind import bind, default_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Specification, bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.monitoring import Batch, compile
-from roadproof.monitoring.recursive import Reading, Trace
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
+from roadproof.semantics.exact import judge
+from roadproof.semantics.exact.signals import AbstractSignals
+from roadproof.semantics.sampled import Batch, compile
+from roadproof.semantics.sampled.recursive import Reading, Trace
 from roadproof.world.models import load_road
 
 METRES, SPEED, ACCELERATION, SECONDS, PLAIN = (1, 0), (1, -1), (1, -2), (0, 1), (0, 0)

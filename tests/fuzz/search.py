@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from fuzz.case import Disagreement
 from judge.pinning import disagreement_on_drive
-from roadproof.effort import Effort
-from roadproof.judge import judge
-from roadproof.judge.replay import first_breach, first_overlap
-from roadproof.searching.question import SearchOptions
-from roadproof.searching.search import find_witness, show_none
+from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.search import find_witness, show_none
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact import judge
+from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
 from searching.known import known
 

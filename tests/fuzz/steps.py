@@ -6,9 +6,9 @@ from fuzz import held
 from fuzz.case import Disagreement
 from fuzz.definition import DT, Held
 from kernel.reading import answers, judged
-from roadproof.judge import judge
+from roadproof.library.bind import bind
 from roadproof.logic.formula import Formula
-from roadproof.spec.bind import bind
+from roadproof.semantics.exact import judge
 from roadproof.world.models import load_road
 
 FORMULAS, TRACES = 60, 20  # in a file

@@ -12,15 +12,15 @@ from fuzz import case, claims, drives, held, printed, search, steps, texts, trut
 from fuzz.run import READERS, run
 from kernel.needs import needs_coq
 from kernel.raw import random_formula
-from roadproof.encode import unroll
-from roadproof.judge import exact, signals, truth
-from roadproof.kernel import printer
-from roadproof.kernel.printer import Printer
+from roadproof.engines.encode import unroll
+from roadproof.engines.search import question
+from roadproof.evidence.kernel import printer
+from roadproof.evidence.kernel.printer import Printer
 from roadproof.logic import formula as f
 from roadproof.logic import show
 from roadproof.logic import terms as t
-from roadproof.monitoring import semantics
-from roadproof.searching import question
+from roadproof.semantics.exact import exact, signals, truth
+from roadproof.semantics.sampled import semantics
 
 FOUND = sorted(case.FOUND.glob("*.txt"))
 FEW = {"held": 160, "truths": 25, "drives": 25, "claims": 80, "search": 2, "texts": 25}

@@ -5,13 +5,13 @@ from hypothesis import strategies as st
 from fuzz.case import Disagreement
 from logic import strategies
 from logic.test_show import canonical
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
 
 cases = st.one_of(strategies.expressions(), strategies.formulas())
 CHUNK = 500

@@ -3,8 +3,8 @@
 from fuzz.case import Disagreement
 from judge.cases import opaque_cases
 from judge.pinning import disagreement_on_sets
-from roadproof.judge.truth import TruthSet
 from roadproof.logic.formula import Formula
+from roadproof.semantics.exact.truth import TruthSet
 
 cases = opaque_cases()
 """(formula over three opaque atoms, their truth sets)."""

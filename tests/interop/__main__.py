@@ -17,9 +17,9 @@ from typing import Any
 from interop.damage import DAMAGES
 from interop.environments import OUT, Client, clients, python_of
 from interop.expected import expected
-from roadproof.api.exporting import export
-from roadproof.cli.main import main as roadproof
 from roadproof.evidence.drive_file import load_drive
+from roadproof.frontends.api.exporting import export
+from roadproof.frontends.cli.main import main as roadproof
 from tally import put, rows
 
 ROOT = Path(__file__).parents[2]

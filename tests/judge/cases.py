@@ -5,11 +5,11 @@ from itertools import product
 
 from hypothesis import strategies as st
 
-from roadproof.judge.truth import from_switches
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.signals import SIGNALS
+from roadproof.semantics.exact.truth import from_switches
 from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.signals import SIGNALS
 
 HALF = Fraction(1, 2)
 halves = st.integers(0, 6).map(lambda n: n * HALF)

@@ -3,9 +3,9 @@
 from fractions import Fraction
 
 from judge.reference import FloatDrive, Reference, critical_times, distinct
-from roadproof.judge import exact
-from roadproof.judge.algebraic import bounds
 from roadproof.logic import formula as f
+from roadproof.semantics.exact import exact
+from roadproof.semantics.exact.algebraic import bounds
 
 
 def disagreement_on_sets(formula, given):

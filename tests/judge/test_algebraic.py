@@ -8,7 +8,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadproof.judge.algebraic import Root, approximate, bounds, compare, decimal, moved, real_roots
+from roadproof.semantics.exact.algebraic import Root, approximate, bounds, compare, decimal, moved, real_roots
 
 small = st.integers(-6, 6)
 rationals = st.fractions(-4, 4, max_denominator=12)

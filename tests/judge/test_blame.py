@@ -7,14 +7,23 @@ import pytest
 
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.judge.blame import Blame, blame
-from roadproof.judge.exact import Judgement, judge, seconds
-from roadproof.judge.truth import NEVER, TruthSet, always, complement, eventually, intersection, union, until
+from roadproof.library.bind import bind, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.semantics.exact.blame import Blame, blame
+from roadproof.semantics.exact.exact import Judgement, judge, seconds
+from roadproof.semantics.exact.truth import (
+    NEVER,
+    TruthSet,
+    always,
+    complement,
+    eventually,
+    intersection,
+    union,
+    until,
+)
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVES = (

@@ -8,15 +8,15 @@ from fractions import Fraction
 import pytest
 
 from roadproof.errors import InputError, UsageError
-from roadproof.judge.algebraic import real_roots
-from roadproof.judge.exact import judge
-from roadproof.judge.signals import AbstractSignals
-from roadproof.judge.truth import ALWAYS, NEVER, interval, union
+from roadproof.library.bind import bind, default_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.semantics.exact.algebraic import real_roots
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.signals import AbstractSignals
+from roadproof.semantics.exact.truth import ALWAYS, NEVER, interval, union
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
 

@@ -10,15 +10,15 @@ from hypothesis import strategies as st
 from judge.cases import jerk_drives, operators
 from judge.test_exact import bound, motion, truth
 from planting import plant
-from roadproof.judge import algebraic, exact, piecewise, signals
-from roadproof.judge.algebraic import bounds, real_roots
-from roadproof.judge.robust import robustness
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.boxes import boxes_overlap
-from roadproof.signals import SIGNALS
+from roadproof.logic.box_overlap import boxes_overlap
+from roadproof.semantics.exact import algebraic, exact, piecewise, signals
+from roadproof.semantics.exact.algebraic import bounds, real_roots
+from roadproof.semantics.exact.robust import robustness
 from roadproof.world.drive import Drive
 from roadproof.world.motion import starts_of, state_at
+from roadproof.world.signals import SIGNALS
 
 quiet = settings(max_examples=60, deadline=None, derandomize=True)
 TIMES = [Fraction(k, 7) for k in range(80)]

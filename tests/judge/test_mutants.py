@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from judge.cases import comparisons, drives, every_small_case, jerk_comparisons, jerk_drives
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
-from roadproof.judge import comparison, exact, piecewise, signals, truth
-from roadproof.judge.algebraic import moved
-from roadproof.judge.polynomial import polynomial
-from roadproof.judge.truth import Cut, Span, TruthSet, complement, eventually, intersection, union
+from roadproof.semantics.exact import comparison, exact, piecewise, signals, truth
+from roadproof.semantics.exact.algebraic import moved
+from roadproof.semantics.exact.polynomial import polynomial
+from roadproof.semantics.exact.truth import Cut, Span, TruthSet, complement, eventually, intersection, union
 
 search = settings(
     max_examples=2000,

@@ -6,27 +6,27 @@ from random import Random
 import numpy as np
 import pytest
 
-from roadproof.encode.build import NONE, ground
-from roadproof.encode.circuit import evaluate
-from roadproof.encode.motion import Layout
-from roadproof.encode.own import own_columns
-from roadproof.encode.unroll import Grid, unroll
-from roadproof.evaluation.recheck import trace_of
+from roadproof.engines.encode.build import NONE, ground
+from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.custom_signals import own_columns
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.unroll import Grid, unroll
+from roadproof.engines.prove.prover import prove
 from roadproof.evidence.refutation import Countermodel, Instant, when_true
-from roadproof.judge.exact import judge
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Source, load_library
+from roadproof.logic.custom_names import code_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.own import code_of
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.show import as_syntax, text
-from roadproof.monitoring.batch import Batch
-from roadproof.monitoring.compiled import compile
-from roadproof.monitoring.recursive import Reading
-from roadproof.proving.prover import prove
-from roadproof.signals import KINDS, STARTING
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Source, load_library
+from roadproof.recordings.evaluate.recheck import trace_of
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.sampled.batch import Batch
+from roadproof.semantics.sampled.compiled import compile
+from roadproof.semantics.sampled.recursive import Reading
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_vehicle
+from roadproof.world.signals import KINDS, STARTING
 
 DT, STEPS, TAIL = Fraction(1, 2), 5, 12
 VEHICLES = ("SV", "POV")

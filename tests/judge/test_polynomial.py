@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planting import plant
-from roadproof.judge import polynomial as module
-from roadproof.judge.polynomial import (
+from roadproof.semantics.exact import polynomial as module
+from roadproof.semantics.exact.polynomial import (
     ONE,
     ZERO,
     Polynomial,

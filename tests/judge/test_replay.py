@@ -8,9 +8,9 @@ import pytest
 from judge.test_exact import motion
 from planting import plant
 from roadproof.errors import UsageError
-from roadproof.judge import replay
-from roadproof.judge.algebraic import real_roots
-from roadproof.judge.replay import first_breach, first_overlap, states_at
+from roadproof.semantics.exact import replay
+from roadproof.semantics.exact.algebraic import real_roots
+from roadproof.semantics.exact.replay import first_breach, first_overlap, states_at
 from roadproof.world.drive import Drive
 
 ONE, TEN = Fraction(1), Fraction(10)

@@ -10,13 +10,13 @@ from hypothesis import HealthCheck, given, settings
 from judge.cases import comparisons, drives, formulas
 from judge.test_exact import alone, bound, motion, random_drive
 from roadproof.errors import InputError, UsageError
-from roadproof.judge import robust
-from roadproof.judge.exact import judge
-from roadproof.judge.robust import robustness
-from roadproof.judge.signals import Courses, DriveSignals
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import bounds_of
+from roadproof.semantics.exact import robust
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.robust import robustness
+from roadproof.semantics.exact.signals import Courses, DriveSignals
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 

@@ -4,8 +4,8 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.judge.algebraic import moved, real_roots
-from roadproof.judge.truth import (
+from roadproof.semantics.exact.algebraic import moved, real_roots
+from roadproof.semantics.exact.truth import (
     ALWAYS,
     NEVER,
     always,

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from judge.cases import jerk_comparisons, jerk_drives
 from planting import plant
 from preventing.read import boundary
+from roadproof.drivers.manoeuvres import CUT_IN, along_line
 from roadproof.errors import InputError
-from roadproof.judge import within
-from roadproof.judge.exact import judge
-from roadproof.judge.signals import DriveSignals
-from roadproof.judge.truth import intersection, interval
-from roadproof.judge.within import truth_within
 from roadproof.logic import formula as f
-from roadproof.preventing.manoeuvres import CUT_IN, along_line
+from roadproof.semantics.exact import within
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.signals import DriveSignals
+from roadproof.semantics.exact.truth import intersection, interval
+from roadproof.semantics.exact.within import truth_within
 
 atoms = st.one_of(jerk_comparisons, st.sampled_from([f.Truth(True), f.Truth(False)]))
 cases = st.recursive(

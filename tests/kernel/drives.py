@@ -7,14 +7,14 @@ from hypothesis import strategies as st
 
 from judge.cases import comparisons, drives, formulas
 from kernel import raw
-from roadproof.deriving.derive import derive
-from roadproof.deriving.parts import NoDerivationError
+from roadproof.evidence.derivations.derive import derive
+from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.judge import judge
-from roadproof.kernel.derivation import coq_derivation
-from roadproof.kernel.drive import Shown, drive_lines
+from roadproof.evidence.kernel.derivation import coq_derivation
+from roadproof.evidence.kernel.drive import Shown, drive_lines
+from roadproof.library.bind import bind
 from roadproof.logic import formula as f
-from roadproof.spec.bind import bind
+from roadproof.semantics.exact import judge
 from roadproof.world.road import Lanelet, Road, pairs
 
 ROAD = Road(

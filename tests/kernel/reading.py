@@ -6,9 +6,9 @@ from fractions import Fraction
 from pathlib import Path
 
 from kernel import raw
-from roadproof.kernel.coq import ready
-from roadproof.kernel.printer import CLOSE, Formals, Printer
-from roadproof.kernel.source import HEAD
+from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.printer import CLOSE, Formals, Printer
+from roadproof.evidence.kernel.source import HEAD
 from roadproof.logic.formula import Formula
 
 STEPS = Path(__file__).parents[2] / "proofs" / "kernel" / "Steps.v"

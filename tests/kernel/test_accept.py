@@ -8,14 +8,14 @@ from dataclasses import replace
 import roadproof as rp
 from cli.test_schemas import validator
 from kernel.needs import needs_coq
-from roadproof.api.checking import check
 from roadproof.evidence.certificate import read_certificate, to_json
 from roadproof.evidence.finding import Acceptance
-from roadproof.kernel import accept
-from roadproof.kernel.accept import Word, find_tableau, judge, prepare
-from roadproof.kernel.coq import ready
-from roadproof.shipped import shipped
-from roadproof.spec.library import bundled_library
+from roadproof.evidence.kernel import accept
+from roadproof.evidence.kernel.accept import Word, find_tableau, judge, prepare
+from roadproof.evidence.kernel.coq import ready
+from roadproof.frontends.api.checking import check
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.package_data import shipped
 
 PROOFS = shipped("proofs")
 SHIPPED = sorted(x for x in PROOFS.glob("P*.json") if '"tableau"' in x.read_text("utf-8"))
@@ -92,7 +92,7 @@ def test_one_that_is_refused_does_not_take_others_with_it():
 
 
 def test_without_coqc_it_is_said_before_any_work(monkeypatch, tmp_path, capsys):
-    from roadproof.cli.main import main
+    from roadproof.frontends.cli.main import main
 
     monkeypatch.setenv("PATH", str(tmp_path))
     assert main(["check", str(ONE), "--kernel", "coq", "--jobs", "1"]) == 4
@@ -178,7 +178,7 @@ def test_definitions_called_like_words_of_coq_and_comments_that_would_end(tmp_pa
 
 
 def test_files_are_only_written(tmp_path, capsys):
-    from roadproof.cli.main import main
+    from roadproof.frontends.cli.main import main
 
     assert main(["check", str(ONE), "--kernel", "coq", "--write", str(tmp_path / "v"), "--jobs", "1"]) == 0
     written = (tmp_path / "v" / "P1_scenario_04_base.v").read_text("ascii")

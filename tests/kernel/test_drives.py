@@ -9,23 +9,23 @@ from pathlib import Path
 from kernel import raw
 from kernel.drives import HEAD, cases, derived, example
 from kernel.needs import needs_coq
-from roadproof.api.checking import check
-from roadproof.deriving.derive import derive
-from roadproof.deriving.prepare import prepare
+from roadproof.evidence.derivations.derive import derive
+from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file
-from roadproof.judge import judge
-from roadproof.judge.algebraic import Root
-from roadproof.kernel.accept import Word
-from roadproof.kernel.coq import ready
-from roadproof.kernel.derivation import Step, coq_derivation, size
-from roadproof.kernel.drive import claim_text, drive_lines, module, shown
-from roadproof.kernel.source import file
+from roadproof.evidence.kernel.accept import Word
+from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.derivation import Step, coq_derivation, size
+from roadproof.evidence.kernel.drive import claim_text, drive_lines, module, shown
+from roadproof.evidence.kernel.source import file
+from roadproof.frontends.api.checking import check
+from roadproof.library.bind import bind
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.bind import bind
-from roadproof.spec.library import bundled_library
+from roadproof.semantics.exact import judge
+from roadproof.semantics.exact.algebraic import Root
 from roadproof.world.drive import Drive
 
 HOME = Path(__file__).parents[2]

@@ -7,8 +7,8 @@ from fractions import Fraction
 import pytest
 import z3
 
+from roadproof.evidence.kernel.linear import GOAL, Linear
 from roadproof.evidence.times import Moment
-from roadproof.kernel.linear import GOAL, Linear
 
 
 def moment(r):

@@ -9,7 +9,7 @@ from itertools import permutations, product
 
 import pytest
 
-from roadproof.kernel.accept import (
+from roadproof.evidence.kernel.accept import (
     AXIOMS,
     Prepared,
     Ruling,
@@ -19,8 +19,8 @@ from roadproof.kernel.accept import (
     file,
     judge,
 )
-from roadproof.kernel.coq import Ran
-from roadproof.kernel.source import Module
+from roadproof.evidence.kernel.coq import Ran
+from roadproof.evidence.kernel.source import Module
 
 KNOWN = "ClassicalDedekindReals.sig_forall_dec"
 OTHER = "Coq.Logic.any"

@@ -8,11 +8,11 @@ from math import isqrt
 
 import pytest
 
-from roadproof.deriving.parts import NoDerivationError, breaks, covered, moments
-from roadproof.deriving.signs import Part
-from roadproof.judge.algebraic import Point, Root
-from roadproof.judge.truth import Cut, TruthSet
-from roadproof.kernel.derivation import Fixed, Moment
+from roadproof.evidence.derivations.parts import NoDerivationError, breaks, covered, moments
+from roadproof.evidence.derivations.signs import Part
+from roadproof.evidence.kernel.derivation import Fixed, Moment
+from roadproof.semantics.exact.algebraic import Point, Root
+from roadproof.semantics.exact.truth import Cut, TruthSet
 
 END = 12
 STEP = F(1, 8)

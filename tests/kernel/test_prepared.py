@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 
 from exporting.kept import kept
-from roadproof.deriving import prepare as module
-from roadproof.deriving.parts import NoDerivationError
-from roadproof.deriving.prepare import prepare
 from roadproof.errors import InputError, RoadproofError
-from roadproof.kernel.accept import NO_PREMISES, Prepared, Ruling, Word
-from roadproof.spec.library import bundled_library
+from roadproof.evidence.derivations import prepare as module
+from roadproof.evidence.derivations.parts import NoDerivationError
+from roadproof.evidence.derivations.prepare import prepare
+from roadproof.evidence.kernel.accept import NO_PREMISES, Prepared, Ruling, Word
+from roadproof.library.specification import bundled_library
 
 FILE = kept()["scenario-04-base"]
 

@@ -8,13 +8,13 @@ from kernel import raw
 from kernel.needs import needs_coq
 from kernel.reading import answers, compared
 from roadproof.errors import InputError, TextError
-from roadproof.kernel.names import WORDS, comment
-from roadproof.kernel.printer import CLOSE, Printer
+from roadproof.evidence.kernel.names import WORDS, comment
+from roadproof.evidence.kernel.printer import CLOSE, Printer
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
 
 # Definitions that are numbers, and not true or false; claims have them written out.
 NUMBERS = {

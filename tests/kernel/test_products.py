@@ -9,16 +9,16 @@ import roadproof as rp
 from kernel.needs import needs_coq
 from planting import plant
 from roadproof.evidence.certificate import read_certificate
-from roadproof.kernel import cone, source
-from roadproof.kernel.accept import prepare
-from roadproof.kernel.coq import ready
-from roadproof.kernel.instant import reason
-from roadproof.kernel.printer import Printer
-from roadproof.kernel.source import HEAD
+from roadproof.evidence.kernel import cone, source
+from roadproof.evidence.kernel.accept import prepare
+from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.instant import reason
+from roadproof.evidence.kernel.printer import Printer
+from roadproof.evidence.kernel.source import HEAD
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic.rewrite import without_names
-from roadproof.shipped import shipped
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.runtime.package_data import shipped
 
 CLAIMS = """
 given x, y: m: 2*x*y <= x^2 + y^2

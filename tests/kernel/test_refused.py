@@ -9,15 +9,15 @@ import pytest
 
 import roadproof as rp
 from kernel.needs import needs_coq
+from roadproof.engines.prove.properties import template_properties
 from roadproof.evidence.certificate import read_certificate
-from roadproof.kernel.accept import Word, find_tableau, prepare
-from roadproof.kernel.coq import ready
-from roadproof.kernel.source import HEAD, module
-from roadproof.kernel.statement import state
-from roadproof.kernel.tableau import RULES, coq_tree, lines, read_lines
-from roadproof.proving.properties import template_properties
-from roadproof.shipped import shipped
-from roadproof.spec.library import bundled_library
+from roadproof.evidence.kernel.accept import Word, find_tableau, prepare
+from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.source import HEAD, module
+from roadproof.evidence.kernel.statement import state
+from roadproof.evidence.kernel.tableau import RULES, coq_tree, lines, read_lines
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.package_data import shipped
 from roadproof.verdict import Verdict
 
 DONORS = ("P1-scenario-04-base", "P5-scenario-04-base", "P6-scenario-01-base", "P1-scenario-02-ext")

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from kernel.needs import needs_coq
-from roadproof.cache import private_folder
-from roadproof.kernel import coq as coq_module
-from roadproof.kernel.accept import AXIOMS, axioms_of
-from roadproof.kernel.coq import THEORIES, ready
+from roadproof.evidence.kernel import coq as coq_module
+from roadproof.evidence.kernel.accept import AXIOMS, axioms_of
+from roadproof.evidence.kernel.coq import THEORIES, ready
+from roadproof.runtime.cache import private_folder
 
 SOURCES = Path(__file__).parents[2] / "proofs" / "kernel"
 GAPS = re.compile(

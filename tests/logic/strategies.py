@@ -6,12 +6,12 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
 
 NAMES = ["a", "b", "s", "m", "SV", "POV2", "L", "x_1", "Gx", "notes", "scenario_4", "scenario_{i-8}"]
 UNITS = ["", "s", "ms", "m", "m/s", "km/h", "m/s^2", "unitless"]

@@ -4,10 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from judge.cases import comparisons_of, drives, formulas
-from roadproof.judge.exact import judge
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.begin import conjuncts, demands
+from roadproof.logic.initial_conditions import conjuncts, demands
+from roadproof.semantics.exact.exact import judge
 
 ATOMS = comparisons_of(["s", "d", "v_lon", "v_lat"])
 P, Q = (f.Compare(t.Signal("s", name), ">", t.number(0)) for name in "AB")

@@ -4,8 +4,8 @@ from itertools import product
 
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.begin import compared, narrowed
 from roadproof.logic.formula import Compare, Formula
+from roadproof.logic.initial_conditions import compared, narrowed
 
 A, B, C = (Compare(t.Signal("s", x), ">", t.number(0, (1, 0))) for x in ("A", "B", "C"))
 LATER = f.Named("later", (), f.Not(f.And((A, f.Or((B, f.Not(C)))))))

@@ -4,14 +4,14 @@ from fractions import Fraction
 
 import pytest
 
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import Sizes, horizon, is_affine, is_bounded, signal_degree, sizes
 from roadproof.logic.rewrite import with_values
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import apply_definition, read_claim
-from roadproof.spec.library import bundled_library
 
 BASE = bundled_library().select()
 SPEED: t.Term = t.Signal("v_lon", "SV")

@@ -3,11 +3,11 @@
 import pytest
 
 from planting import plant
+from roadproof.library.specification import bundled_library
 from roadproof.logic import latex as latex_module
 from roadproof.logic.latex import align, latex, symbol
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.tree import tree
-from roadproof.spec.library import bundled_library
 
 U = r"\mathbin{\mathcal{U}}"
 DEFINITIONS = bundled_library().select("ext").definitions

@@ -5,11 +5,11 @@ from itertools import product
 
 import pytest
 
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
-from roadproof.logic.pins import pins
+from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.rewrite import with_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
 
 specification = bundled_library().select()
 HERE = Fraction(3, 5)

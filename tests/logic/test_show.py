@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given, settings
 
 from logic import strategies
+from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
@@ -15,8 +17,6 @@ from roadproof.logic.parse import parse_claim, parse_library
 from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.rewrite import map_terms
 from roadproof.logic.show import decimal, text
-from roadproof.spec.elaborate import apply_definition, read_claim
-from roadproof.spec.library import bundled_library
 
 LIBRARY = bundled_library()
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, Named, subformulas
-from roadproof.monitoring import Batch, Monitor, compile
-from roadproof.monitoring.answers import Convention
-from roadproof.monitoring.recursive import Reading, Trace
+from roadproof.semantics.sampled import Batch, Monitor, compile
+from roadproof.semantics.sampled.answers import Convention
+from roadproof.semantics.sampled.recursive import Reading, Trace
 
 DT = Fraction(1, 25)
 IN_LANE = f.Some("l", f.Domain("lanelets", "L"), f.Occupies("SV", "l"))

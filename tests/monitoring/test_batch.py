@@ -15,9 +15,9 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.monitoring import Batch, boolean, compile
-from roadproof.monitoring.arithmetic import Program
-from roadproof.monitoring.batch import Array, steps_of
+from roadproof.semantics.sampled import Batch, boolean, compile
+from roadproof.semantics.sampled.arithmetic import Program
+from roadproof.semantics.sampled.batch import Array, steps_of
 
 S = t.Signal("s", "SV")
 FAST = f.Compare(t.Signal("v_lon", "SV"), ">", t.Sum((S, t.Size("length", "SV"))))

@@ -18,8 +18,8 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import bounds_of
-from roadproof.monitoring import Batch, compile
-from roadproof.monitoring.recursive import Reading, Trace
+from roadproof.semantics.sampled import Batch, compile
+from roadproof.semantics.sampled.recursive import Reading, Trace
 from roadproof.world.drive import Drive, Motion, Piece
 
 
@@ -157,7 +157,7 @@ def _sampled(accelerations: Sequence[Sequence[int]], samples: int) -> Batch:
 def test_decided_answers_are_those_of_the_judge(
     formula: Formula, accelerations: list[tuple[int, ...]], samples: int
 ) -> None:
-    judge = pytest.importorskip("roadproof.judge.exact").judge
+    judge = pytest.importorskip("roadproof.semantics.exact.exact").judge
     holds = judge(formula, _drive(accelerations)).holds
     found = compile({"it": formula}).evaluate(_sampled(accelerations, samples)).answers["it"]
     assert not (found.true[0] and not holds)
@@ -169,7 +169,7 @@ def test_decided_answers_are_those_of_the_judge(
 def test_bounded_formulas_inside_a_trace_are_decided_as_the_judge_does(
     formula: Formula, accelerations: list[tuple[int, ...]]
 ) -> None:
-    judge = pytest.importorskip("roadproof.judge.exact").judge
+    judge = pytest.importorskip("roadproof.semantics.exact.exact").judge
     temporal = [x for x in subformulas(formula) if isinstance(x, f.Until | f.Eventually | f.Always)]
     assume(all(x.interval.high is not None for x in temporal))
     longest = 1 + sum(int(bounds_of(x.interval)[1] / DT) for x in temporal)  # type: ignore[operator]

@@ -16,16 +16,16 @@ from monitoring.cases import (
     random_traffic,
     trace_of,
 )
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import apply_definition
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, Named, subformulas
 from roadproof.logic.rewrite import with_values
-from roadproof.monitoring import compile
-from roadproof.monitoring.answers import Convention
-from roadproof.monitoring.recursive import Reading, answer
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import apply_definition
-from roadproof.spec.library import bundled_library
+from roadproof.semantics.sampled import compile
+from roadproof.semantics.sampled.answers import Convention
+from roadproof.semantics.sampled.recursive import Reading, answer
 
 conventions = st.sampled_from(["truncated", "clip"])
 quick = settings(max_examples=400, deadline=None, derandomize=True)

@@ -10,9 +10,9 @@ from monitoring.cases import IN_LANE, ON_MAIN, boolean_differences, interval, ma
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.monitoring import answers, arithmetic, boolean, compiled, semantics
-from roadproof.monitoring.batch import Array
-from roadproof.monitoring.semantics import View
+from roadproof.semantics.sampled import answers, arithmetic, boolean, compiled, semantics
+from roadproof.semantics.sampled.batch import Array
+from roadproof.semantics.sampled.semantics import View
 
 NEAR = f.Compare(t.Signal("s", "SV"), "<", t.Signal("s", "POV"))
 INVERSE = f.Compare(t.Inverse(t.Signal("s", "SV")), ">=", t.Inverse(t.Signal("s", "POV")))

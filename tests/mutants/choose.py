@@ -8,32 +8,36 @@ from pathlib import Path
 from mutants.edits import Edit, edits_of, is_fault
 from mutants.spec_edits import spec_edits_of
 
-FOLDERS = (
-    "judge",
-    "monitoring",
-    "encode",
-    "solve",
-    "evidence",
-    "proving",
-    "searching",
-    "formats",
-    "evaluation",
-    "simulation",
-    "exporting",
-    "preventing",
-    "deriving",
-    "kernel",
-    "studio",
-    "api",
-    "analysis/catalogue",
-)
-SPECS = "spec/library"
+FOLDERS = {
+    "semantics/exact": "judge",
+    "semantics/sampled": "monitoring",
+    "engines/encode": "encode",
+    "engines/solve": "solve",
+    "evidence": "evidence",
+    "engines/prove": "proving",
+    "engines/search": "searching",
+    "recordings/formats": "formats",
+    "recordings/evaluate": "evaluation",
+    "recordings/simulate": "simulation",
+    "recordings/export": "exporting",
+    "drivers": "preventing",
+    "analysis/preventable": "preventing",
+    "evidence/derivations": "deriving",
+    "evidence/kernel": "kernel",
+    "frontends/studio": "studio",
+    "frontends/api": "api",
+    "analysis/catalogue": "analysis",
+}
+"""Folders whose files get faults, and the folder below ``tests`` whose tests have to notice."""
+
+SPECS = "library/sets"
 SPEC_WEIGHT = 3  # a definition says in a line what takes Python a page
 
 
 def targets(package: Path) -> list[Path]:
     """The files that faults are made in, relative to the package."""
     python = [path for folder in FOLDERS for path in sorted((package / folder).rglob("*.py"))]
+    python = list(dict.fromkeys(python))  # some of these folders contain others
     specs = sorted((package / SPECS).glob("*.spec"))
     return [path.relative_to(package) for path in (*python, *specs)]
 
@@ -80,3 +84,9 @@ def _best(faults: list[Edit], number: int, seed: int, text: str) -> list[Edit]:
 
 def rank(fault: Edit, seed: int) -> str:
     return sha256(f"{seed}:{fault.key}".encode()).hexdigest()
+
+
+def tests_of(file: str) -> str:
+    """The folder below ``tests`` whose tests have to notice a fault in ``file``; empty where none has to."""
+    inside = [folder for folder in FOLDERS if file.startswith(f"{folder}/")]
+    return FOLDERS[max(inside, key=len)] if inside else ""

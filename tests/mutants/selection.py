@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
-from mutants.choose import FOLDERS
+from mutants.choose import FOLDERS, tests_of
 from mutants.edits import Edit
 from mutants.places import places_of
 
@@ -35,7 +35,7 @@ def test_files(root: Path) -> list[Path]:
     own = ("tests/mutants/", "tests/fuzz/")
     named = [(path, str(path.relative_to(root))) for path in found]
     kept = [path for path, name in named if name not in LEFT_OUT and not name.startswith(own)]
-    order = [*FOLDERS, "spec"]
+    order = [*FOLDERS.values(), "spec"]
     return sorted(kept, key=lambda path: order.index(path.parent.name) if path.parent.name in order else 99)
 
 
@@ -54,7 +54,7 @@ class Records:
         A line that runs when its file is imported, or inside compiled code, is not recorded with a test.
         """
         if edit.file.endswith(".spec"):
-            met = self._in_function("spec/elaborate.py", "")
+            met = self._in_function("library/elaborate.py", "")
             return self._fastest(met, "spec")
         text = (package / edit.file).read_text("utf-8")
         places = places_of(ast.parse(text), text)
@@ -64,7 +64,7 @@ class Records:
             met |= self.by_place.get((edit.file, places[line]), set())
         if not met or not function:
             met = met | self._in_function(edit.file, function)
-        return self._fastest(met or self._in_function(edit.file, ""), edit.file.partition("/")[0])
+        return self._fastest(met or self._in_function(edit.file, ""), tests_of(edit.file))
 
     def _in_function(self, file: str, function: str) -> set[str]:
         """Tests that run a function; all that run some function of the file where none is named."""

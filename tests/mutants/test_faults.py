@@ -7,7 +7,7 @@ import pytest
 
 from mutants.__main__ import ROOT, within
 from mutants.by_hand import listed
-from mutants.choose import choose, faults_of, targets
+from mutants.choose import FOLDERS, choose, faults_of, targets, tests_of
 from mutants.edits import edits_of, is_fault
 from mutants.places import places_of
 from mutants.selection import Records
@@ -91,29 +91,26 @@ def test_a_fault_keeps_its_name_when_the_file_grows() -> None:
 
 
 def test_every_fault_of_a_file_has_a_name_of_its_own() -> None:
-    for file in ("judge/truth.py", "solve/bounds.py", "spec/library/iso34502.spec"):
+    for file in ("semantics/exact/truth.py", "engines/solve/bounds.py", "library/sets/iso34502.spec"):
         faults = faults_of(PACKAGE, Path(file))
         assert len({x.key for x in faults}) == len(faults) > 50
 
 
 def test_the_choice_follows_from_the_seed() -> None:
-    few = [x.key for x in choose(PACKAGE, 60, 1, "judge/")]
+    few = [x.key for x in choose(PACKAGE, 60, 1, "semantics/exact/")]
     assert (
         few
-        == [x.key for x in choose(PACKAGE, 60, 1, "judge/")]
-        != [x.key for x in choose(PACKAGE, 60, 2, "judge/")]
+        == [x.key for x in choose(PACKAGE, 60, 1, "semantics/exact/")]
+        != [x.key for x in choose(PACKAGE, 60, 2, "semantics/exact/")]
     )
-    folders = {str(file).split("/")[0] for file in targets(PACKAGE)}
-    assert folders == {
-        *("judge", "monitoring", "encode", "solve", "evidence", "proving", "searching", "spec"),
-        *("formats", "evaluation", "simulation", "exporting", "preventing", "deriving", "kernel"),
-        *("studio", "api", "analysis"),
-    }
+    folders = {tests_of(str(file)) or str(file.parent) for file in targets(PACKAGE)}
+    assert folders == {*FOLDERS.values(), "library/sets"}
 
 
 def test_folders_are_chosen_alone_or_together() -> None:
     one, other, both = (
-        {x.key for x in choose(PACKAGE, 60, 1, y)} for y in ("judge/", "encode/", "judge/,encode/")
+        {x.key for x in choose(PACKAGE, 60, 1, y)}
+        for y in ("semantics/exact/", "engines/encode/", "semantics/exact/,engines/encode/")
     )
     assert one
     assert other
@@ -127,9 +124,9 @@ def test_test_files_are_recorded_alone_or_together() -> None:
 
 
 def test_tests_of_a_line_are_the_near_ones_and_then_the_fastest() -> None:
-    text = (PACKAGE / "judge/truth.py").read_text("utf-8")
-    fault = next(x for x in edits_of("judge/truth.py", text) if x.context.startswith("complement|"))
-    place = ("judge/truth.py", places_of(ast.parse(text), text)[fault.lines[0]])
+    text = (PACKAGE / "semantics/exact/truth.py").read_text("utf-8")
+    fault = next(x for x in edits_of("semantics/exact/truth.py", text) if x.context.startswith("complement|"))
+    place = ("semantics/exact/truth.py", places_of(ast.parse(text), text)[fault.lines[0]])
     near, far, slow, other = (f"tests/{x}.py::t" for x in ("judge/a", "prove/b", "judge/slow", "judge/other"))
     records = Records({near: 9.0, far: 0.1, slow: 99.0, other: 0.1})
     records.by_place[place] = {near, far, slow}

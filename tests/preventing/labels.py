@@ -6,10 +6,10 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from roadproof.drivers.manoeuvres import BESIDE, Manoeuvre, signals_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import SizeName
-from roadproof.monitoring import Batch, compile
-from roadproof.preventing.manoeuvres import BESIDE, Manoeuvre, signals_of
+from roadproof.semantics.sampled import Batch, compile
 
 Floats = NDArray[np.float64]
 

@@ -5,12 +5,12 @@ from fractions import Fraction
 from functools import cache
 from pathlib import Path
 
+from roadproof.drivers.manoeuvres import MANOEUVRES
+from roadproof.drivers.models import unpreventable
+from roadproof.library.bind import bind, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Library, Specification, load_library
 from roadproof.logic.formula import Formula
-from roadproof.preventing.manoeuvres import MANOEUVRES
-from roadproof.preventing.models import unpreventable
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification, load_library
 from roadproof.world.road import Road
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from fractions import Fraction
 
-from roadproof.formats.recording import Recording
-from roadproof.preventing.driving import Reading, drive_of
-from roadproof.preventing.manoeuvres import Manoeuvre
+from roadproof.drivers.driving import Reading, drive_of
+from roadproof.drivers.manoeuvres import Manoeuvre
+from roadproof.recordings.formats.recording import Recording
 from roadproof.world.motion import State, state_at
 from traffic.make_recording import Track, make_recording
 

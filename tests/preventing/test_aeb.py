@@ -12,19 +12,19 @@ import roadproof as rp
 from preventing import stepping
 from preventing.labels import labels
 from preventing.read import boundary, specification, values
-from roadproof.cli.main import main
+from roadproof.analysis.preventable.sides import judged_drive
+from roadproof.drivers import driving
+from roadproof.drivers.braking import Aided, Ramp
+from roadproof.drivers.claims import Side
+from roadproof.drivers.driving import Reading, drive_of
+from roadproof.drivers.lemmas import lemmas_for
+from roadproof.drivers.manoeuvres import CUT_IN, along_line
+from roadproof.drivers.models import models_for
 from roadproof.errors import InputError
-from roadproof.evaluation.questions import Settings
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.exact import judge
-from roadproof.preventing import driving
-from roadproof.preventing.braking import Aided, Ramp
-from roadproof.preventing.claims import Side
-from roadproof.preventing.driving import Reading, drive_of
-from roadproof.preventing.lemmas import lemmas_for
-from roadproof.preventing.manoeuvres import CUT_IN, along_line
-from roadproof.preventing.models import models_for
-from roadproof.preventing.sides import judged_drive
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate.questions import Settings
+from roadproof.semantics.exact.exact import judge
 
 RATE = 1000
 FULL = 0.85 * stepping.G

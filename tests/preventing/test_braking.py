@@ -7,16 +7,16 @@ from random import Random
 import pytest
 
 from preventing.read import values
+from roadproof.analysis.preventable.sides import far_apart
+from roadproof.drivers.boundary import Plane
+from roadproof.drivers.braking import Aided, Ramp
+from roadproof.drivers.driving import Reading, _along
+from roadproof.drivers.lemmas import lemmas_for
+from roadproof.drivers.lines import Line, end_of, sides_in
+from roadproof.drivers.manoeuvres import MANOEUVRES
+from roadproof.drivers.models import MODELS
+from roadproof.drivers.restriction import Restriction, check_drives
 from roadproof.errors import UsageError
-from roadproof.preventing.boundary import Plane
-from roadproof.preventing.braking import Aided, Ramp
-from roadproof.preventing.driving import Reading, _along
-from roadproof.preventing.lemmas import lemmas_for
-from roadproof.preventing.lines import Line, end_of, sides_in
-from roadproof.preventing.manoeuvres import MANOEUVRES
-from roadproof.preventing.models import MODELS
-from roadproof.preventing.restriction import Restriction, check_drives
-from roadproof.preventing.sides import far_apart
 
 
 @pytest.mark.parametrize("joined", ["max", "add"])

@@ -10,7 +10,7 @@ from preventing import stepping
 from preventing.labels import labels
 from preventing.read import boundary
 from preventing.test_stepping import RATE, random_cut_ins
-from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION
+from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION
 
 CASES = 600
 LENGTHS = 8.6

@@ -12,15 +12,15 @@ import roadproof as rp
 from preventing import stepping
 from preventing.read import boundary, specification, values
 from preventing.test_preventable import copy
-from roadproof.cli.main import main
+from roadproof.analysis.preventable.sides import beside_boundary, first_drive, judged_drive
+from roadproof.drivers import gradual
+from roadproof.drivers.boundary import Plane, line
+from roadproof.drivers.claims import SIDES
+from roadproof.drivers.driving import Reading, drive_of, motion_in_deceleration
+from roadproof.drivers.manoeuvres import DECELERATION, KMH
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.algebraic import Root, approximate
-from roadproof.preventing import gradual
-from roadproof.preventing.boundary import Plane, line
-from roadproof.preventing.claims import SIDES
-from roadproof.preventing.driving import Reading, drive_of, motion_in_deceleration
-from roadproof.preventing.manoeuvres import DECELERATION, KMH
-from roadproof.preventing.sides import beside_boundary, first_drive, judged_drive
+from roadproof.frontends.cli.main import main
+from roadproof.semantics.exact.algebraic import Root, approximate
 
 RATE = 1000
 SOFT = Reading(values(), specification().options)

@@ -8,17 +8,17 @@ import pytest
 
 import roadproof as rp
 from preventing.read import boundary, specification, values
-from roadproof.cli.main import main
-from roadproof.judge.algebraic import moved
-from roadproof.judge.truth import Cut, TruthSet, union
-from roadproof.preventing.boundary import Plane, line
-from roadproof.preventing.claims import SIDES
-from roadproof.preventing.driving import Reading
-from roadproof.preventing.lemmas import lemmas_for
-from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
-from roadproof.preventing.models import MODELS, manoeuvre_of, models_for
-from roadproof.preventing.sides import beside_boundary, first_drive, judged_drive
-from roadproof.report import preventable as report
+from roadproof.analysis.preventable.sides import beside_boundary, first_drive, judged_drive
+from roadproof.drivers.boundary import Plane, line
+from roadproof.drivers.claims import SIDES
+from roadproof.drivers.driving import Reading
+from roadproof.drivers.lemmas import lemmas_for
+from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
+from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
+from roadproof.frontends.cli.main import main
+from roadproof.frontends.report import preventable as report
+from roadproof.semantics.exact.algebraic import moved
+from roadproof.semantics.exact.truth import Cut, TruthSet, union
 
 OPTIONS = (
     {},
@@ -79,7 +79,7 @@ def test_a_driver_with_another_constant_is_not_the_model(changed):
     given = CUT_IN.values({"dx0": Fraction(30)})
     judged = judged_drive(CUT_IN, "careful", given, "preventable", home, Reading(values(), home.options))
     assert judged.file.values[changed] == values()[changed]
-    from roadproof.preventing.driving import drive_of
+    from roadproof.drivers.driving import drive_of
 
     wrong = drive_of(CUT_IN, "careful", given, Reading(other, home.options))
     from dataclasses import replace

@@ -9,27 +9,27 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.api.restricting import restricted
-from roadproof.cli.main import main
-from roadproof.effort import Effort
+from roadproof.drivers.boundary import Plane, line
+from roadproof.drivers.manoeuvres import MANOEUVRES
+from roadproof.drivers.models import MODELS, SCENARIOS, foreseen, unpreventable
+from roadproof.drivers.restriction import Restriction, Side, restriction_of
+from roadproof.engines.prove.driver_claims import prove_of_scenarios
+from roadproof.engines.search.impossible import show_impossible
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.judge.exact import judge
-from roadproof.judge.truth import complement, intersection
-from roadproof.logic.begin import conjuncts
+from roadproof.frontends.api.restricting import restricted
+from roadproof.frontends.cli.main import main
+from roadproof.library.bind import bind
+from roadproof.library.compose import both, negation
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import Scenario, initial_condition, vehicles_of
+from roadproof.library.specification import Specification
 from roadproof.logic.formula import TRUE, Formula
+from roadproof.logic.initial_conditions import conjuncts
 from roadproof.logic.rewrite import without_names
-from roadproof.preventing.boundary import Plane, line
-from roadproof.preventing.manoeuvres import MANOEUVRES
-from roadproof.preventing.models import MODELS, SCENARIOS, foreseen, unpreventable
-from roadproof.preventing.proof import prove_of_scenarios
-from roadproof.preventing.restriction import Restriction, Side, restriction_of
-from roadproof.searching.impossible import show_impossible
-from roadproof.spec.bind import bind
-from roadproof.spec.compose import both, negation
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import Scenario, initial_condition, vehicles_of
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.truth import complement, intersection
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 

@@ -11,17 +11,17 @@ import roadproof as rp
 from planting import plant
 from preventing.fuzzy_again import first_difference, motion
 from preventing.read import specification, values
-from roadproof.cli.main import main
+from roadproof.analysis.preventable.sides import judged_drive
+from roadproof.drivers import stepped
+from roadproof.drivers.boundary import Plane
+from roadproof.drivers.claims import SIDES
+from roadproof.drivers.driving import Reading, drive_of
+from roadproof.drivers.fuzzy import Controller, Scale, scale_of
+from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
+from roadproof.drivers.models import models_for
+from roadproof.drivers.stepped import course_of, labels_of, places_of, spans_of
 from roadproof.evidence.judged import judge_file
-from roadproof.preventing import stepped
-from roadproof.preventing.boundary import Plane
-from roadproof.preventing.claims import SIDES
-from roadproof.preventing.driving import Reading, drive_of
-from roadproof.preventing.fuzzy import Controller, Scale, scale_of
-from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
-from roadproof.preventing.models import models_for
-from roadproof.preventing.sides import judged_drive
-from roadproof.preventing.stepped import course_of, labels_of, places_of, spans_of
+from roadproof.frontends.cli.main import main
 
 
 def reading() -> Reading:

@@ -6,7 +6,7 @@ import pytest
 from preventing import stepping
 from preventing.labels import labels
 from preventing.read import bound, boundary
-from roadproof.preventing.manoeuvres import CUT_IN, CUT_OUT, DECELERATION
+from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION
 
 RATE = 1000
 CASES = 100_000

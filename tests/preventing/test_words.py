@@ -5,13 +5,13 @@ from fractions import Fraction
 import pytest
 
 import roadproof as rp
-from roadproof.api.definitions import Definitions
+from roadproof.drivers.manoeuvres import MANOEUVRES
+from roadproof.drivers.models import MODELS, unpreventable
+from roadproof.drivers.words import _PARTS, legend, words_of_parts
+from roadproof.frontends.api.definitions import Definitions
+from roadproof.frontends.report.drive_data import strips_of
+from roadproof.frontends.report.preventable import as_text, shown_symbols
 from roadproof.logic.formula import And, Named, subformulas
-from roadproof.preventing.manoeuvres import MANOEUVRES
-from roadproof.preventing.models import MODELS, unpreventable
-from roadproof.preventing.words import _PARTS, legend, words_of_parts
-from roadproof.report.drive_data import strips_of
-from roadproof.report.preventable import as_text, shown_symbols
 
 
 @pytest.fixture(scope="module")

@@ -7,18 +7,18 @@ from functools import cache
 from math import prod
 
 from asking import prove
-from roadproof.effort import Effort
+from roadproof.engines.prove.prover import Result
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.refutation import Countermodel
-from roadproof.judge import TruthSet, judge
-from roadproof.judge.truth import from_switches
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Specification, bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, map_terms, without_names
-from roadproof.proving.prover import Result
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact import TruthSet, judge
+from roadproof.semantics.exact.truth import from_switches
 from roadproof.verdict import Verdict
 
 P, Q, R = "atLane(SV,L)", "atLane(POV,L)", "fasterThan(SV,POV)"

@@ -16,9 +16,9 @@ from proving.claims import (
     speaks_of_all_lanes,
     specification,
 )
-from roadproof.effort import Effort
+from roadproof.engines.solve.smt import ask
 from roadproof.evidence.certificate import refusal
-from roadproof.solve.smt import ask
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 library = specification().library

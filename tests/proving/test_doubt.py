@@ -6,11 +6,11 @@ import pytest
 
 import roadproof as rp
 from cli.test_schemas import validator
-from roadproof.cli.main import main
-from roadproof.effort import Effort
-from roadproof.proving.doubt import Cause, Doubt, Stop, Try, doubt_of
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.engines.prove.doubt import Cause, Doubt, Stop, Try, doubt_of
+from roadproof.frontends.cli.main import main
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
 
 specification = bundled_library().select("base")
 P, Q = "atLane(SV,L)", "atLane(POV,L)"

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from asking import prove
 from proving.claims import specification
-from roadproof.effort import Effort
-from roadproof.judge import judge
+from roadproof.engines.prove.properties import Task, template_properties
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import read_claim
 from roadproof.logic.rewrite import with_values
-from roadproof.proving.properties import Task, template_properties
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import read_claim
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact import judge
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.motion import state_at

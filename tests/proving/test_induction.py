@@ -10,19 +10,19 @@ import pytest
 import roadproof as rp
 from cli.test_schemas import validator
 from kernel.needs import needs_coq
-from roadproof.api.checking import check
+from roadproof.engines.prove.induction import inductions
+from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
-from roadproof.judge import judge
-from roadproof.judge.truth import from_switches
+from roadproof.frontends.api.checking import check
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import Axiom, axiom_formula
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import induction
 from roadproof.logic import terms as t
-from roadproof.proving.induction import inductions
-from roadproof.solve.smt import ask
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.motion import Axiom, axiom_formula
+from roadproof.semantics.exact import judge
+from roadproof.semantics.exact.truth import from_switches
 
 library = bundled_library()
 specification = library.select("base")

@@ -8,13 +8,13 @@ import pytest
 
 import roadproof as rp
 from asking import prove
+from roadproof.engines.prove import lasso
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.periodic import Loop
 from roadproof.evidence.refutation import Countermodel, Instant, fault_of, trace_data
 from roadproof.evidence.traces import judge_trace, read_trace
-from roadproof.proving import lasso
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.verdict import Verdict
 
 HOME = bundled_library().select()
@@ -40,7 +40,7 @@ def test_what_holds_is_not_refuted(claim):
 
 def test_the_finder_alone_is_not_believed(monkeypatch):
     """Whatever it takes for a refutation is judged from the numbers of the trace."""
-    from roadproof.judge.truth import NEVER
+    from roadproof.semantics.exact.truth import NEVER
 
     monkeypatch.setattr(lasso, "judge_periodic", lambda *_: NEVER)
     assert prove(HOME, f"F G {FAST} -> G F {FAST}").verdict is Verdict.PROVED

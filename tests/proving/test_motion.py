@@ -12,21 +12,21 @@ import pytest
 
 import roadproof as rp
 from evidence.folders import answer, check, read, write
-from roadproof.effort import Effort
+from roadproof.engines.prove.motion import prove_of_motions, stages
+from roadproof.engines.prove.properties import name_of_claim
+from roadproof.engines.prove.prover import prove
+from roadproof.engines.search import settle as settling
+from roadproof.engines.search.settle import settle
+from roadproof.engines.solve.smt import ask
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
 from roadproof.evidence.finding import Acceptance
+from roadproof.library import motion as spec_motion
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import SCHEMAS, Assumed, Axiom
+from roadproof.library.specification import bundled_library
 from roadproof.logic import motion
 from roadproof.logic import terms as t
-from roadproof.proving.motion import prove_of_motions, stages
-from roadproof.proving.properties import name_of_claim
-from roadproof.proving.prover import prove
-from roadproof.searching import settle as settling
-from roadproof.searching.settle import settle
-from roadproof.solve.smt import ask
-from roadproof.spec import motion as spec_motion
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.motion import SCHEMAS, Assumed, Axiom
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 specification = bundled_library().select("base")

@@ -15,14 +15,14 @@ from proving.claims import (
     specification,
 )
 from proving.on_roads import is_road
+from roadproof.engines.prove import countermodel, grounding, prover
+from roadproof.engines.prove.grounding import Grounding, Window
+from roadproof.engines.prove.search import InstanceSearch
+from roadproof.engines.prove.states import StateChecker
+from roadproof.engines.solve.smt import Session, ask
 from roadproof.evidence import refutation
 from roadproof.evidence.certificate import refusal
 from roadproof.logic import formula as f
-from roadproof.proving import countermodel, grounding, prover
-from roadproof.proving.grounding import Grounding, Window
-from roadproof.proving.search import InstanceSearch
-from roadproof.proving.states import StateChecker
-from roadproof.solve.smt import Session, ask
 from roadproof.verdict import Verdict
 from roadproof.world.road import Lanelet, Road
 

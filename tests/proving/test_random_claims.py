@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 
 from evidence.probe import probe
 from proving.claims import PROVED, P, Q, R, _opaquely, _with_numbers, is_false_on, settle, specification
-from roadproof.effort import Effort
+from roadproof.engines.solve.smt import ask
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import refusal
-from roadproof.judge import judge
-from roadproof.judge.truth import from_switches
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import read_claim
 from roadproof.logic import formula as f
-from roadproof.solve.smt import ask
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import read_claim
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact import judge
+from roadproof.semantics.exact.truth import from_switches
 from roadproof.verdict import Verdict
 
 UNITS = 0.5

@@ -5,13 +5,13 @@ from itertools import product
 
 import roadproof as rp
 from preventing.read import specification
+from roadproof.drivers.lemmas import lemmas_for
+from roadproof.drivers.models import models_for
+from roadproof.engines.prove.explanation import is_plain, reason
 from roadproof.evidence.atoms import Atoms
+from roadproof.library.elaborate import read_claim
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, Named
-from roadproof.preventing.lemmas import lemmas_for
-from roadproof.preventing.models import models_for
-from roadproof.proving.reason import is_plain, reason
-from roadproof.spec.elaborate import read_claim
 
 NAMES = ("p", "q", "r", "s")
 

@@ -7,7 +7,7 @@ from random import Random
 import pytest
 
 from proving.on_roads import is_road, neighbours
-from roadproof.proving.roads import ZONES, Box, Layout, lay_road
+from roadproof.engines.prove.roads import ZONES, Box, Layout, lay_road
 from roadproof.world.road import Lanelet, Road
 
 

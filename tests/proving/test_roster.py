@@ -3,10 +3,10 @@
 import pytest
 
 from proving.claims import specification
+from roadproof.engines.prove.small_roads import roster_for
 from roadproof.evidence.atoms import Atoms
+from roadproof.library.elaborate import read_claim
 from roadproof.logic import formula as f
-from roadproof.proving.roster import roster_for
-from roadproof.spec.elaborate import read_claim
 
 SOME_LANELET = "every K in lanes: some l in lanelets(K): F occ(SV,l) and G occ(POV,l)"
 SOME_LANE = "every K in lanes: some N in lanes: F atLane(SV,K) and G atLane(POV,N)"

@@ -6,16 +6,16 @@ import pytest
 
 from asking import prove
 from proving.claims import settle, specification
-from roadproof.effort import Effort
+from roadproof.engines.prove import countermodel, prover
+from roadproof.engines.prove.doubt import Stop
+from roadproof.engines.prove.grounding import Grounding
+from roadproof.engines.prove.place import place
+from roadproof.engines.prove.search import GaveUp, Model
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.proving import countermodel, prover
-from roadproof.proving.doubt import Stop
-from roadproof.proving.grounding import Grounding
-from roadproof.proving.place import place
-from roadproof.proving.search import GaveUp, Model
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_vehicle
 

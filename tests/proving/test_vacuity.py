@@ -3,11 +3,11 @@
 import pytest
 
 from asking import prove
-from roadproof.effort import Effort
-from roadproof.proving import prover
-from roadproof.searching.settle import settle
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.engines.prove import prover
+from roadproof.engines.search.settle import settle
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 SPECIFICATION = bundled_library().select("base")

@@ -4,7 +4,7 @@ from typing import Any
 
 from matplotlib.text import Text
 
-from roadproof.report.figures import settle
+from roadproof.frontends.report.figures import settle
 
 
 def cut_off(figure: Any) -> list[str]:

@@ -11,8 +11,8 @@ from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import Classified
 from roadproof.evidence.answers.classify import Doubt
-from roadproof.report.classify import as_table, compose_classes, summary
-from roadproof.spec.words import Words
+from roadproof.frontends.report.classify import as_table, compose_classes, summary
+from roadproof.library.words import Words
 from roadproof.verdict import Verdict
 
 WORDS = {4: Words(4, "slow ahead", "main road"), 8: Words(8, "slow ahead, leaving", "main road")}

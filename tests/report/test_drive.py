@@ -7,11 +7,10 @@ from itertools import pairwise
 import pytest
 
 from report.edges import cut_off
-from roadproof.evaluation.observed import observe_drive
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
-from roadproof.report.drive import SNAPSHOTS, compose_drive
-from roadproof.report.drive_data import (
+from roadproof.frontends.report.drive import SNAPSHOTS, compose_drive
+from roadproof.frontends.report.drive_data import (
     Danger,
     Strip,
     dangers_of,
@@ -22,10 +21,11 @@ from roadproof.report.drive_data import (
     times_of,
     window_of,
 )
-from roadproof.report.one_trace import compose_strips
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Source, bundled_library, load_library
+from roadproof.frontends.report.one_trace import compose_strips
+from roadproof.library.bind import bind, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Source, bundled_library, load_library
+from roadproof.recordings.evaluate.observed import observe_drive
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 

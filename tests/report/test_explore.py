@@ -7,10 +7,10 @@ from typing import Any
 from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
 from roadproof.analysis.explore.knobs import Knob
 from roadproof.analysis.explore.measure import read_measure
-from roadproof.report.explore import as_text, draw_exploration, show
-from roadproof.searching.ask import Search
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import read_query
+from roadproof.engines.search.ask import Search
+from roadproof.frontends.report.explore import as_text, draw_exploration, show
+from roadproof.library.scenarios import read_query
+from roadproof.library.specification import bundled_library
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")

@@ -3,7 +3,14 @@
 from typing import Any
 
 from report.edges import cut_off
-from roadproof.report.figures import as_bytes, count_axis, legend_beside, make_figure, name_rows, settle
+from roadproof.frontends.report.figures import (
+    as_bytes,
+    count_axis,
+    legend_beside,
+    make_figure,
+    name_rows,
+    settle,
+)
 
 
 def an_example() -> Any:

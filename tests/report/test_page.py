@@ -10,9 +10,9 @@ import pytest
 
 import roadproof as rp
 from evidence.folders import some_proofs
-from roadproof.cli.main import main
-from roadproof.report.page.markup import joined, table, tag
-from roadproof.shipped import shipped
+from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.page.markup import joined, table, tag
+from roadproof.runtime.package_data import shipped
 
 HOSTILE = "<img src=x onerror=alert(1)>"
 CLOSED = "</script><script>alert(1)</script>"

@@ -2,8 +2,8 @@
 
 from fractions import Fraction
 
-from roadproof.report.paper import COMPARISON, RESULTS, VIOLATING_PAIRS
-from roadproof.report.traffic import percent
+from roadproof.frontends.report.paper import COMPARISON, RESULTS, VIOLATING_PAIRS
+from roadproof.frontends.report.traffic import percent
 
 
 def test_recall_is_matching_by_traces() -> None:

@@ -5,7 +5,7 @@ import io
 
 import pytest
 
-from roadproof.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown, as_text
+from roadproof.frontends.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown, as_text
 
 TABLE = Table(
     "Counts & shares_of A",

@@ -10,15 +10,15 @@ import pytest
 
 from report.edges import cut_off
 from roadproof.errors import InputError
-from roadproof.evaluation.questions import Settings, default_settings
-from roadproof.evaluation.results import Totals, begin_totals
-from roadproof.report.answers import answer_questions
-from roadproof.report.paper import MARK
-from roadproof.report.tables import Table
-from roadproof.report.traffic import Share, comparison_table, decimal, percent, results_tables
-from roadproof.report.traffic_figures import compose_figures, draw_figures
-from roadproof.report.write_traffic import write_report
-from roadproof.spec.scenarios import COMPARISON
+from roadproof.frontends.report.answers import answer_questions
+from roadproof.frontends.report.paper import MARK
+from roadproof.frontends.report.tables import Table
+from roadproof.frontends.report.traffic import Share, comparison_table, decimal, percent, results_tables
+from roadproof.frontends.report.traffic_figures import compose_figures, draw_figures
+from roadproof.frontends.report.write_traffic import write_report
+from roadproof.library.scenarios import COMPARISON
+from roadproof.recordings.evaluate.questions import Settings, default_settings
+from roadproof.recordings.evaluate.results import Totals, begin_totals
 
 
 def settings(**changes: object) -> Settings:
@@ -180,7 +180,7 @@ def test_half_a_file_is_never_seen(totals: Totals, tmp_path: Path, monkeypatch: 
     def fails(source: str, target: Path) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("roadproof.files.os.replace", fails)
+    monkeypatch.setattr("roadproof.runtime.files.os.replace", fails)
     with pytest.raises(KeyboardInterrupt):
         write_report(tmp_path, totals, {})
     assert list(tmp_path.iterdir()) == []

@@ -8,19 +8,19 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.evaluation.one_trace import sample_drive
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.report.viewer_data import Asked, viewer_data
-from roadproof.report.viewer_files import viewer_modules, viewer_style
-from roadproof.report.viewer_page import json_in_html, viewer_page
-from roadproof.report.viewer_recorded import recorded_data
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Source, bundled_library, load_library
-from roadproof.spec.places import nearest, places_of
+from roadproof.frontends.report.viewer_data import Asked, viewer_data
+from roadproof.frontends.report.viewer_files import viewer_modules, viewer_style
+from roadproof.frontends.report.viewer_page import json_in_html, viewer_page
+from roadproof.frontends.report.viewer_recorded import recorded_data
+from roadproof.library.elaborate import read_claim
+from roadproof.library.places import nearest, places_of
+from roadproof.library.specification import Source, bundled_library, load_library
+from roadproof.recordings.evaluate.one_trace import sample_drive
 from roadproof.world.motion import state_at
 
-VIEWER = Path(__file__).parents[2] / "src" / "roadproof" / "report" / "viewer"
+VIEWER = Path(__file__).parents[2] / "src" / "roadproof" / "frontends" / "report" / "viewer"
 DRIVES = Path(__file__).parents[2] / "examples" / "traffic" / "drives"
 LIBRARY = bundled_library()
 FILE = load_drive(next(DRIVES.glob("*04-base.json")))

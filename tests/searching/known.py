@@ -12,14 +12,14 @@ from fractions import Fraction
 from functools import cache, reduce
 from itertools import combinations
 
-from roadproof.encode.build import Assumptions
-from roadproof.encode.unroll import Grid
+from roadproof.engines.encode.build import Assumptions
+from roadproof.engines.encode.unroll import Grid
+from roadproof.engines.search.question import Posed, assignments
+from roadproof.library.bind import bind, default_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.searching.question import Posed, assignments
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at

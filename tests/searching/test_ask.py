@@ -6,15 +6,15 @@ from fractions import Fraction
 import pytest
 
 from asking import posed, search_for
-from roadproof.effort import Effort, Late
+from roadproof.engines.prove.prover import Hunch, prove
+from roadproof.engines.search import ask, impossible
+from roadproof.engines.search.ask import answer
+from roadproof.engines.search.grid import make_grid
 from roadproof.errors import UsageError
-from roadproof.proving.prover import Hunch, prove
-from roadproof.searching import ask, impossible
-from roadproof.searching.ask import answer
-from roadproof.searching.grid import make_grid
-from roadproof.shipped import shipped
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.package_data import shipped
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_vehicle
 

@@ -5,11 +5,11 @@ from fractions import Fraction
 import pytest
 
 from asking import search_for
-from roadproof.effort import Effort
+from roadproof.engines.search.bounded import check_bounded
+from roadproof.engines.search.question import SearchOptions
 from roadproof.evidence.judged import judge_file
-from roadproof.searching.bounded import check_bounded
-from roadproof.searching.question import SearchOptions
-from roadproof.spec.library import bundled_library
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()

@@ -5,14 +5,14 @@ from fractions import Fraction
 import pytest
 
 from asking import search_for
-from roadproof.effort import Effort, Late
+from roadproof.engines.search import compare as compare_module
+from roadproof.engines.search.compare import compare
+from roadproof.engines.search.question import SearchOptions
 from roadproof.evidence.judged import judge_file
-from roadproof.searching import compare as compare_module
-from roadproof.searching.compare import compare
-from roadproof.searching.question import SearchOptions
-from roadproof.spec.compose import taken_from
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import read_query
+from roadproof.library.compose import taken_from
+from roadproof.library.scenarios import read_query
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort, Late
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from roadproof.effort import Effort
-from roadproof.judge.exact import judge
-from roadproof.judge.replay import first_breach, first_overlap
-from roadproof.searching.enumeration import small_drive
-from roadproof.searching.kinds import usual_model
-from roadproof.searching.patterns import spread
-from roadproof.searching.refute import beyond_limits, quick_drive
-from roadproof.searching.settle import settle
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.motion import under_limits
+from roadproof.engines.search.default_vehicles import usual_model
+from roadproof.engines.search.enumeration import small_drive
+from roadproof.engines.search.patterns import spread
+from roadproof.engines.search.refute import beyond_limits, quick_drive
+from roadproof.engines.search.settle import settle
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import under_limits
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
 from roadproof.world.motion import state_at
 
@@ -116,7 +116,7 @@ def test_across_the_road_at_the_numbers_of_the_claim(text):
 @pytest.mark.parametrize("text", [SLOW[0], "v_lat(SV) <= 1 m/s and d(POV) <= 25 m -> v_lat(POV) > 2 m/s"])
 def test_samples_and_drive_are_the_same_motion(text):
     """The monitor sees in floating point what the judge sees in rational numbers."""
-    from roadproof.searching.enumeration import _search
+    from roadproof.engines.search.enumeration import _search
 
     search = _search(HOME, claim(text), "claim")
     patterns, dt, steps = search.patterns(), Fraction(1, 2), 20

@@ -5,15 +5,15 @@ from fractions import Fraction
 import pytest
 
 import roadproof as rp
-from roadproof.effort import Effort
-from roadproof.judge.exact import judge
+from roadproof.engines.search import instant_claims, settle
+from roadproof.engines.search.instant_claims import sampled_drive
+from roadproof.engines.search.question import Setting
+from roadproof.engines.search.settle import settle as settled
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic.fragment import is_cubic_state
-from roadproof.searching import instant, settle
-from roadproof.searching.instant import sampled_drive
-from roadproof.searching.question import Setting
-from roadproof.searching.settle import settle as settled
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
 HOME = bundled_library().select()
@@ -68,7 +68,7 @@ def test_of_which_claims_states_are_sampled(text, cubic):
 def test_a_state_in_which_the_claim_is_true_is_no_refutation(monkeypatch):
     """A state that nobody has judged is handed on; the drive is judged all the same."""
     monkeypatch.setattr(
-        instant, "states", lambda _, space, most: [{x: low for x, (low, _) in space.ranges.items()}]
+        instant_claims, "states", lambda _, space, most: [{x: low for x, (low, _) in space.ranges.items()}]
     )
     assert sampled(TRUE) is None
 
@@ -76,7 +76,7 @@ def test_a_state_in_which_the_claim_is_true_is_no_refutation(monkeypatch):
 def test_what_a_proof_does_not_decide_quickly_is_sampled(monkeypatch):
     """With no work for z3 the drive comes from a sampled state; with none for samples it stays in doubt."""
     monkeypatch.setattr(settle, "BRIEF", 1e-6)
-    monkeypatch.setattr("roadproof.searching.refute.quick_drive", lambda *_: None)
+    monkeypatch.setattr("roadproof.engines.search.refute.quick_drive", lambda *_: None)
     found = settled(HOME, claim(FALSE), Effort(2e-6))
     assert found.verdict is Verdict.REFUTED
     assert found.refuted_by == "drive"

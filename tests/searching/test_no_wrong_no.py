@@ -6,12 +6,12 @@ from fractions import Fraction
 import pytest
 
 from asking import posed, search_for
-from roadproof.effort import Effort
+from roadproof.engines.search.ask import ask
+from roadproof.engines.search.bounded import check_bounded
+from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.search import show_none
 from roadproof.evidence.judged import judge_file
-from roadproof.searching.ask import ask
-from roadproof.searching.bounded import check_bounded
-from roadproof.searching.question import SearchOptions
-from roadproof.searching.search import show_none
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 from searching.known import LIBRARY, holds_on_samples, known
 

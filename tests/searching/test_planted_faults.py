@@ -7,13 +7,13 @@ import pytest
 
 from asking import posed, search_for
 from planting import plant
-from roadproof.effort import Effort
-from roadproof.encode import build
-from roadproof.searching import bounded, search
-from roadproof.searching.ask import Outcome
-from roadproof.searching.impossible import Impossibility
-from roadproof.searching.question import SearchOptions
-from roadproof.solve import bounds
+from roadproof.engines.encode import build
+from roadproof.engines.search import bounded, search
+from roadproof.engines.search.ask import Outcome
+from roadproof.engines.search.impossible import Impossibility
+from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.solve import bounds
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 SHORT = {"horizon": Fraction(9, 5)}

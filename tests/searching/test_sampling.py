@@ -6,14 +6,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from roadproof.engines.search import sampling
+from roadproof.engines.search.sampling import Space, holds, states
+from roadproof.library.bind import bind
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Signal, Size
-from roadproof.searching import sampling
-from roadproof.searching.sampling import Space, holds, states
-from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
 from roadproof.world.models import load_road
 
 HOME = bundled_library().select()

@@ -5,9 +5,9 @@ from fractions import Fraction
 import pytest
 
 from asking import posed, search_for
-from roadproof.searching import search
-from roadproof.searching.question import SearchOptions
-from roadproof.searching.search import find_witness, show_none
+from roadproof.engines.search import search
+from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.search import find_witness, show_none
 from roadproof.verdict import Verdict
 
 

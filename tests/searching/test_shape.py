@@ -4,13 +4,13 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.encode.circuit import evaluate
-from roadproof.encode.motion import Layout
-from roadproof.encode.unroll import Grid
-from roadproof.searching.shape import _with_margin
-from roadproof.searching.variety import differ
-from roadproof.solve.bounds import Affine, Bound
-from roadproof.solve.smooth import minimise
+from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.unroll import Grid
+from roadproof.engines.search.shape import _with_margin
+from roadproof.engines.search.variety import differ
+from roadproof.engines.solve.bounds import Affine, Bound
+from roadproof.engines.solve.smooth import minimise
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 

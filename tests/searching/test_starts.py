@@ -6,17 +6,17 @@ from fractions import Fraction
 import pytest
 
 from planting import plant
-from roadproof.effort import Effort
-from roadproof.judge.exact import judge
+from roadproof.engines.search import initial_candidates, search
+from roadproof.engines.search.ask import Search, answer, reads_all
+from roadproof.engines.search.initial_candidates import space_of, unread
+from roadproof.engines.search.question import SearchOptions, Setting, pose
+from roadproof.engines.search.sampling import holds
+from roadproof.library.scenarios import read_query
+from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import signals_of
-from roadproof.searching import search, starts
-from roadproof.searching.ask import Search, answer, reads_all
-from roadproof.searching.question import SearchOptions, Setting, pose
-from roadproof.searching.sampling import holds
-from roadproof.searching.starts import space_of, unread
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import read_query
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
 HOME = bundled_library().select()
@@ -39,7 +39,7 @@ def found_starts(text, most=6):
     return posed, [
         (lanes, start)
         for lanes in posed.lanes
-        for start in starts.starts(posed, lanes, unread(posed, lanes), most)
+        for start in initial_candidates.starts(posed, lanes, unread(posed, lanes), most)
     ]
 
 
@@ -126,10 +126,10 @@ def test_a_proof_that_there_is_none_stays_possible():
 # The interval is where the part does not hold; nothing is asked of the start at all.
 FAULTS = {
     "the interval is wrong": (
-        *(starts, "_free", "return inner if inner[0] <= value <= inner[1] else (value, value)"),
+        *(initial_candidates, "_free", "return inner if inner[0] <= value <= inner[1] else (value, value)"),
         "return value + 20, value + 21",
     ),
-    "no conditions": (starts, "conditions", "return tuple(found)", "return ()"),
+    "no conditions": (initial_candidates, "conditions", "return tuple(found)", "return ()"),
 }
 NEAR = "(s(POV) - s(SV))^3 < 3375*(1 m)*(1 m)*(1 m) and (s(POV) - s(SV))^3 > 125*(1 m)*(1 m)*(1 m)"
 FAST = "v_lon(SV)^3 > 59319*(1 m/s)*(1 m/s)*(1 m/s) and F v_lon(SV) < v_lon(POV)"

@@ -1,9 +1,9 @@
 """A claim about one instant that no search can refute is refuted by constant motion from there."""
 
 import roadproof as rp
-from roadproof.judge.exact import judge
-from roadproof.spec.bind import bind
-from roadproof.spec.elaborate import read_claim
+from roadproof.library.bind import bind
+from roadproof.library.elaborate import read_claim
+from roadproof.semantics.exact.exact import judge
 
 
 def test_a_cubic_claim_is_refuted_by_a_steady_drive():

@@ -7,16 +7,16 @@ from itertools import pairwise
 import pytest
 
 from asking import posed, search_for
-from roadproof.effort import Effort
-from roadproof.encode.unroll import Grid
+from roadproof.engines.encode.unroll import Grid
+from roadproof.engines.search import search
+from roadproof.engines.search.ask import ask
+from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.variety import CLEARLY
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.replay import first_breach, first_overlap
-from roadproof.searching import search
-from roadproof.searching.ask import ask
-from roadproof.searching.question import SearchOptions
-from roadproof.searching.variety import CLEARLY
-from roadproof.spec.library import bundled_library
+from roadproof.library.specification import bundled_library
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import starts_of, state_at

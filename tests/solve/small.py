@@ -3,12 +3,12 @@
 import random
 from fractions import Fraction
 
-from roadproof.effort import Effort
-from roadproof.encode.circuit import Leaf, all_of, any_of, evaluate
-from roadproof.encode.polynomial import Inequality, affine, variable
-from roadproof.encode.problem import Column, Problem, Row, Unknown
-from roadproof.solve.bounds import approximate, value_of
-from roadproof.solve.exact import solve_exactly
+from roadproof.engines.encode.circuit import Leaf, all_of, any_of, evaluate
+from roadproof.engines.encode.polynomial import Inequality, affine, variable
+from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.solve.bounds import approximate, value_of
+from roadproof.engines.solve.exact import solve_exactly
+from roadproof.runtime.budget import Effort
 
 COLUMNS = 3
 

@@ -11,14 +11,14 @@ import pytest
 from hypothesis.errors import NonInteractiveExampleWarning
 
 from encode import cases
-from roadproof.encode.build import NONE, ground
-from roadproof.encode.circuit import all_of, any_of
-from roadproof.encode.motion import Layout
-from roadproof.encode.problem import Column, Problem, Row, Unknown
-from roadproof.encode.unroll import unroll
-from roadproof.judge import judge
-from roadproof.solve.exact import solve_exactly
-from roadproof.solve.milp import box_of, solve_mixed
+from roadproof.engines.encode.build import NONE, ground
+from roadproof.engines.encode.circuit import all_of, any_of
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.encode.unroll import unroll
+from roadproof.engines.solve.exact import solve_exactly
+from roadproof.engines.solve.milp import box_of, solve_mixed
+from roadproof.semantics.exact import judge
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import state_at
 

@@ -4,9 +4,9 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.encode.circuit import All, AnyOf, Leaf, evaluate, nodes
-from roadproof.encode.polynomial import Inequality, affine, constant, variable
-from roadproof.solve.bounds import (
+from roadproof.engines.encode.circuit import All, AnyOf, Leaf, evaluate, nodes
+from roadproof.engines.encode.polynomial import Inequality, affine, constant, variable
+from roadproof.engines.solve.bounds import (
     ROUNDING,
     TOLERANCE,
     Affine,

@@ -6,15 +6,15 @@ from fractions import Fraction
 import cvxpy
 import pytest
 
-from roadproof import effort
-from roadproof.effort import Effort, Late
-from roadproof.encode.circuit import Leaf, all_of, any_of
-from roadproof.encode.polynomial import Inequality, affine
-from roadproof.encode.problem import Column, Problem, Row, Unknown
-from roadproof.solve import exact, milp, smt
-from roadproof.solve.exact import solve_exactly
-from roadproof.solve.milp import Solution, box_of, solve_mixed
-from roadproof.solve.smt import Session, ask, solve
+from roadproof.engines.encode.circuit import Leaf, all_of, any_of
+from roadproof.engines.encode.polynomial import Inequality, affine
+from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.solve import exact, milp, smt
+from roadproof.engines.solve.exact import solve_exactly
+from roadproof.engines.solve.milp import Solution, box_of, solve_mixed
+from roadproof.engines.solve.smt import Session, ask, solve
+from roadproof.runtime import budget
+from roadproof.runtime.budget import Effort, Late
 
 COLUMNS, ROWS = 40, 4
 LITTLE = Effort(0.001)
@@ -175,7 +175,7 @@ def test_what_was_found_when_the_clock_ended_the_search_is_not_used(monkeypatch)
     column = (Column(Unknown("x", "s", 0), Fraction(0), Fraction(1)),)
     problem = Problem(column, (), either(0))
     now = [0.0]
-    monkeypatch.setattr(effort.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(budget.time, "monotonic", lambda: now[0])
     true_solve = milp._solve
 
     def solve_until(status, end):

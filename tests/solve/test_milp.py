@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.effort import Effort
-from roadproof.encode.circuit import All, AnyOf, Leaf
-from roadproof.encode.polynomial import Inequality, affine, variable
-from roadproof.encode.problem import Column, Problem, Unknown
+from roadproof.engines.encode.circuit import All, AnyOf, Leaf
+from roadproof.engines.encode.polynomial import Inequality, affine, variable
+from roadproof.engines.encode.problem import Column, Problem, Unknown
+from roadproof.engines.solve import milp
+from roadproof.engines.solve.bounds import TooNonlinearError, approximate, value_of
+from roadproof.engines.solve.exact import solve_exactly
+from roadproof.engines.solve.milp import Cost, box_of, find_solver, solve_mixed
 from roadproof.errors import MissingSolverError, UsageError
-from roadproof.solve import milp
-from roadproof.solve.bounds import TooNonlinearError, approximate, value_of
-from roadproof.solve.exact import solve_exactly
-from roadproof.solve.milp import Cost, box_of, find_solver, solve_mixed
+from roadproof.runtime.budget import Effort
 from solve import small
 
 
@@ -102,7 +102,7 @@ def test_solvers_are_silent():
     In a process of its own, since what C writes is seen when it ends.
     """
     code = (
-        "from solve import small; from roadproof.solve.milp import box_of, solve_mixed; "
+        "from solve import small; from roadproof.engines.solve.milp import box_of, solve_mixed; "
         "[solve_mixed(p, box_of(p)) for p in small.problems(3, seed=4)]"
     )
     path = os.pathsep.join([str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")])

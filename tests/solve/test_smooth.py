@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.encode.problem import Row
+from roadproof.engines.encode.problem import Row
+from roadproof.engines.solve import smooth
+from roadproof.engines.solve.bounds import Affine, Bound, value_of
+from roadproof.engines.solve.smooth import Square, minimise, narrow, near
 from roadproof.errors import MissingSolverError
-from roadproof.solve import smooth
-from roadproof.solve.bounds import Affine, Bound, value_of
-from roadproof.solve.smooth import Square, minimise, narrow, near
 from solve import small
 
 BOX = [(-10.0, 10.0), (-10.0, 10.0)]

@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.effort import Effort
+from roadproof.engines.solve.smt import Session, ask, parse_sexpression, read_value, solve
 from roadproof.errors import MissingSolverError
-from roadproof.solve.smt import Session, ask, parse_sexpression, read_value, solve
+from roadproof.runtime.budget import Effort
 
 SCRIPT = "(declare-const x Real)(assert (> x 1.0))(check-sat)"
 

@@ -3,12 +3,12 @@
 from fractions import Fraction
 from random import Random
 
-from roadproof.judge import judge
+from roadproof.library.bind import bind, default_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import Axiom
+from roadproof.library.specification import bundled_library
 from roadproof.logic.formula import Formula
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.motion import Axiom
+from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 

@@ -5,14 +5,14 @@ from fractions import Fraction
 import pytest
 
 from roadproof.errors import InputError
+from roadproof.library.bind import bind, default_values, occupies
+from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.library.uses import definitions_used, parameters_used
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
-from roadproof.spec.bind import bind, default_values, occupies
-from roadproof.spec.elaborate import apply_definition, read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.uses import definitions_used, parameters_used
 from roadproof.world.road import Lanelet, Road, pairs
 
 WIDTH = Fraction(7, 2)

@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import pytest
 
-from roadproof.judge import judge
-from roadproof.spec.bind import bind, default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.library.bind import bind, default_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
+from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 

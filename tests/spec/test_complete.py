@@ -2,9 +2,9 @@
 
 import pytest
 
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
 
 LIBRARY = bundled_library()
 SAID = {

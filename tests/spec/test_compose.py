@@ -3,10 +3,8 @@
 import pytest
 
 from roadproof.errors import UsageError
-from roadproof.logic import formula as f
-from roadproof.logic.rewrite import without_names
-from roadproof.spec import compose
-from roadproof.spec.compose import (
+from roadproof.library import compose
+from roadproof.library.compose import (
     always,
     both,
     conjuncts,
@@ -19,9 +17,11 @@ from roadproof.spec.compose import (
     with_lane,
     with_vehicles,
 )
-from roadproof.spec.elaborate import apply_definition, read_claim
-from roadproof.spec.library import bundled_library
-from roadproof.spec.query import Query
+from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import bundled_library
+from roadproof.logic import formula as f
+from roadproof.logic.rewrite import without_names
 
 BASE = bundled_library().select()
 

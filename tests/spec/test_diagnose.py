@@ -3,12 +3,12 @@
 import pytest
 
 import roadproof as rp
-from roadproof.cli.main import main
+from roadproof.frontends.cli.main import main
+from roadproof.library.diagnose import Proofreader, diagnose, diagnose_claim
+from roadproof.library.specification import bundled_library, load_library
 from roadproof.logic.parse import parse_library
 from roadproof.logic.recover import parse_pieces
-from roadproof.shipped import shipped
-from roadproof.spec.diagnose import Proofreader, diagnose, diagnose_claim
-from roadproof.spec.library import bundled_library, load_library
+from roadproof.runtime.package_data import shipped
 
 LIBRARY = bundled_library()
 MANY = """\
@@ -105,7 +105,7 @@ def test_all_mistakes_of_a_formula():
 
 
 def test_the_library_has_no_mistake_and_reads_alike_in_pieces():
-    folder = shipped("models").parent / "src/roadproof/spec/library"
+    folder = shipped("models").parent / "src/roadproof/library/sets"
     files = sorted(folder.glob("*.spec"))
     assert files
     for file in files:

@@ -5,15 +5,15 @@ from typing import Any
 import pytest
 
 from roadproof.errors import TextError
+from roadproof.library.elaborate import apply_definition, read_claim, signature
+from roadproof.library.elaboration import Elaborator
+from roadproof.library.quantity import unit_name
+from roadproof.library.query import Query
+from roadproof.library.size import LARGEST_FORMULA, MOST_READ, Sizes
+from roadproof.library.specification import Source, Specification, build_library, bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import FOREVER, Formula
-from roadproof.spec.elaborate import apply_definition, read_claim, signature
-from roadproof.spec.elaboration import Elaborator
-from roadproof.spec.library import Source, Specification, build_library, bundled_library
-from roadproof.spec.quantity import unit_name
-from roadproof.spec.query import Query
-from roadproof.spec.size import LARGEST_FORMULA, MOST_READ, Sizes
 
 BASE = bundled_library().select()
 SECONDS = (0, 1)

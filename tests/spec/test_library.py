@@ -6,10 +6,8 @@ from pathlib import Path
 import pytest
 
 from roadproof.errors import InputError, TextError
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import (
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import (
     Library,
     Source,
     build_library,
@@ -19,6 +17,8 @@ from roadproof.spec.library import (
     read_specification,
     unknown,
 )
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
 
 PLAIN = """
 param limit = 130 km/h where limit > 0 "as signs say"

@@ -5,11 +5,20 @@ from fractions import Fraction
 import pytest
 
 from roadproof.errors import InputError
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import (
+    SCHEMAS,
+    Assumed,
+    Axiom,
+    assumption,
+    axiom_formula,
+    split,
+    statement,
+    under,
+)
 from roadproof.logic import formula as f
 from roadproof.logic import motion
 from roadproof.logic import terms as t
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.motion import SCHEMAS, Assumed, Axiom, assumption, axiom_formula, split, statement, under
 from spec.motions import ABOUT, AXIOMS, holds, random_drive, specification
 
 DRIVES = [random_drive(seed) for seed in range(300)]

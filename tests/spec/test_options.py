@@ -4,11 +4,11 @@ from fractions import Fraction as F
 
 import pytest
 
-from roadproof.judge import judge
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import bundled_library
 from roadproof.logic.rewrite import with_values
-from roadproof.spec.bind import default_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import bundled_library
+from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece
 
 LIBRARY = bundled_library()

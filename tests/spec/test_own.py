@@ -3,14 +3,14 @@
 import pytest
 
 from roadproof.errors import TextError
-from roadproof.logic.own import told_freedom
+from roadproof.library.compose import with_vehicles
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Source, bundled_library, load_library
+from roadproof.library.uses import definitions_used
+from roadproof.logic.custom_names import told_freedom
 from roadproof.logic.rewrite import vehicles_of, without_names
 from roadproof.logic.show import as_syntax, text
-from roadproof.signals import KINDS
-from roadproof.spec.compose import with_vehicles
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Source, bundled_library, load_library
-from roadproof.spec.uses import definitions_used
+from roadproof.world.signals import KINDS
 
 OWN = """
 signal jerk(a: vehicle): m/s^3 in [-10, 10 m/s^3] "how fast its acceleration changes"

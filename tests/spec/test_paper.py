@@ -5,11 +5,11 @@ import re
 import pytest
 
 from roadproof.errors import RoadproofError
+from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.specification import Library, Source, build_library, bundled_library, source_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.elaborate import apply_definition, read_claim
-from roadproof.spec.library import Library, Source, build_library, bundled_library, source_of
 from spec import paper
 
 SETS = ("base", "extA", "ext")

@@ -1,4 +1,4 @@
-"""Names of the library's definitions stand in ``spec/scenarios.py`` and nowhere else in Python.
+"""Names of the library's definitions stand in ``library/scenarios.py`` and nowhere else in Python.
 
 A string that has such a name followed by ``(``, is one, or has the part of one before its number
 (``scenario_``), is read, matched or put together somewhere; so is one that is the name of a role. Words for
@@ -12,15 +12,15 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import PAIR, TRIPLE
+from roadproof.library.scenarios import PAIR, TRIPLE
+from roadproof.library.specification import bundled_library
 
 SOURCE = Path(__file__).parents[2] / "src" / "roadproof"
-HOME = "spec/scenarios.py"
+HOME = "library/scenarios.py"
 ROLES = {*PAIR, *TRIPLE}
 WORDS = {
     "__init__.py",
-    "api/recordings.py",
+    "frontends/api/recordings.py",
 }  # what is exported from Python is named; so are columns of frames
 ROWS = 8
 """How many rows the table of formulas has, which other scenarios repeat."""

@@ -5,12 +5,12 @@ from fractions import Fraction
 import pytest
 
 from roadproof.errors import InputError, TextError
+from roadproof.library import scenarios
+from roadproof.library.elaborate import read_claim, signature
+from roadproof.library.scenarios import Scenario
+from roadproof.library.specification import Source, Specification, build_library, bundled_library
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names
-from roadproof.spec import scenarios
-from roadproof.spec.elaborate import read_claim, signature
-from roadproof.spec.library import Source, Specification, build_library, bundled_library
-from roadproof.spec.scenarios import Scenario
 
 BASE = bundled_library().select()
 

@@ -7,13 +7,13 @@ from pkgutil import iter_modules
 
 import pytest
 
-from roadproof import cli
-from roadproof.cli.main import main
 from roadproof.errors import TextError
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import Fields
-from roadproof.spec.library import Library, Source, Specification, bundled_library, load_library
-from roadproof.spec.words import Words, called, called_in, legend, spans, words_of
+from roadproof.frontends import cli
+from roadproof.frontends.cli.main import main
+from roadproof.library.specification import Library, Source, Specification, bundled_library, load_library
+from roadproof.library.words import Words, called, called_in, legend, spans, words_of
 
 BASE = bundled_library().select("base")
 OWN = """

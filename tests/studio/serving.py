@@ -12,9 +12,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from roadproof.studio.begun import Begun
-from roadproof.studio.crew import Limits
-from roadproof.studio.server import Studio, application, listen
+from roadproof.frontends.studio.server import Studio, application, listen
+from roadproof.frontends.studio.start_page import Begun
+from roadproof.frontends.studio.worker_pool import Limits
 
 NOBODY = Limits(workers=0)
 DRAFT = {"base": "base", "text": "", "before": None, "options": {}, "params": {}}
@@ -122,5 +122,7 @@ def workers_of(process: int) -> set[int]:
         return pid == process
 
     return {
-        pid for pid, (_, words) in children.items() if "roadproof.studio.worker" in words and is_below(pid)
+        pid
+        for pid, (_, words) in children.items()
+        if "roadproof.frontends.studio.worker" in words and is_below(pid)
     }

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from roadproof.cli.main import main
+from roadproof.frontends.cli.main import main
 from studio.browser import Tab, browsing, why_none
 from studio.serving import running, workers_of
 

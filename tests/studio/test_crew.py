@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from roadproof.studio.crew import Crew, FullError, Limits, Message
+from roadproof.frontends.studio.worker_pool import Crew, FullError, Limits, Message
 from studio.serving import question
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="processes are killed by signals of POSIX")

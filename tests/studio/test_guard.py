@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("uvicorn", reason="the extra 'studio' is not installed")
 
-from roadproof.studio.pages import served
+from roadproof.frontends.studio.pages import served
 from studio.serving import Served, question, serving
 
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from roadproof.api.drafting import QUESTION
 from roadproof.errors import InputError
-from roadproof.studio.begun import begin_with
-from roadproof.studio.dropping import drop
-from roadproof.studio.showing import marks_of
+from roadproof.frontends.api.drafting import QUESTION
+from roadproof.frontends.studio.dropping import drop
+from roadproof.frontends.studio.showing import marks_of
+from roadproof.frontends.studio.start_page import begin_with
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVE = EXAMPLES / "catalogue" / "tests" / "drives" / "braking.json"

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
+from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
-from roadproof.spec.library import bundled_library
-from roadproof.study.frame import conduct
-from roadproof.study.shelf import Question, Shelf
+from roadproof.library.specification import bundled_library
 
 
 @dataclass(frozen=True)

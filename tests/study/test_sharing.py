@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from roadproof.analysis.claims import Answered, Claims, name_of
-from roadproof.api.definitions import load
-from roadproof.api.proofs import claims_of
-from roadproof.cli.main import main
+from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, SharedError, UsageError
-from roadproof.files import hold_folder
-from roadproof.hands import Cluster, Hands, Shard
-from roadproof.study.frame import conduct
+from roadproof.frontends.api.definitions import load
+from roadproof.frontends.api.proofs import claims_of
+from roadproof.frontends.cli.main import main
+from roadproof.runtime.executors import Cluster, Hands, Shard
+from roadproof.runtime.files import hold_folder
 
 NAMES = [f"piece-{k}" for k in range(500)]
 
@@ -113,7 +113,7 @@ def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_runs_that_share_a_folder_keep_others_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.files.LETTING_GO", 0.0)
+    monkeypatch.setattr("roadproof.runtime.files.LETTING_GO", 0.0)
     outside = pytest.raises(InputError, match="another run is writing")
     with (
         hold_folder(tmp_path, shared=True),

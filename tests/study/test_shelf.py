@@ -13,14 +13,14 @@ import pytest
 from evidence.folders import changes, check, places
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.overlap import Overlap, PairVerdict, name_of
-from roadproof.cli.main import main
+from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.frame import conduct
 from roadproof.errors import UsageError
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
-from roadproof.spec.library import Source, build_library, bundled_library
-from roadproof.spec.scenarios import Scenario
-from roadproof.study.frame import conduct
-from roadproof.study.shelf import Question, Shelf
+from roadproof.frontends.cli.main import main
+from roadproof.library.scenarios import Scenario
+from roadproof.library.specification import Source, build_library, bundled_library
 from roadproof.verdict import Verdict
 
 BASIS = Basis(bundled_library().select())

@@ -6,7 +6,7 @@ from types import ModuleType
 
 import pytest
 
-from roadproof.spec.library import Library, Source, build_library, bundled_library
+from roadproof.library.specification import Library, Source, build_library, bundled_library
 
 
 def plant_fault(monkeypatch: pytest.MonkeyPatch, module: ModuleType, old: str, new: str) -> None:

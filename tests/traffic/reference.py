@@ -8,12 +8,12 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
 
-from roadproof.evaluation.questions import Settings
-from roadproof.formats.recording import Recording
+from roadproof.library.elaborate import read_claim
 from roadproof.logic.formula import Formula, transform
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.monitoring.recursive import Reading, Trace
-from roadproof.spec.elaborate import read_claim
+from roadproof.recordings.evaluate.questions import Settings
+from roadproof.recordings.formats.recording import Recording
+from roadproof.semantics.sampled.recursive import Reading, Trace
 
 Row = tuple[int, int, int | None, str, int, int, int, str, int]
 """sv, pov, pov2, lane, start_frame, end_frame, min_danger, set, scenario."""

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.formats.recording import Recording
-from roadproof.formats.samples import HEADER
-from roadproof.signals import RECORDED
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.samples import HEADER
 from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.signals import RECORDED
 
 TWO = (
     "0,1,20,5.3,20,0,0,0,4.5,1.8",

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 from planting import plant as plant_fault
-from roadproof.evaluation import boundary
-from roadproof.evaluation.boundary import Asked, uncertain
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats.commonroad import read_commonroad
-from roadproof.formats.recording import Floats, Recording, Slack, keep_vehicles
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
-from roadproof.simulation.plant import Place, plant
-from roadproof.simulation.simulate import Traffic
-from roadproof.simulation.synthetic import simulate
+from roadproof.recordings.evaluate import boundary
+from roadproof.recordings.evaluate.boundary import Asked, uncertain
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats.commonroad import read_commonroad
+from roadproof.recordings.formats.recording import Floats, Recording, Slack, keep_vehicles
+from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.simulate import Traffic
+from roadproof.recordings.simulate.synthetic import simulate
 from traffic.drives import braking, cut_in, swerve
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.planar import commonroad_of

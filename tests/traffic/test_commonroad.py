@@ -10,10 +10,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadproof.errors import InputError
-from roadproof.formats.commonroad import read_commonroad
-from roadproof.formats.overlaps import find_overlaps
-from roadproof.formats.plausible import LARGEST_SIZE
-from roadproof.formats.projection import boxes_of, even_line, inside, overlap, project, triangles_of
+from roadproof.recordings.formats.commonroad import read_commonroad
+from roadproof.recordings.formats.overlaps import find_overlaps
+from roadproof.recordings.formats.plausible import LARGEST_SIZE
+from roadproof.recordings.formats.projection import (
+    boxes_of,
+    even_line,
+    inside,
+    overlap,
+    project,
+    triangles_of,
+)
 from traffic.tiny_commonroad import Car, document, point
 
 US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"

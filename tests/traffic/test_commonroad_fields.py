@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.formats.commonroad import read_commonroad
+from roadproof.recordings.formats.commonroad import read_commonroad
 
 TURN, AT = 0.7, complex(300, -120)
 LANES = ((1, 0.0, 3.5), (2, 3.5, 7.0))

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from roadproof.cli.main import main
 from roadproof.errors import InputError
-from roadproof.formats.converted import (
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.formats.converted import (
     HEAD,
     SAMPLES,
     digest_of,
@@ -23,8 +23,8 @@ from roadproof.formats.converted import (
     same_recording,
     write_converted,
 )
-from roadproof.formats.sources import find_source, find_sources
-from roadproof.formats.table import polars_module
+from roadproof.recordings.formats.sources import find_source, find_sources
+from roadproof.recordings.formats.table import polars_module
 from traffic.make_recording import Track, make_recording
 from traffic.planar_exid import write_exid
 from traffic.test_exid import bent
@@ -196,7 +196,7 @@ def test_forged_vehicles_with_new_digests_are_refused(
     sealed_anew(head, said | {"vehicles": change(said["vehicles"])})
     with pytest.raises(InputError, match=told):
         read_converted(head)
-    monkeypatch.setattr("roadproof.formats.windows.MOST_SAMPLES", 2000)
+    monkeypatch.setattr("roadproof.recordings.formats.windows.MOST_SAMPLES", 2000)
     with pytest.raises(InputError, match=told):
         divide_converted(head)
 
@@ -235,7 +235,7 @@ def test_forged_samples_with_new_digests_are_refused(
     sealed_anew(head, said, changed)
     with pytest.raises(InputError, match=told):
         read_converted(head)
-    monkeypatch.setattr("roadproof.formats.windows.MOST_SAMPLES", 2000)
+    monkeypatch.setattr("roadproof.recordings.formats.windows.MOST_SAMPLES", 2000)
     if said["samples"]["rows"] > 2000:
         with pytest.raises(InputError, match=told):
             divide_converted(head)

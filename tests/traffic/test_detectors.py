@@ -7,19 +7,19 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from roadproof.evaluation import detectors
-from roadproof.evaluation.detectors import Detection, find_detections
-from roadproof.evaluation.evaluate import evaluate_recording
-from roadproof.evaluation.questions import Questions, ask, default_settings
-from roadproof.evaluation.results import add_findings, as_json, begin_totals
-from roadproof.formats.pairs import Sight, common_pairs
-from roadproof.formats.recording import Recording
-from roadproof.monitoring.recursive import Reading
-from roadproof.simulation.plant import Place, plant
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
-from roadproof.spec.library import Source, build_library, bundled_library
-from roadproof.spec.scenarios import COMPARISON
+from roadproof.library.scenarios import COMPARISON
+from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.recordings.evaluate import detectors
+from roadproof.recordings.evaluate.detectors import Detection, find_detections
+from roadproof.recordings.evaluate.evaluate import evaluate_recording
+from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
+from roadproof.recordings.evaluate.results import add_findings, as_json, begin_totals
+from roadproof.recordings.formats.pairs import Sight, common_pairs
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.semantics.sampled.recursive import Reading
 from traffic.drives import braking, cut_in
 from traffic.make_recording import LANES, Track, cruise, make_recording
 from traffic.reference import Reference

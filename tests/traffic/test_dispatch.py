@@ -10,15 +10,15 @@ import pytest
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
-from roadproof.cli.main import main
-from roadproof.formats.highd import read_highd
-from roadproof.formats.recording import Recording, keep_vehicles
-from roadproof.formats.samples import read_columns
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.plant import Place, plant
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
-from roadproof.spec.library import bundled_library
+from roadproof.frontends.cli.main import main
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.samples import read_columns
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from traffic.drives import braking, cut_in
 from traffic.planar import commonroad_of
 from traffic.sampled import csv_of, lower_road, toml_of, write_samples
@@ -90,7 +90,7 @@ def test_coverage(folders: dict[str, Path]) -> None:
 
 def test_classify(folders: dict[str, Path]) -> None:
     """Shares are counted on what an evaluation reads."""
-    from roadproof.api.classifying import _recordings
+    from roadproof.frontends.api.classifying import _recordings
 
     for folder in folders.values():
         source, recordings = _recordings(folder)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from roadproof.evaluation.disturbances import NEVER, Disturbances, _last, _Lookup, _next
-from roadproof.formats.pairs import Pairs
+from roadproof.recordings.evaluate.disturbances import NEVER, Disturbances, _last, _Lookup, _next
+from roadproof.recordings.formats.pairs import Pairs
 
 
 def column(*values: int) -> np.ndarray:

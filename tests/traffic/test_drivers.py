@@ -16,25 +16,25 @@ import roadproof as rp
 from planting import plant
 from preventing.read import bound, boundary, library, specification, values
 from preventing.recorded import BEFORE, recorded
-from roadproof.cli.main import main
+from roadproof.analysis.preventable.sides import beside_boundary
+from roadproof.drivers.boundary import Plane, line
+from roadproof.drivers.claims import SIDES, Side
+from roadproof.drivers.driving import Reading
+from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre
+from roadproof.drivers.models import MODELS, SCENARIOS, course_in, foreseen
 from roadproof.errors import UsageError
-from roadproof.evaluation import courses, foretelling
-from roadproof.evaluation.evaluate import evaluate_recording, evaluate_windows
-from roadproof.evaluation.matching import Match
-from roadproof.evaluation.questions import Questions, Settings, ask
-from roadproof.evaluation.recheck import recheck, trace_of
-from roadproof.evaluation.traces import gather
-from roadproof.formats.recording import Integers, Recording
-from roadproof.formats.write_highd import write_highd
-from roadproof.monitoring.recursive import Reading as Plain
-from roadproof.preventing.boundary import Plane, line
-from roadproof.preventing.claims import SIDES, Side
-from roadproof.preventing.driving import Reading
-from roadproof.preventing.manoeuvres import KMH, MANOEUVRES, Manoeuvre
-from roadproof.preventing.models import MODELS, SCENARIOS, course_in, foreseen
-from roadproof.preventing.sides import beside_boundary
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate import courses, foretelling
+from roadproof.recordings.evaluate.evaluate import evaluate_recording, evaluate_windows
+from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.questions import Questions, Settings, ask
+from roadproof.recordings.evaluate.recheck import recheck, trace_of
+from roadproof.recordings.evaluate.traces import gather
+from roadproof.recordings.formats.recording import Integers, Recording
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.semantics.sampled.recursive import Reading as Plain
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.test_windows import cut
 
@@ -187,7 +187,7 @@ def test_planted_faults_are_seen(
         right, wrong = "unpreventable(name, model, manoeuvre.vehicles)", "foreseen(name, manoeuvre.vehicles)"
     plant(monkeypatch, owner, name, right, wrong)
     if name == "courses_of":
-        from roadproof.evaluation import questions as module
+        from roadproof.recordings.evaluate import questions as module
 
         monkeypatch.setattr(module, "courses_of", courses.courses_of)
     with pytest.raises((AssertionError, ValueError, IndexError)):

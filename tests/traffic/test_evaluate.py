@@ -9,10 +9,19 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError, UsageError
-from roadproof.evaluation import disturbances, evaluate
-from roadproof.evaluation import questions as module
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.questions import (
+from roadproof.library import elaborate as elaborating
+from roadproof.library import scenarios
+from roadproof.library.elaboration import Elaborator
+from roadproof.library.query import Query
+from roadproof.library.specification import Source, Specification, build_library, bundled_library
+from roadproof.logic import show
+from roadproof.logic.formula import Compare
+from roadproof.logic.syntax import Claim
+from roadproof.logic.terms import Parameter, number
+from roadproof.recordings.evaluate import disturbances, evaluate
+from roadproof.recordings.evaluate import questions as module
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.questions import (
     SAFE,
     VIOLATION,
     Danger,
@@ -21,21 +30,12 @@ from roadproof.evaluation.questions import (
     ask,
     default_settings,
 )
-from roadproof.formats.recording import Recording, keep_vehicles
-from roadproof.logic import show
-from roadproof.logic.formula import Compare
-from roadproof.logic.syntax import Claim
-from roadproof.logic.terms import Parameter, number
-from roadproof.monitoring import compile
-from roadproof.monitoring.answers import TruthArrays, Verdicts
-from roadproof.simulation.plant import Place, plant
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
-from roadproof.spec import elaborate as elaborating
-from roadproof.spec import scenarios
-from roadproof.spec.elaboration import Elaborator
-from roadproof.spec.library import Source, Specification, build_library, bundled_library
-from roadproof.spec.query import Query
+from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.semantics.sampled import compile
+from roadproof.semantics.sampled.answers import TruthArrays, Verdicts
 from traffic.drives import braking, cut_in, cut_out, late_cut_out, swerve
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.reference import Reference, Row

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.one_trace import read_pair
-from roadproof.evaluation.questions import Questions, ask, default_settings
-from roadproof.evaluation.recheck import recheck
 from roadproof.evidence.drive_file import load_drive
-from roadproof.formats.exid import read_exid
-from roadproof.formats.osm import read_osm, utm_of
-from roadproof.formats.recording import Recording
-from roadproof.formats.sources import find_source
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
+from roadproof.recordings.evaluate.recheck import recheck
+from roadproof.recordings.formats.exid import read_exid
+from roadproof.recordings.formats.osm import read_osm, utm_of
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.sources import find_source
 from roadproof.world.motion import state_at
 from traffic.make_recording import Track, make_recording
 from traffic.planar import Bend, straight

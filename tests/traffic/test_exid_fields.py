@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.formats.exid import read_exid
-from roadproof.formats.osm import LEFT_OUT, read_osm, utm_of
+from roadproof.recordings.formats.exid import read_exid
+from roadproof.recordings.formats.osm import LEFT_OUT, read_osm, utm_of
 from traffic.make_recording import Track, make_recording
 from traffic.planar_exid import osm_of, write_exid
 from traffic.test_topology import with_ramps

@@ -13,17 +13,17 @@ from typing import Any
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.evaluation import experiment as module
-from roadproof.evaluation.evaluate import Findings, Trace
-from roadproof.evaluation.experiment import Experiment, run_experiment
-from roadproof.evaluation.matching import Match
-from roadproof.evaluation.questions import default_settings
-from roadproof.evaluation.results import add_findings, as_json, begin_totals
-from roadproof.formats.sources import find_sources
-from roadproof.formats.write_highd import write_highd
-from roadproof.hands import Hands
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.recordings.evaluate import experiment as module
+from roadproof.recordings.evaluate.evaluate import Findings, Trace
+from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
+from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.questions import default_settings
+from roadproof.recordings.evaluate.results import add_findings, as_json, begin_totals
+from roadproof.recordings.formats.sources import find_sources
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.runtime.executors import Hands
 
 US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError, MissingSolverError
-from roadproof.formats.highd import find_highd, read_highd
-from roadproof.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.highd import find_highd, read_highd
+from roadproof.recordings.formats.recording import Recording, keep_vehicles
 from traffic.tiny_highd import Files, tiny_files, write_files
 
 TRACKS, META, RECORDING = "01_tracks.csv", "01_tracksMeta.csv", "01_recordingMeta.csv"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roadproof.formats.highd import RECORDING_COLUMNS, SAMPLE_COLUMNS, VEHICLE_COLUMNS, read_highd
+from roadproof.recordings.formats.highd import RECORDING_COLUMNS, SAMPLE_COLUMNS, VEHICLE_COLUMNS, read_highd
 
 UPPER, LOWER = (8.5, 12.6, 16.4, 20.1), (25.0, 28.9, 32.7)
 KINDS = {"Car": (4.5, 1.8), "Truck": (14.0, 2.5)}

@@ -17,19 +17,19 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli.main import main
 from roadproof.errors import InputError
-from roadproof.evaluation import experiment as module
-from roadproof.evaluation import results
-from roadproof.evaluation.experiment import Experiment, run_experiment
-from roadproof.evaluation.one_trace import read_samples
-from roadproof.evaluation.questions import default_settings
-from roadproof.files import hold_folder, write_whole
-from roadproof.formats.commonroad import read_commonroad
-from roadproof.formats.highd import read_highd
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate import experiment as module
+from roadproof.recordings.evaluate import results
+from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
+from roadproof.recordings.evaluate.one_trace import read_samples
+from roadproof.recordings.evaluate.questions import default_settings
+from roadproof.recordings.formats.commonroad import read_commonroad
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.runtime.files import hold_folder, write_whole
 from roadproof.world.models import load_road
 from traffic.tiny_highd import tiny_files, write_files
 
@@ -147,7 +147,7 @@ def test_a_mistake_in_the_options_costs_no_tables(folder: Path, tmp_path: Path) 
 def test_two_runs_in_one_folder(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The second is refused and touches nothing; a run that was killed holds nothing."""
     out = tmp_path / "out"
-    hold = "import sys, time; from pathlib import Path; from roadproof.files import hold_folder\n"
+    hold = "import sys, time; from pathlib import Path; from roadproof.runtime.files import hold_folder\n"
     hold += "with hold_folder(Path(sys.argv[1])): print('held', flush=True); time.sleep(600)"
     other = subprocess.Popen([sys.executable, "-c", hold, str(out)], stdout=subprocess.PIPE, text=True)
     try:

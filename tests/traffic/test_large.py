@@ -8,19 +8,19 @@ import polars as pl
 import pytest
 
 import roadproof as rp
-from roadproof.cli.main import main
 from roadproof.errors import InputError
-from roadproof.evaluation.evaluate import evaluate_recording, evaluate_windows
-from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats import large, plausible, table, windows
-from roadproof.formats.converted import same_recording
-from roadproof.formats.median import Median
-from roadproof.formats.recording import Recording
-from roadproof.formats.samples import HEADER
-from roadproof.formats.sources import find_source
-from roadproof.shipped import shipped
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate.evaluate import evaluate_recording, evaluate_windows
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats import large, plausible, table, windows
+from roadproof.recordings.formats.converted import same_recording
+from roadproof.recordings.formats.median import Median
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.samples import HEADER
+from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.runtime.package_data import shipped
 from traffic.test_windows import results
 
 
@@ -162,8 +162,8 @@ def test_what_is_odd_or_refused_is_so_in_parts(
 def test_cells_that_are_missing_or_not_finite_are_named(
     frame: pl.DataFrame, ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.formats.parquet.PIECE", 1_000)
-    monkeypatch.setattr("roadproof.formats.table.PIECE", 50_000)
+    monkeypatch.setattr("roadproof.recordings.formats.parquet.PIECE", 1_000)
+    monkeypatch.setattr("roadproof.recordings.formats.table.PIECE", 50_000)
     late = pl.int_range(pl.len()) == 5_000
     for wrong in (None, float("nan"), float("inf")):
         path = put(

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.evaluation.evaluate import evaluate_recording
-from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats.highd import read_highd
-from roadproof.formats.plausible import find_doubts
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.plant import Place, plant
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.recordings.evaluate.evaluate import evaluate_recording
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.plausible import find_doubts
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from traffic.drives import cut_in
 from traffic.lies import NOTED, REFUSED, Files, one_vehicle_twice, read_columns, scaled, write_columns
 

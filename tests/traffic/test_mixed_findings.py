@@ -8,11 +8,11 @@ from itertools import product
 import pytest
 
 from preventing.read import library, values
-from roadproof.evaluation.evaluate import Findings, Trace
-from roadproof.evaluation.foretelling import LABELS
-from roadproof.evaluation.matching import Match
-from roadproof.evaluation.questions import Settings
-from roadproof.evaluation.results import add_findings, begin_totals, driver_cells, foretold_rows
+from roadproof.recordings.evaluate.evaluate import Findings, Trace
+from roadproof.recordings.evaluate.foretelling import LABELS
+from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.questions import Settings
+from roadproof.recordings.evaluate.results import add_findings, begin_totals, driver_cells, foretold_rows
 
 SPEAKS = {"r157": {1}, "careful": {1, 2, 4}, "rss": {1, 4}}
 """Scenarios of which a model speaks, of those that are asked for."""

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.cli.main import main
 from roadproof.errors import InputError
-from roadproof.formats.recording import Recording
-from roadproof.formats.sources import find_source
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.sources import find_source
 from roadproof.world.models import load_road
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.planar import commonroad_of

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import cut_trace, read_samples
-from roadproof.formats.neighbours import NONE, find_neighbours
-from roadproof.formats.samples import HEADER
+from roadproof.library.bind import occupies
 from roadproof.logic.rewrite import with_values
-from roadproof.spec.bind import occupies
+from roadproof.recordings.evaluate.one_trace import cut_trace, read_samples
+from roadproof.recordings.formats.neighbours import NONE, find_neighbours
+from roadproof.recordings.formats.samples import HEADER
 from roadproof.world.models import load_road
 from traffic.make_recording import LANES, Track, cruise, make_recording
 

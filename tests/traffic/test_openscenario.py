@@ -13,15 +13,15 @@ import pytest
 import roadproof as rp
 from exporting.kept import kept
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import read_samples
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.exporting.openscenario import files
-from roadproof.exporting.subject import Subject
-from roadproof.formats import openscenario
-from roadproof.formats.openscenario import RATE, read_columns, read_recording
-from roadproof.formats.sources import find_source
-from roadproof.signals import RECORDED
+from roadproof.recordings.evaluate.one_trace import read_samples
+from roadproof.recordings.export.openscenario import files
+from roadproof.recordings.export.subject import Subject
+from roadproof.recordings.formats import openscenario
+from roadproof.recordings.formats.openscenario import RATE, read_columns, read_recording
+from roadproof.recordings.formats.sources import find_source
 from roadproof.world.motion import state_at
+from roadproof.world.signals import RECORDED
 
 NEAR = {"s": 0.012, "d": 0.012, "v_lon": 0.25, "v_lat": 0.25}
 """m and m/s: vertices are rounded to the millimetre, and speeds at them are estimated."""

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import read_pair
-from roadproof.formats.openscenario import read_columns, read_recording
-from roadproof.formats.sources import find_source
+from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.formats.openscenario import read_columns, read_recording
+from roadproof.recordings.formats.sources import find_source
 
 RATE = 25
 KINDS = {

@@ -7,10 +7,10 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import read_samples
-from roadproof.formats.recording import Recording, keep_vehicles, kind_called, own_numbers
-from roadproof.formats.samples import read_recording
-from roadproof.signals import KINDS
+from roadproof.recordings.evaluate.one_trace import read_samples
+from roadproof.recordings.formats.recording import Recording, keep_vehicles, kind_called, own_numbers
+from roadproof.recordings.formats.samples import read_recording
+from roadproof.world.signals import KINDS
 
 SPEC = """
 signal red: bool

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadproof.formats import pairs as module
-from roadproof.formats.pairs import (
+from roadproof.recordings.formats import pairs as module
+from roadproof.recordings.formats.pairs import (
     Pairs,
     Reach,
     all_moments,
@@ -18,9 +18,9 @@ from roadproof.formats.pairs import (
     near_pairs,
     triples_of,
 )
-from roadproof.formats.recording import Recording
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from traffic.make_recording import Track, cruise, make_recording
 
 REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)

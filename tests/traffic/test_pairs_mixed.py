@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from roadproof.formats.pairs import Reach, Sight, common_pairs, near_pairs, pairs_in_sight
-from roadproof.formats.recording import Recording
+from roadproof.recordings.formats.pairs import Reach, Sight, common_pairs, near_pairs, pairs_in_sight
+from roadproof.recordings.formats.recording import Recording
 from traffic.make_recording import Track, make_recording
 
 REACH = Reach(rho=0.6, a_max=4.0, b_min=3.0, b_max=7.0, a_max_lat=1.5, b_min_lat=1.2)

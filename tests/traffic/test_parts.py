@@ -10,15 +10,15 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.formats import large, topology
-from roadproof.formats.believable import _check_lanelets
-from roadproof.formats.median import Median
-from roadproof.formats.plain import plain_text
-from roadproof.formats.plausible import _worst
-from roadproof.formats.repeats import see_pair
-from roadproof.formats.samples import HEADER
-from roadproof.formats.sources import find_sources
-from roadproof.signals import KINDS
+from roadproof.recordings.formats import large, topology
+from roadproof.recordings.formats.believable import _check_lanelets
+from roadproof.recordings.formats.median import Median
+from roadproof.recordings.formats.plain import plain_text
+from roadproof.recordings.formats.plausible import _worst
+from roadproof.recordings.formats.repeats import see_pair
+from roadproof.recordings.formats.samples import HEADER
+from roadproof.recordings.formats.sources import find_sources
+from roadproof.world.signals import KINDS
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -6,9 +6,9 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.formats.converted import same_recording
-from roadproof.formats.highd import read_highd
-from roadproof.formats.sources import find_source
+from roadproof.recordings.formats.converted import same_recording
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.sources import find_source
 from traffic.test_own_columns import table, written
 
 

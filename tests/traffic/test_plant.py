@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from roadproof.errors import UsageError
-from roadproof.formats.highd import read_highd
-from roadproof.formats.overlaps import find_overlaps
-from roadproof.formats.recording import Recording
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.plant import Place, plant
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.overlaps import find_overlaps
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 from traffic.drives import braking, building_up, cut_in, cut_out

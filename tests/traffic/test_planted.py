@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.questions import ask, default_settings
 from roadproof.evidence.drive_file import load_drive
-from roadproof.formats.highd import read_highd
-from roadproof.formats.overlaps import find_overlaps
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.plant import Place, Planted, plant
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.overlaps import find_overlaps
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.plant import Place, Planted, plant
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 
 DRIVES = Path(__file__).parent / "planted"
 SCENARIOS = range(1, 9)

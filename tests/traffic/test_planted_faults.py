@@ -14,16 +14,16 @@ from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.errors import InputError
-from roadproof.evaluation import disturbances, evaluate
-from roadproof.evaluation.detectors import find_detections
-from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats import pairs
-from roadproof.formats.pairs import Reach, Sight, common_pairs
-from roadproof.formats.recording import Recording
-from roadproof.report import classify
-from roadproof.spec.library import Source, build_library, bundled_library
-from roadproof.spec.scenarios import COMPARISON, PAIR, TRIPLE
-from roadproof.spec.words import Words
+from roadproof.frontends.report import classify
+from roadproof.library.scenarios import COMPARISON, PAIR, TRIPLE
+from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.library.words import Words
+from roadproof.recordings.evaluate import disturbances, evaluate
+from roadproof.recordings.evaluate.detectors import find_detections
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats import pairs
+from roadproof.recordings.formats.pairs import Reach, Sight, common_pairs
+from roadproof.recordings.formats.recording import Recording
 from roadproof.verdict import Verdict
 from traffic.faults import faulty_library, plant_fault
 from traffic.make_recording import Track, cruise, make_recording

@@ -7,11 +7,17 @@ import pytest
 
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.formats.recording import Recording
-from roadproof.simulation.planting import PLANTED_COLUMNS, lane_width, plant_drives, plantable, rows_of
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
-from roadproof.spec.library import bundled_library
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.simulate.planting import (
+    PLANTED_COLUMNS,
+    lane_width,
+    plant_drives,
+    plantable,
+    rows_of,
+)
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.world.drive import Drive
 from roadproof.world.road import Lanelet, Road, pairs
 from traffic.drives import braking, cut_in, cut_out, motion

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from roadproof.formats.highd import read_highd
-from roadproof.formats.recording import ZONES, Recording
-from roadproof.simulation import simulate as simulating
-from roadproof.simulation.ramps import road_of, zone_of
-from roadproof.simulation.synthetic import markings_of
-from roadproof.simulation.traffic import Traffic
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.recording import ZONES, Recording
+from roadproof.recordings.simulate import simulate as simulating
+from roadproof.recordings.simulate.ramps import road_of, zone_of
+from roadproof.recordings.simulate.synthetic import markings_of
+from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.world.models import load_road
 
 SECONDS = 120.0

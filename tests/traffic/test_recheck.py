@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.questions import Questions, ask, default_settings
-from roadproof.evaluation.recheck import recheck
-from roadproof.formats.recording import Recording, keep_vehicles
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import Scenario, lane_owner
+from roadproof.library.scenarios import Scenario, lane_owner
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
+from roadproof.recordings.evaluate.recheck import recheck
+from roadproof.recordings.formats.recording import Recording, keep_vehicles
 from traffic.test_evaluate import planted_traffic
 
 

@@ -11,15 +11,15 @@ from roadproof.analysis.classify.cells import whole_cell
 from roadproof.analysis.classify.classes import Classes, plan_of, what_axis
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.text import with_classes, write_classes
-from roadproof.evaluation.counting import Counted
-from roadproof.evaluation.experiment import Experiment, run_experiment
-from roadproof.evaluation.questions import default_settings
-from roadproof.evaluation.results import Row, Totals
-from roadproof.formats.repeats import STEPS, moments_of
-from roadproof.formats.sources import find_sources
-from roadproof.spec.bind import default_values
-from roadproof.spec.library import bundled_library
-from roadproof.spec.scenarios import COMPARISON
+from roadproof.library.bind import default_values
+from roadproof.library.scenarios import COMPARISON
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.evaluate.counting import Counted
+from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
+from roadproof.recordings.evaluate.questions import default_settings
+from roadproof.recordings.evaluate.results import Row, Totals
+from roadproof.recordings.formats.repeats import STEPS, moments_of
+from roadproof.recordings.formats.sources import find_sources
 from traffic.tiny_commonroad import Car, document
 
 SPEEDS = {"rear": (20.0, 0.02), "front": (12.0, 0.03)}

@@ -10,22 +10,22 @@ import polars as pl
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.one_trace import read_pair
-from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats.highd import read_highd
-from roadproof.formats.recording import Recording, keep_vehicles
-from roadproof.formats.samples import HEADER, read_columns, read_recording
-from roadproof.formats.sources import find_source, find_sources
-from roadproof.formats.straight import of_road, place
-from roadproof.formats.write_highd import write_highd
+from roadproof.library.bind import occupies
 from roadproof.logic.rewrite import with_values
-from roadproof.monitoring.batch import Batch
-from roadproof.monitoring.compiled import compile
-from roadproof.simulation.plant import Place, plant
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
-from roadproof.spec.bind import occupies
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.samples import HEADER, read_columns, read_recording
+from roadproof.recordings.formats.sources import find_source, find_sources
+from roadproof.recordings.formats.straight import of_road, place
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.semantics.sampled.batch import Batch
+from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
 from traffic.drives import cut_in

@@ -7,14 +7,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.questions import Settings, ask, askable, default_settings
-from roadproof.evaluation.recheck import recheck
-from roadproof.evaluation.results import add_findings, begin_totals
-from roadproof.evaluation.sectors import ANYWHERE, is_possible, sectors_of
-from roadproof.formats.recording import ZONES, Recording
-from roadproof.report.traffic import results_tables
-from roadproof.spec.library import Source, build_library, bundled_library
+from roadproof.frontends.report.traffic import results_tables
+from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.questions import Settings, ask, askable, default_settings
+from roadproof.recordings.evaluate.recheck import recheck
+from roadproof.recordings.evaluate.results import add_findings, begin_totals
+from roadproof.recordings.evaluate.sectors import ANYWHERE, is_possible, sectors_of
+from roadproof.recordings.formats.recording import ZONES, Recording
 from traffic.test_evaluate import planted_traffic
 
 BASE = bundled_library().select("base")

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from roadproof.errors import UsageError
-from roadproof.formats.highd import read_highd
-from roadproof.formats.recording import Recording
-from roadproof.formats.write_highd import write_highd
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.recordings.formats.highd import read_highd
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 
 
 @pytest.fixture(scope="module", params=[2, 3])

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from roadproof.api.roads import roads
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import read_pair
-from roadproof.formats.commonroad import read_commonroad
-from roadproof.formats.lanelets import network_of
-from roadproof.formats.sources import find_source
-from roadproof.formats.topology import MeasuredLanelet, attributes_of, chains_of, main_way
+from roadproof.frontends.api.roads import roads
+from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.formats.commonroad import read_commonroad
+from roadproof.recordings.formats.lanelets import network_of
+from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.formats.topology import MeasuredLanelet, attributes_of, chains_of, main_way
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
 from traffic.make_recording import Track, cruise, make_recording

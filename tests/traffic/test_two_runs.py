@@ -10,12 +10,12 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.files import hold_folder
+from roadproof.runtime.files import hold_folder
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from roadproof.files import hold_folder
+from roadproof.runtime.files import hold_folder
 with hold_folder(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(float(sys.argv[2]))
@@ -23,7 +23,7 @@ with hold_folder(Path(sys.argv[1])):
 LEAVE_A_CHILD = """
 import os, sys, time
 from pathlib import Path
-from roadproof.files import hold_folder
+from roadproof.runtime.files import hold_folder
 with hold_folder(Path(sys.argv[1])):
     if os.fork() == 0:
         print("held", flush=True)

@@ -8,17 +8,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roadproof as rp
-from roadproof.cli.main import main
 from roadproof.errors import InputError
-from roadproof.evaluation import evaluate as evaluating
-from roadproof.evaluation.evaluate import evaluate_recording, evaluate_windows
-from roadproof.evaluation.questions import ask, default_settings
-from roadproof.formats import windows
-from roadproof.formats.recording import Recording, keep_vehicles
-from roadproof.formats.sources import find_sources
-from roadproof.formats.windows import Window, divide
-from roadproof.simulation.synthetic import simulate
-from roadproof.simulation.traffic import Traffic
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate import evaluate as evaluating
+from roadproof.recordings.evaluate.evaluate import evaluate_recording, evaluate_windows
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats import windows
+from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.sources import find_sources
+from roadproof.recordings.formats.windows import Window, divide
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 
 FILES = ("matches.csv", "pairs.csv", "results.json", "results.txt", "comparison.txt", "answers.md")
 

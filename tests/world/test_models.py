@@ -8,7 +8,7 @@ from fractions import Fraction
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.shipped import shipped
+from roadproof.runtime.package_data import shipped
 from roadproof.world.models import load_road, load_vehicle, names_of, shared_boundaries
 
 ROAD = """

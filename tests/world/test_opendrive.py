@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.cli.main import main
 from roadproof.errors import InputError
+from roadproof.frontends.cli.main import main
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
 

@@ -5,15 +5,15 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from roadproof.effort import Effort
-from roadproof.preventing.proof import prove_of_scenarios
-from roadproof.proving.prover import Result
-from roadproof.searching.ask import Search
-from roadproof.searching.question import Objective, SearchOptions, Setting
-from roadproof.spec.bind import values_with
-from roadproof.spec.library import Library, Specification
-from roadproof.spec.query import Query
-from roadproof.study.shelf import specification_names
+from roadproof.analysis.study.evidence_store import specification_names
+from roadproof.engines.prove.driver_claims import prove_of_scenarios
+from roadproof.engines.prove.prover import Result
+from roadproof.engines.search.ask import Search
+from roadproof.engines.search.question import Objective, SearchOptions, Setting
+from roadproof.library.bind import values_with
+from roadproof.library.query import Query
+from roadproof.library.specification import Library, Specification
+from roadproof.runtime.budget import Effort
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 

@@ -6,7 +6,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from roadproof.effort import Effort
+from roadproof.analysis.study.evidence_store import Question, Shelf, specification_names
+from roadproof.engines.prove.doubt import Cause, Doubt, Stop, doubt_of
+from roadproof.engines.prove.properties import Task, find_label, name_of_claim
+from roadproof.engines.prove.prover import Result
+from roadproof.engines.search.settle import Settled, in_doubt, settle, settle_bounded
 from roadproof.errors import InputError
 from roadproof.evidence.answers import proofs as kept
 from roadproof.evidence.answers.proofs import SCHEMA
@@ -14,20 +18,16 @@ from roadproof.evidence.codec import ABSENT, read, write
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.traces import read_trace
-from roadproof.logic.own import told_freedom
-from roadproof.proving.doubt import Cause, Doubt, Stop, doubt_of
-from roadproof.proving.properties import Task, find_label, name_of_claim
-from roadproof.proving.prover import Result
-from roadproof.searching.settle import Settled, in_doubt, settle, settle_bounded
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification
-from roadproof.spec.query import Query
-from roadproof.stages import about
-from roadproof.study.shelf import Question, Shelf, specification_names
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import Library, Specification
+from roadproof.logic.custom_names import told_freedom
+from roadproof.runtime.budget import Effort
+from roadproof.runtime.progress import about
 from roadproof.verdict import ClaimVerdict, Verdict
 
 if TYPE_CHECKING:
-    from roadproof.searching.question import SearchOptions, Setting
+    from roadproof.engines.search.question import SearchOptions, Setting
 
 _BY_TRACE, _BY_DRIVE = "trace", "trace or drive"
 
@@ -140,7 +140,7 @@ class Claims:
         specification = self.specification_of(piece)
         query = read_claim(specification, piece.claim)
         if self.within is not None:
-            from roadproof.searching.ask import Search
+            from roadproof.engines.search.ask import Search
 
             settled = settle_bounded(Search(specification, query, *self.within))
         else:

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from itertools import combinations, permutations
 from typing import Literal
 
-from roadproof.spec.compose import both, eventually
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import LANE, Scenario, applied, vehicles_of
+from roadproof.library.compose import both, eventually
+from roadproof.library.query import Query
+from roadproof.library.scenarios import LANE, Scenario, applied, vehicles_of
+from roadproof.library.specification import Specification
 
 OTHER_LANE = "L2"
 

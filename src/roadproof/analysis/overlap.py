@@ -14,23 +14,23 @@ from typing import Any
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.placing import placed
-from roadproof.effort import Late
-from roadproof.elapsed import now, since
+from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.engines.prove.prover import Result
+from roadproof.engines.search.ask import ask
+from roadproof.engines.search.impossible import explain, parts, told_parts
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
+from roadproof.library.compose import both, either, negation
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, likes_of, numbers_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.proving.prover import Result
-from roadproof.searching.ask import ask
-from roadproof.searching.impossible import explain, parts, told_parts
-from roadproof.spec.compose import both, either, negation
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, likes_of, numbers_of
-from roadproof.study.shelf import Question, Shelf
+from roadproof.runtime.budget import Late
+from roadproof.runtime.timing import now, since
 from roadproof.verdict import DriveVerdict, Verdict
 
 

@@ -4,15 +4,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from roadproof.engines.search.impossible import parts
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged, RejectedError
-from roadproof.judge.exact import judge
+from roadproof.library.bind import bind, values_with
+from roadproof.library.query import Query
+from roadproof.library.specification import Library
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
-from roadproof.searching.impossible import parts
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.library import Library
-from roadproof.spec.query import Query
+from roadproof.semantics.exact.exact import judge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, names_of
 from roadproof.world.road import Lanelet, Road

@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.analysis.claims import Claims
+from roadproof.analysis.study.evidence_store import INDEX, write_index
+from roadproof.engines.prove.properties import name_of_claim
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.proofs import SCHEMA, Claim, Index, Record
 from roadproof.evidence.answers.read import index_fields
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
-from roadproof.proving.properties import name_of_claim
-from roadproof.spec.library import read_specification
-from roadproof.study.shelf import INDEX, write_index
+from roadproof.library.specification import read_specification
 
 Entries = dict[str, Claim]
 

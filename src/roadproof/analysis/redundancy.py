@@ -12,7 +12,9 @@ from typing import Any
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import judged_as, placed
-from roadproof.effort import Late
+from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.engines.search.ask import Search, ask
+from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
 from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word
 from roadproof.evidence.certificate import Certificate
@@ -20,20 +22,11 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.refutation import Countermodel, trace_data
 from roadproof.evidence.traces import read_trace
-from roadproof.judge.exact import judge
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula, is_state, subformulas
-from roadproof.logic.restore import as_syntax
-from roadproof.logic.show import text
-from roadproof.logic.syntax import Claim
-from roadproof.searching.ask import Search, ask
-from roadproof.searching.question import usual_road
-from roadproof.spec.bind import bind
-from roadproof.spec.compose import both, equivalence, implication, negation
-from roadproof.spec.elaborate import elaborate, read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import (
+from roadproof.library.bind import bind
+from roadproof.library.compose import both, equivalence, implication, negation
+from roadproof.library.elaborate import elaborate, read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import (
     Scenario,
     applied,
     is_sector,
@@ -42,7 +35,14 @@ from roadproof.spec.scenarios import (
     vehicles_of,
     without_sectors,
 )
-from roadproof.study.shelf import Question, Shelf
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, is_state, subformulas
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
+from roadproof.logic.syntax import Claim
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
 # How many drives are tried on other roads for a change inside a road sector.

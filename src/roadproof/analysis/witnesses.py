@@ -6,18 +6,18 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from roadproof.effort import Effort
+from roadproof.analysis.study.evidence_store import Question, Shelf, specification_names
+from roadproof.engines.search import ask
+from roadproof.engines.search.ask import Outcome, Search
+from roadproof.engines.search.impossible import Impossibility
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
 from roadproof.evidence.codec import read, write
+from roadproof.library.elaborate import read_claim
 from roadproof.logic import syntax
 from roadproof.logic.show import text
-from roadproof.searching import ask
-from roadproof.searching.ask import Outcome, Search
-from roadproof.searching.impossible import Impossibility
-from roadproof.spec.elaborate import read_claim
-from roadproof.study.shelf import Question, Shelf, specification_names
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 

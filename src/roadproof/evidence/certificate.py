@@ -17,14 +17,22 @@ from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import Lemma, Site, derive_lemma_queries, derive_query
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.strict import Fields, read_assuming, read_json, text
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import (
+    ALL_SCHEMAS,
+    NOTHING,
+    Assumed,
+    Axiom,
+    assumption,
+    value_texts,
+    values_said,
+)
+from roadproof.library.query import Query
+from roadproof.library.specification import Library, Specification, unknown
 from roadproof.logic import formula as f
+from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import Formula
-from roadproof.logic.pins import pins
 from roadproof.logic.rewrite import parameters_of, with_values
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification, unknown
-from roadproof.spec.motion import ALL_SCHEMAS, NOTHING, Assumed, Axiom, assumption, value_texts, values_said
-from roadproof.spec.query import Query
 
 SCHEMA = "roadproof/certificate/2"
 WITHOUT_TABLEAU = "roadproof/certificate/1"  # as files were written before, which are read too

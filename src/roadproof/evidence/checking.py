@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from roadproof.effort import Late
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
 from roadproof.evidence import certificate, drive_file
 from roadproof.evidence.answers.proofs import misnamed, shown
@@ -15,15 +14,16 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Acceptance, Finding, Ruled
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import Fields, read_json
-from roadproof.judge.exact import Judgement
-from roadproof.judge.replay import first_overlap
+from roadproof.library.bind import default_values, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import is_moving, statement
+from roadproof.library.scenarios import Scenario, applied, name_of
+from roadproof.library.specification import Library
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import parameters_of
-from roadproof.spec.bind import default_values, values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library
-from roadproof.spec.motion import is_moving, statement
-from roadproof.spec.scenarios import Scenario, applied, name_of
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.exact import Judgement
+from roadproof.semantics.exact.replay import first_overlap
 
 _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit
 

@@ -14,10 +14,10 @@ from typing import Any, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, is_rational, rational, read_json, text
-from roadproof.signals import KINDS, SIZES, STARTING
-from roadproof.spec.scenarios import LANE
+from roadproof.library.scenarios import LANE
 from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
+from roadproof.world.signals import KINDS, SIZES, STARTING
 
 SCHEMA = "roadproof/drive/1"
 JERK_SCHEMA = "roadproof/drive/2"

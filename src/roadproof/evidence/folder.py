@@ -32,8 +32,8 @@ from roadproof.evidence.kept import IndexLines
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.traces import judge_trace
-from roadproof.spec.library import Library
-from roadproof.spec.motion import statement
+from roadproof.library.motion import statement
+from roadproof.library.specification import Library
 
 INDEX = "index.json"
 OTHER_LIBRARY = "whether its words meant the same in the other library that its index names"

@@ -5,7 +5,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields
-from roadproof.spec.library import Library
+from roadproof.library.specification import Library
 
 HEADING = ("schema", "roadproof", "library", "signals", "prevention")
 _FINGERPRINT = re.compile("[0-9a-f]{16}")

@@ -21,8 +21,8 @@ from roadproof.evidence.answers.read import faults_of_record, read_record, recor
 from roadproof.evidence.answers.reader import FindLabel, without_labels
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json, read_json
 from roadproof.evidence.traces import judge_trace
-from roadproof.files import read_limited
-from roadproof.spec.library import Library
+from roadproof.library.specification import Library
+from roadproof.runtime.files import read_limited
 
 NAME = "answers.jsonl"
 HEAD, ANSWERS = "question.json", "answers"

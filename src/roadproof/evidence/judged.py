@@ -7,12 +7,12 @@ from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import DriveFile, drive_data
-from roadproof.judge.exact import Judgement, judge
-from roadproof.judge.replay import first_overlap
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification
-from roadproof.spec.query import Query
+from roadproof.library.bind import bind, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import Library, Specification
+from roadproof.semantics.exact.exact import Judgement, judge
+from roadproof.semantics.exact.replay import first_overlap
 from roadproof.verdict import Verdict
 
 _READ = "read of a file"

@@ -12,9 +12,11 @@ from math import ceil
 from typing import assert_never
 
 from roadproof.errors import InputError
-from roadproof.judge.algebraic import moved
-from roadproof.judge.exact import seconds
-from roadproof.judge.truth import (
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.semantics.exact.algebraic import moved
+from roadproof.semantics.exact.exact import seconds
+from roadproof.semantics.exact.truth import (
     ALWAYS,
     NEVER,
     Cut,
@@ -26,8 +28,6 @@ from roadproof.judge.truth import (
     union,
     until,
 )
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula
 
 MOST_ROUNDS = 2000
 

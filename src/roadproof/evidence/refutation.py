@@ -13,18 +13,18 @@ from typing import Any, Literal, assert_never
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import road_data
 from roadproof.evidence.periodic import Loop, judge_periodic
-from roadproof.judge import TruthSet, judge
-from roadproof.judge.signals import AbstractSignals
-from roadproof.judge.truth import from_switches
+from roadproof.library.bind import bind
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.node import once
 from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
-from roadproof.signals import FIXED
-from roadproof.spec.bind import bind
+from roadproof.semantics.exact import TruthSet, judge
+from roadproof.semantics.exact.signals import AbstractSignals
+from roadproof.semantics.exact.truth import from_switches
 from roadproof.world.models import check_lanelets, shared_boundaries
 from roadproof.world.road import Road
+from roadproof.world.signals import FIXED
 
 Held = Literal["before", "after"]
 NOWHERE = Road("no road", (), frozenset())

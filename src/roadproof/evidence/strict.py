@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from roadproof.errors import InputError
-from roadproof.files import read_limited
+from roadproof.runtime.files import read_limited
 
 LARGEST_EVIDENCE = 5_000_000  # bytes of a certificate or a drive file
 LARGEST_INDEX = 50_000_000  # bytes of an index, and of a journal

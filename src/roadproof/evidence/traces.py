@@ -9,10 +9,10 @@ from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.periodic import Loop
 from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of
 from roadproof.evidence.strict import Fields, rational
-from roadproof.spec.bind import values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.motion import under_limits
+from roadproof.library.bind import values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import under_limits
+from roadproof.library.specification import Specification
 
 _BETWEEN: dict[str, Held] = {
     "the state of the instant before": "before",

@@ -16,7 +16,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
-from roadproof.signals import SIGNALS, SignalName
+from roadproof.world.signals import SIGNALS, SignalName
 
 RATES: Mapping[SignalName, SignalName] = {
     about.rate_of: name for name, about in SIGNALS.items() if about.rate_of is not None

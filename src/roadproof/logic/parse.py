@@ -21,13 +21,13 @@ from lark.exceptions import (
 from lark.tree import Meta
 from lark.visitors import Transformer_NonRecursive
 
-from roadproof.cache import remembered
 from roadproof.errors import Position, TextError
 from roadproof.logic import syntax
 from roadproof.logic.each import instances
-from roadproof.logic.foreign import find_foreign
+from roadproof.logic.foreign_syntax import find_foreign
 from roadproof.logic.syntax import Expression, Statement
-from roadproof.units import UNITS
+from roadproof.runtime.cache import remembered
+from roadproof.world.units import UNITS
 
 DEEPEST_NESTING = 100
 LONGEST_NUMBER = 200
@@ -117,7 +117,8 @@ def _grammar() -> str:
 def _version() -> str:
     """All that trees depend on besides the text: grammar, the source of what makes them, lark, Python."""
     here = Path(__file__).parent
-    sources = (path.read_text("utf-8") for path in sorted((*here.glob("*.py"), *here.parent.glob("*.py"))))
+    others = (here.parent / name for name in ("errors.py", "world/signals.py", "world/units.py"))
+    sources = (path.read_text("utf-8") for path in sorted((*here.glob("*.py"), *others)))
     return "\0".join((_grammar(), *sources, lark.__version__, sys.version))
 
 

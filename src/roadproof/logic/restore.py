@@ -16,8 +16,8 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.syntax import Binary, BinaryOperator, Bounds, Call, Expression, Literal_, Name, Prefix
 from roadproof.logic.terms import Dimension, Term
-from roadproof.signals import KINDS, Kind
-from roadproof.units import SI
+from roadproof.world.signals import KINDS, Kind
+from roadproof.world.units import SI
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 

@@ -35,7 +35,7 @@ from roadproof.logic.terms import (
 )
 from roadproof.logic.terms import children as terms_in
 from roadproof.logic.terms import with_children as with_terms
-from roadproof.signals import SIGNALS, SignalName
+from roadproof.world.signals import SIGNALS, SignalName
 
 
 def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:

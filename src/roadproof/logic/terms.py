@@ -10,11 +10,11 @@ from fractions import Fraction
 from typing import TypeAlias, assert_never
 
 from roadproof.logic.node import node
-from roadproof.signals import SIGNAL_DIMENSIONS as SIGNAL_DIMENSIONS
-from roadproof.signals import SIZE_DIMENSIONS as SIZE_DIMENSIONS
-from roadproof.signals import SignalName as SignalName
-from roadproof.signals import SizeName as SizeName
-from roadproof.units import Dimension as Dimension
+from roadproof.world.signals import SIGNAL_DIMENSIONS as SIGNAL_DIMENSIONS
+from roadproof.world.signals import SIZE_DIMENSIONS as SIZE_DIMENSIONS
+from roadproof.world.signals import SignalName as SignalName
+from roadproof.world.signals import SizeName as SizeName
+from roadproof.world.units import Dimension as Dimension
 
 
 @node

@@ -1,0 +1,4 @@
+"""Signals, units, vehicles, roads, drives and their motion.
+
+Imports neither logic nor library.
+"""

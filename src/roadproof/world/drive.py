@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias
 
-from roadproof.signals import Kind
+from roadproof.world.signals import Kind
 
 # Values that are constant from one start to the next.
 Course: TypeAlias = tuple[tuple[Fraction, Fraction], ...]

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any, cast, get_args
 
 from roadproof.errors import InputError
-from roadproof.shipped import shipped
-from roadproof.signals import KINDS, LIMITED
+from roadproof.runtime.package_data import shipped
 from roadproof.world.opendrive import read_lanelets
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
+from roadproof.world.signals import KINDS, LIMITED
 from roadproof.world.vehicle import Range, Vehicle
 
 LARGEST_MODEL = 1_000_000

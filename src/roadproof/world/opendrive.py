@@ -15,7 +15,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.markup import Element, read_xml
+from roadproof.runtime.xml_reader import Element, read_xml
 from roadproof.world.road import Attribute, Lanelet, Zone
 
 RAMPS: Mapping[str, Attribute] = {

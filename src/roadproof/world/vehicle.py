@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.errors import UsageError
-from roadproof.signals import LIMITED, SIGNALS, Kind
+from roadproof.world.signals import LIMITED, SIGNALS, Kind
 
 Range = tuple[Fraction, Fraction]
 

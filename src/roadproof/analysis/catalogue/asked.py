@@ -15,13 +15,10 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.gaps import GapKinds, gap_kinds
 from roadproof.analysis.classify.classes import Class, Classes, Group, Plan
 from roadproof.errors import UsageError
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula
-from roadproof.spec.bind import bind
-from roadproof.spec.compose import both, negation
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import (
+from roadproof.library.bind import bind
+from roadproof.library.compose import both, negation
+from roadproof.library.query import Query
+from roadproof.library.scenarios import (
     LANE,
     PAIR,
     TRIPLE,
@@ -37,6 +34,9 @@ from roadproof.spec.scenarios import (
     sector,
     vehicles_of,
 )
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
 from roadproof.world.road import Road
 
 NOWHERE = "no class"

@@ -15,19 +15,19 @@ from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.placing import judged_as
-from roadproof.effort import Late
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Progress
+from roadproof.engines.search.ask import answer
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
-from roadproof.hands import Jobs
-from roadproof.searching.ask import answer
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, name_of, number_in
-from roadproof.study import pool
-from roadproof.study.pool import Progress
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, applied, name_of, number_in
+from roadproof.library.specification import Specification
+from roadproof.runtime.budget import Late
+from roadproof.runtime.executors import Jobs
 
 Begins: TypeAlias = Mapping[str, float]
 

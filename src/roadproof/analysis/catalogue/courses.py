@@ -9,9 +9,9 @@ from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import play_drive, roles_of
 from roadproof.analysis.catalogue.traces import first_trace
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import OneTrace, is_pair
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.spec.scenarios import PAIR, SUBJECT, TRIPLE
+from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
+from roadproof.recordings.evaluate.one_trace import OneTrace, is_pair
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
 

@@ -11,19 +11,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.errors import InputError
-from roadproof.evaluation.courses import BEGINS
-from roadproof.evaluation.one_trace import OneTrace
-from roadproof.evidence.drive_file import DriveFile
-from roadproof.judge.algebraic import approximate
-from roadproof.judge.exact import judge
-from roadproof.judge.truth import Cut, TruthSet
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import with_values
-from roadproof.monitoring.compiled import compile
-from roadproof.preventing.manoeuvres import ManoeuvreName
-from roadproof.preventing.margins import (
+from roadproof.drivers.manoeuvres import ManoeuvreName
+from roadproof.drivers.margins import (
     Boundary,
     State,
     boundary_of,
@@ -32,12 +21,23 @@ from roadproof.preventing.margins import (
     holds_in,
     margin,
 )
-from roadproof.preventing.models import MODELS, course_in, foreseen, unpreventable
-from roadproof.signals import SIGNALS
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import danger, endangered, number_in
+from roadproof.drivers.models import MODELS, course_in, foreseen, unpreventable
+from roadproof.errors import InputError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import danger, endangered, number_in
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import with_values
+from roadproof.recordings.evaluate.courses import BEGINS
+from roadproof.recordings.evaluate.one_trace import OneTrace
+from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.truth import Cut, TruthSet
+from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.motion import state_at
+from roadproof.world.signals import SIGNALS
 
 Side: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
 DANGER = "in danger"

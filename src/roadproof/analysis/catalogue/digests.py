@@ -4,10 +4,10 @@ import hashlib
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import is_pair
-from roadproof.formats.samples import ROAD_ENDING
-from roadproof.formats.source import beside
-from roadproof.formats.sources import find_source
+from roadproof.recordings.evaluate.one_trace import is_pair
+from roadproof.recordings.formats.samples import ROAD_ENDING
+from roadproof.recordings.formats.source import beside
+from roadproof.recordings.formats.sources import find_source
 
 
 def digest_of(place: str) -> str:

@@ -19,12 +19,12 @@ from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
 from roadproof.analysis.catalogue.tested import targets_of, tested
 from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import divide
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Progress
+from roadproof.drivers.restriction import restriction_of, said_in, unrestricted
 from roadproof.errors import RoadproofError, UsageError
-from roadproof.hands import Jobs
-from roadproof.preventing.restriction import restriction_of, said_in, unrestricted
-from roadproof.spec.library import Specification
-from roadproof.study import pool
-from roadproof.study.pool import Progress
+from roadproof.library.specification import Specification
+from roadproof.runtime.executors import Jobs
 
 BATCH = 20
 

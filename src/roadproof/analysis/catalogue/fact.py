@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal, TypeAlias, get_args
 
+from roadproof.analysis.study.evidence_store import Shelf
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
 from roadproof.evidence.strict import rational
-from roadproof.spec.compose import both, implication, negation
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.study.shelf import Shelf
+from roadproof.library.compose import both, implication, negation
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
 from roadproof.verdict import Verdict
 
 Relation: TypeAlias = Literal["implies", "excludes", "shows", "runs", "empty", "reaches", "open"]

@@ -3,12 +3,12 @@
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
-from roadproof.searching.variety import CLEARLY
-from roadproof.spec.compose import both
-from roadproof.spec.elaborate import read_claim, read_term
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.units import unit_text
+from roadproof.engines.search.variety import CLEARLY
+from roadproof.library.compose import both
+from roadproof.library.elaborate import read_claim, read_term
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.world.units import unit_text
 
 FACTORS = (Fraction(6), Fraction(3), Fraction(3, 2), Fraction(3, 4))
 """How far is tried, from the farthest on."""

@@ -7,7 +7,7 @@ from roadproof.analysis.catalogue.asked import Asked
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.tested import Target, TestedGaps, sectors_of, targets_of
-from roadproof.spec.scenarios import number_in
+from roadproof.library.scenarios import number_in
 
 SCENARIOS, CLASSES, GAPS = "scenarios", "classes", "classes of gaps"
 

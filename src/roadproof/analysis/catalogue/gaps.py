@@ -12,14 +12,11 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.classes import GapClasses, GapSurvey
 from roadproof.analysis.coverage.parts import Part
 from roadproof.analysis.coverage.study import Coverage
+from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import UsageError
-from roadproof.evaluation.one_trace import OneTrace
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.monitoring.compiled import compile
-from roadproof.preventing.restriction import restriction_of
-from roadproof.spec.bind import bind
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import (
+from roadproof.library.bind import bind
+from roadproof.library.scenarios import (
     PAIR,
     TEMPLATE,
     Scenario,
@@ -29,7 +26,10 @@ from roadproof.spec.scenarios import (
     number_in,
     vehicles_of,
 )
-from roadproof.spec.words import called
+from roadproof.library.specification import Specification
+from roadproof.library.words import called
+from roadproof.recordings.evaluate.one_trace import OneTrace
+from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 

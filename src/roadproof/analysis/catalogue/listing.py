@@ -14,12 +14,12 @@ from typing import Any
 from roadproof.analysis.catalogue.entries import Abstract, Concrete, Entry
 from roadproof.analysis.catalogue.fragments import Fragment, fragments
 from roadproof.errors import InputError, RoadproofError
-from roadproof.spec.compose import always, both
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification, unknown
-from roadproof.spec.motion import split
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import claimed
+from roadproof.library.compose import always, both
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import split
+from roadproof.library.query import Query
+from roadproof.library.scenarios import claimed
+from roadproof.library.specification import Specification, unknown
 from roadproof.world.models import load_road, load_vehicle
 
 FILE_NAME = "catalogue.toml"

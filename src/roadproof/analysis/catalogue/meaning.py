@@ -24,18 +24,18 @@ from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides,
 from roadproof.analysis.coverage import pieces
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.placing import judged_as
-from roadproof.effort import Late
+from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.engines.search.ask import Outcome, Search, answer
+from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
 from roadproof.evidence.answers.catalogue import SCHEMA
 from roadproof.evidence.judged import Judged
-from roadproof.judge.exact import judge
-from roadproof.searching.ask import Outcome, Search, answer
-from roadproof.searching.question import SearchOptions, Setting
-from roadproof.spec.bind import bind
-from roadproof.spec.compose import both
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, name_of, number_in
-from roadproof.study.shelf import Question, Shelf
+from roadproof.library.bind import bind
+from roadproof.library.compose import both
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, applied, name_of, number_in
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
 

@@ -9,10 +9,6 @@ from fractions import Fraction
 from functools import reduce
 from typing import TypeAlias, assert_never
 
-from roadproof.judge.algebraic import Root, approximate
-from roadproof.judge.exact import Judgement, judge, seconds
-from roadproof.judge.signals import Courses, Signals
-from roadproof.judge.truth import Span, TruthSet, complement, intersection, interval
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -20,7 +16,11 @@ from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Definition
 from roadproof.logic.terms import Term
-from roadproof.units import SI, Dimension
+from roadproof.semantics.exact.algebraic import Root, approximate
+from roadproof.semantics.exact.exact import Judgement, judge, seconds
+from roadproof.semantics.exact.signals import Courses, Signals
+from roadproof.semantics.exact.truth import Span, TruthSet, complement, intersection, interval
+from roadproof.world.units import SI, Dimension
 
 MOST_INSTANTS = 12
 """Instants at which the body of an eventuality is looked at."""

@@ -6,10 +6,10 @@ from itertools import count, permutations, product
 
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import OneTrace
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.spec.library import unknown
-from roadproof.spec.scenarios import PAIR, SUBJECT
+from roadproof.library.scenarios import PAIR, SUBJECT
+from roadproof.library.specification import unknown
+from roadproof.recordings.evaluate.one_trace import OneTrace
 
 UNDER_TEST = frozenset(
     {

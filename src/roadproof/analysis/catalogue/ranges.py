@@ -17,14 +17,14 @@ from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.explore.extreme import Sought, find_extreme
 from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.analysis.placing import judged_as
-from roadproof.effort import Late
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import Judged
-from roadproof.spec.compose import both
-from roadproof.spec.elaborate import read_term
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.units import unit_text
+from roadproof.library.compose import both
+from roadproof.library.elaborate import read_term
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.runtime.budget import Late
+from roadproof.world.units import unit_text
 
 EFFORT = 6.0
 """Most units of work for one search."""

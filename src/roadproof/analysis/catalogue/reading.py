@@ -8,14 +8,14 @@ from pathlib import Path
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Entry
 from roadproof.analysis.catalogue.listing import FILE_NAME, listed, unreadable_file
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import is_pair
 from roadproof.evidence.answers.catalogue import SCHEMA
 from roadproof.evidence.drive_file import SCHEMAS_READ
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.journal import HEAD
-from roadproof.formats.samples import HEADER
-from roadproof.formats.source import TRACK_FILES, first_line
-from roadproof.spec.library import Specification
+from roadproof.library.specification import Specification
+from roadproof.recordings.evaluate.one_trace import is_pair
+from roadproof.recordings.formats.samples import HEADER
+from roadproof.recordings.formats.source import TRACK_FILES, first_line
 
 _LOOK = 400  # bytes of a file that tell what it is
 

@@ -7,14 +7,14 @@ from fractions import Fraction
 from typing import Any, Literal, TypeAlias
 
 from roadproof.analysis.catalogue.showing import Freedom
+from roadproof.drivers.models import MODELS
+from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.strict import Fields
-from roadproof.preventing.models import MODELS
-from roadproof.preventing.restriction import restriction_of
-from roadproof.spec.bind import values_with
-from roadproof.spec.library import Specification, on_request, unknown
-from roadproof.spec.scenarios import numbers_of
-from roadproof.units import UNITS
+from roadproof.library.bind import values_with
+from roadproof.library.scenarios import numbers_of
+from roadproof.library.specification import Specification, on_request, unknown
+from roadproof.world.units import UNITS
 
 Look: TypeAlias = Literal["fixed", "any"]
 NEAR = 0.5

@@ -15,8 +15,8 @@ from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.catalogue.tested import Remark, Target, Tested, all_facts, targets_of, tested
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.preventing.restriction import restriction_of
-from roadproof.spec.bind import values_with
+from roadproof.drivers.restriction import restriction_of
+from roadproof.library.bind import values_with
 
 
 @dataclass(frozen=True)

@@ -20,21 +20,21 @@ from roadproof.analysis.catalogue.playing import (
 )
 from roadproof.analysis.catalogue.traces import is_samples, traces_of
 from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
+from roadproof.drivers.restriction import restriction_of, unrestricted
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import OneTrace, is_pair
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.judge.algebraic import approximate
-from roadproof.judge.exact import judge
-from roadproof.judge.signals import DriveSignals
-from roadproof.judge.truth import START, Cut, TruthSet
+from roadproof.library.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in
+from roadproof.library.scenarios import roles as scenario_roles
+from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
-from roadproof.monitoring.compiled import compile
-from roadproof.preventing.restriction import restriction_of, unrestricted
-from roadproof.signals import SignalName
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in
-from roadproof.spec.scenarios import roles as scenario_roles
+from roadproof.recordings.evaluate.one_trace import OneTrace, is_pair
+from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.signals import DriveSignals
+from roadproof.semantics.exact.truth import START, Cut, TruthSet
+from roadproof.semantics.sampled.compiled import compile
+from roadproof.world.signals import SignalName
 
 _STATE: tuple[SignalName, ...] = ("s", "d", "v_lon")
 ENDANGERED = "endangered"

@@ -16,15 +16,15 @@ from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, decisions_on
 from roadproof.analysis.placing import judged_as
+from roadproof.drivers.models import MODELS
+from roadproof.drivers.restriction import Restriction, Side, check_library, files_for, said_in
+from roadproof.engines.search.ask import Search, answer
+from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
 from roadproof.evidence.judged import Judged
-from roadproof.preventing.models import MODELS
-from roadproof.preventing.restriction import Restriction, Side, check_library, files_for, said_in
-from roadproof.searching.ask import Search, answer
-from roadproof.searching.question import SearchOptions, Setting
-from roadproof.spec.compose import both
-from roadproof.spec.library import Library, Source, Specification, load_library
-from roadproof.spec.scenarios import Scenario, applied, number_in
+from roadproof.library.compose import both
+from roadproof.library.scenarios import Scenario, applied, number_in
+from roadproof.library.specification import Library, Source, Specification, load_library
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.meaning import Kept, facts_in
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer, Freedom, why_not
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.preventing.restriction import restriction_of
-from roadproof.spec.scenarios import name_of
-from roadproof.spec.words import called
+from roadproof.drivers.restriction import restriction_of
+from roadproof.library.scenarios import name_of
+from roadproof.library.words import called
 from roadproof.verdict import Verdict
 
 

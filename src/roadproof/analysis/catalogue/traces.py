@@ -7,10 +7,10 @@ from pathlib import Path
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import checked, chosen_vehicles, play_samples, roles_of
 from roadproof.errors import InputError
-from roadproof.evaluation.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
-from roadproof.formats.recording import Recording
-from roadproof.formats.sources import find_source
-from roadproof.spec.scenarios import PAIR, TRIPLE
+from roadproof.library.scenarios import PAIR, TRIPLE
+from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.sources import find_source
 
 MOST_VEHICLES = 8
 """In a scenario of CommonRoad of which no vehicles are named."""

@@ -7,14 +7,14 @@ from fractions import Fraction
 from roadproof.analysis.catalogue.asked import Asked, Happens
 from roadproof.analysis.catalogue.nearest import FalsePart, first_false_part, told
 from roadproof.errors import RoadproofError
-from roadproof.judge.exact import judge
-from roadproof.judge.signals import AbstractSignals, Signals
+from roadproof.library.scenarios import name_of, numbers_of
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.monitoring.batch import Batch
-from roadproof.signals import SIGNALS
-from roadproof.spec.scenarios import name_of, numbers_of
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.signals import AbstractSignals, Signals
+from roadproof.semantics.sampled.batch import Batch
 from roadproof.world.road import Road
+from roadproof.world.signals import SIGNALS
 
 _Roles = tuple[tuple[str, ...], tuple[str, ...]]
 

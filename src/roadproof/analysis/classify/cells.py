@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from roadproof.analysis.basis import Basis
-from roadproof.spec.compose import both, equivalence, implication, negation
-from roadproof.spec.query import Query
+from roadproof.library.compose import both, equivalence, implication, negation
+from roadproof.library.query import Query
 
 REFINING = 2.0  # units of work for one proof
 

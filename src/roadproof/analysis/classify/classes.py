@@ -12,13 +12,11 @@ from dataclasses import dataclass
 from itertools import product
 
 from roadproof.analysis.classify.cells import Axis, Cell
+from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError, TextError, UsageError
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import without_names
-from roadproof.spec.elaborate import apply_definition
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import (
+from roadproof.library.elaborate import apply_definition
+from roadproof.library.query import Query
+from roadproof.library.scenarios import (
     LANE,
     PAIR,
     TEMPLATE,
@@ -35,8 +33,10 @@ from roadproof.spec.scenarios import (
     sector_words,
     vehicles_of,
 )
-from roadproof.spec.scenarios import name_of as scenario_name
-from roadproof.study.shelf import specification_names
+from roadproof.library.scenarios import name_of as scenario_name
+from roadproof.library.specification import Specification
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
 
 SET_NAME = "classes"
 FILE_NAME = "classes.spec"

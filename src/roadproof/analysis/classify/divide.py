@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, refine, whole_cell
 from roadproof.analysis.classify.classes import Classes, Plan, what_axis, where_axis
-from roadproof.effort import Late
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Progress
 from roadproof.evidence.answers.classify import Doubt
-from roadproof.hands import Jobs
-from roadproof.spec.query import Query
-from roadproof.study import pool
-from roadproof.study.pool import Progress
+from roadproof.library.query import Query
+from roadproof.runtime.budget import Late
+from roadproof.runtime.executors import Jobs
 
 
 @dataclass(frozen=True)

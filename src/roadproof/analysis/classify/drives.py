@@ -10,14 +10,14 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.explore.parts import with_parts
 from roadproof.analysis.placing import placed, placed_on, zones_of
-from roadproof.effort import Late
+from roadproof.engines.search.ask import ask
+from roadproof.engines.search.question import usual_road
 from roadproof.evidence.answers.classify import Word
 from roadproof.evidence.judged import Judged
-from roadproof.searching.ask import ask
-from roadproof.searching.question import usual_road
-from roadproof.spec.compose import both
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import sector
+from roadproof.library.compose import both
+from roadproof.library.query import Query
+from roadproof.library.scenarios import sector
+from roadproof.runtime.budget import Late
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+from roadproof.analysis.study.evidence_store import INDEX, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import SCHEMA
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, head_of, read_kept
 from roadproof.evidence.strict import LARGEST_INDEX, read_json
-from roadproof.study.shelf import INDEX, Question
 
 KINDS = ("drives", "proofs")
 

@@ -12,10 +12,18 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.analysis.classify.classes import Class, Classes
-from roadproof.evaluation.counting import Counted, without_repeats
-from roadproof.evaluation.evaluate import Findings, evaluate_recording
-from roadproof.evaluation.lane_atoms import OTHER_LANE
-from roadproof.evaluation.questions import (
+from roadproof.engines.search.impossible import parts
+from roadproof.evidence.answers import classify
+from roadproof.library.elaborate import apply_definition
+from roadproof.library.scenarios import LANE, PAIR, TRIPLE, disturbance, name_of, number_in
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import with_values
+from roadproof.recordings.evaluate.counting import Counted, without_repeats
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE
+from roadproof.recordings.evaluate.questions import (
     ROLES,
     START,
     MonitorKey,
@@ -24,16 +32,8 @@ from roadproof.evaluation.questions import (
     ask,
     of_three,
 )
-from roadproof.evidence.answers import classify
-from roadproof.formats.recording import Recording
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import with_values
-from roadproof.monitoring.compiled import compile
-from roadproof.searching.impossible import parts
-from roadproof.spec.elaborate import apply_definition
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import LANE, PAIR, TRIPLE, disturbance, name_of, number_in
+from roadproof.recordings.formats.recording import Recording
+from roadproof.semantics.sampled.compiled import compile
 
 Situation: TypeAlias = tuple[str, int, int, int | None, str]
 """Recording, SV, POV, POV2 or None, lane."""

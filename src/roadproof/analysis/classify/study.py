@@ -11,14 +11,14 @@ from roadproof.analysis.classify.divide import Division
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.text import ClassClaim, claims_of, with_classes, write_classes
-from roadproof.effort import Late
+from roadproof.analysis.study.evidence_store import Question, Shelf
 from roadproof.errors import InputError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.answers.classify import SCHEMA, Doubt
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
-from roadproof.study.shelf import Question, Shelf
+from roadproof.runtime.budget import Late
 from roadproof.verdict import ProofVerdict, Verdict
 
 CLAIMS_IN_A_PIECE = 8

@@ -14,13 +14,13 @@ from roadproof.analysis.classify.classes import (
     what_axis,
     where_axis,
 )
+from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Kind
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Source, Specification, build_library
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import name_of
-from roadproof.study.shelf import specification_names
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import name_of
+from roadproof.library.specification import Source, Specification, build_library
 
 WIDTH = 110
 

@@ -6,14 +6,14 @@ from typing import Any
 
 from roadproof.analysis.coverage.classes import GapGroup
 from roadproof.analysis.coverage.parts import Part
+from roadproof.analysis.study.evidence_store import Shelf
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.study.shelf import Shelf
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
 from roadproof.verdict import Verdict
 
 

@@ -9,14 +9,10 @@ from dataclasses import dataclass
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import zones_of
-from roadproof.effort import Late
 from roadproof.evidence.certificate import Certificate
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import without_names
-from roadproof.spec.compose import both, either, eventually, implication, in_some_lane, negation
-from roadproof.spec.library import Library, Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import (
+from roadproof.library.compose import both, either, eventually, implication, in_some_lane, negation
+from roadproof.library.query import Query
+from roadproof.library.scenarios import (
     LANE,
     PAIR,
     SUBJECT,
@@ -31,6 +27,10 @@ from roadproof.spec.scenarios import (
     sector,
     vehicles_of,
 )
+from roadproof.library.specification import Library, Specification
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
+from roadproof.runtime.budget import Late
 from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
 

@@ -14,13 +14,13 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.claims import missed, numbers_on, sectors_of
 from roadproof.analysis.coverage.parts import Part, parts_of
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.judge.exact import judge
+from roadproof.library.bind import bind
+from roadproof.library.compose import either, in_some_lane, with_vehicles
+from roadproof.library.query import Query
+from roadproof.library.scenarios import LANE, PAIR, likes_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.spec.bind import bind
-from roadproof.spec.compose import either, in_some_lane, with_vehicles
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import LANE, PAIR, likes_of
+from roadproof.semantics.exact.exact import judge
 from roadproof.world.road import Road
 
 

@@ -8,12 +8,12 @@ from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.simple import HORIZON, simple_drives
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.judge.exact import judge
-from roadproof.judge.replay import first_breach, first_overlap
+from roadproof.library.bind import bind
+from roadproof.library.scenarios import PAIR, danger_comes
+from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import transform
-from roadproof.logic.own import own_of
-from roadproof.spec.bind import bind
-from roadproof.spec.scenarios import PAIR, danger_comes
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.world.models import load_vehicle
 from roadproof.world.road import Road
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.judge.exact import judge
-from roadproof.judge.replay import first_breach, first_overlap
-from roadproof.spec.bind import bind, values_with
-from roadproof.spec.library import Library
-from roadproof.spec.query import Query
+from roadproof.library.bind import bind, values_with
+from roadproof.library.query import Query
+from roadproof.library.specification import Library
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.world.drive import Motion, Piece
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import starts_of

@@ -14,18 +14,18 @@ from roadproof.analysis.coverage.claims import (
 )
 from roadproof.analysis.coverage.simple import HORIZON, ZERO, simple_drives
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.effort import Late
+from roadproof.engines.prove.prover import prove
 from roadproof.evidence.answers.coverage import NeedVerdict
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
-from roadproof.judge.exact import judge
-from roadproof.judge.replay import first_breach, first_overlap
+from roadproof.library.bind import bind
+from roadproof.library.scenarios import PAIR, danger_comes
+from roadproof.library.specification import Specification
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.proving.prover import prove
-from roadproof.spec.bind import bind
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import PAIR, danger_comes
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle

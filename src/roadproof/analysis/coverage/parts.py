@@ -8,15 +8,15 @@ part out means putting true in its place, so that what is left holds wherever th
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from roadproof.library.elaborate import elaborate
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, applied, is_disturbance
+from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim
-from roadproof.spec.elaborate import elaborate
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, is_disturbance
 
 Rebuild = Callable[[Formula], Formula]
 

@@ -7,7 +7,7 @@ from roadproof.analysis.coverage.answers import Answers
 from roadproof.analysis.coverage.claims import Covered
 from roadproof.analysis.coverage.found import FoundGap
 from roadproof.analysis.coverage.needed import Need
-from roadproof.spec.query import Query
+from roadproof.library.query import Query
 
 
 @dataclass(frozen=True)

@@ -12,16 +12,16 @@ from roadproof.analysis.coverage.minimal import simplest
 from roadproof.analysis.coverage.parts import Part
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.placing import judged_as, placed
-from roadproof.effort import Late
+from roadproof.engines.search.ask import ask
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
-from roadproof.judge.exact import judge
-from roadproof.searching.ask import ask
-from roadproof.spec.bind import bind
-from roadproof.spec.compose import both, conjuncts, either, eventually, implication, negation
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import LANE, PAIR, Scenario, applied, danger
+from roadproof.library.bind import bind
+from roadproof.library.compose import both, conjuncts, either, eventually, implication, negation
+from roadproof.library.query import Query
+from roadproof.library.scenarios import LANE, PAIR, Scenario, applied, danger
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 

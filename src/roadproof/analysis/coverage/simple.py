@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
-from roadproof.spec.scenarios import PAIR
+from roadproof.library.scenarios import PAIR
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle

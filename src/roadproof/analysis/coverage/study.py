@@ -29,11 +29,11 @@ from roadproof.analysis.coverage.pieces import (
 from roadproof.analysis.coverage.settling import Settling
 from roadproof.analysis.coverage.surveyed import Surveyed, is_covered
 from roadproof.analysis.coverage.trial import Trials
+from roadproof.analysis.study.evidence_store import Question, Shelf
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
 from roadproof.evidence.codec import read, write
-from roadproof.study.shelf import Question, Shelf
 from roadproof.verdict import Verdict
 
 CHUNKS = 7

@@ -14,17 +14,17 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic
 from roadproof.errors import InputError
-from roadproof.evaluation.counting import Counted, without_repeats
-from roadproof.evaluation.evaluate import evaluate_recording
-from roadproof.evaluation.one_trace import OneTrace, cut_trace
-from roadproof.evaluation.questions import Settings, ask
-from roadproof.formats.recording import Recording
-from roadproof.formats.source import RecordingSource
-from roadproof.formats.sources import copies_among, find_sources
-from roadproof.monitoring.batch import Array, Batch
-from roadproof.monitoring.compiled import Monitor, compile
-from roadproof.spec.bind import bind
-from roadproof.spec.scenarios import MIN_DANGER, PAIR
+from roadproof.library.bind import bind
+from roadproof.library.scenarios import MIN_DANGER, PAIR
+from roadproof.recordings.evaluate.counting import Counted, without_repeats
+from roadproof.recordings.evaluate.evaluate import evaluate_recording
+from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
+from roadproof.recordings.evaluate.questions import Settings, ask
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.source import RecordingSource
+from roadproof.recordings.formats.sources import copies_among, find_sources
+from roadproof.semantics.sampled.batch import Array, Batch
+from roadproof.semantics.sampled.compiled import Monitor, compile
 from roadproof.world.road import Road
 
 TAIL = 3.0  # seconds, more than the windows of a scenario reach together

@@ -6,10 +6,10 @@ from itertools import combinations
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.claims import missed, numbers_on, replaced_in, sectors_of
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.judge.exact import judge
+from roadproof.library.bind import bind
+from roadproof.library.specification import Specification
 from roadproof.logic.formula import Formula
-from roadproof.spec.bind import bind
-from roadproof.spec.library import Specification
+from roadproof.semantics.exact.exact import judge
 from roadproof.world.road import Road
 
 TRIAL = "trial"

@@ -7,10 +7,10 @@ from itertools import product
 from roadproof.analysis.explore.knobs import Knob, Point, stated
 from roadproof.analysis.explore.measure import Measure
 from roadproof.analysis.explore.parts import with_parts
+from roadproof.engines.search.ask import Search
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import Judged
-from roadproof.searching.ask import Search
-from roadproof.spec.query import Query
+from roadproof.library.query import Query
 from roadproof.verdict import DriveVerdict, Verdict
 
 

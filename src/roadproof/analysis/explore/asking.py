@@ -12,15 +12,15 @@ from typing import TypeAlias
 from roadproof.analysis.explore.answer import Explorable
 from roadproof.analysis.explore.knobs import Knob
 from roadproof.analysis.explore.measure import Measure, Sense, read_measure
+from roadproof.engines.search.ask import Search
+from roadproof.engines.search.question import Setting
 from roadproof.errors import UsageError
+from roadproof.library.query import Query
+from roadproof.library.specification import Library, unknown
+from roadproof.library.values import Number, exact
 from roadproof.logic.rewrite import parameters_of
-from roadproof.searching.ask import Search
-from roadproof.searching.question import Setting
-from roadproof.spec.library import Library, unknown
-from roadproof.spec.query import Query
-from roadproof.spec.values import Number, exact
-from roadproof.units import UNITS, unit_text
 from roadproof.world.models import load_vehicle
+from roadproof.world.units import UNITS, unit_text
 from roadproof.world.vehicle import LIMITS, with_limits
 
 _LIMIT = re.compile(r"(\w+)\.(\w+)\.(min|max)")

@@ -30,21 +30,21 @@ from roadproof.analysis.explore.search import (
     values_of,
 )
 from roadproof.analysis.explore.values import PROOF, QUICK_PROOF, LookAll, look_one_by_one
-from roadproof.effort import Late
-from roadproof.encode.along import names_places
+from roadproof.analysis.study.pool import Say
+from roadproof.engines.encode.along import names_places
+from roadproof.engines.search.ask import Search
+from roadproof.engines.search.impossible import show_impossible
+from roadproof.engines.search.question import pose
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged, judge_file
-from roadproof.judge.signals import Courses, DriveSignals
+from roadproof.library.bind import bind
+from roadproof.library.query import Query
 from roadproof.logic import formula as f
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.terms import Term, number
-from roadproof.searching.ask import Search
-from roadproof.searching.impossible import show_impossible
-from roadproof.searching.question import pose
-from roadproof.spec.bind import bind
-from roadproof.spec.query import Query
-from roadproof.study.pool import Say
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.signals import Courses, DriveSignals
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 

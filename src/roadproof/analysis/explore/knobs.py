@@ -6,11 +6,11 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.analysis.explore.parts import compared
+from roadproof.engines.search.ask import Search
+from roadproof.library.compose import always
+from roadproof.library.query import Query
 from roadproof.logic import syntax
-from roadproof.searching.ask import Search
-from roadproof.spec.compose import always
-from roadproof.spec.query import Query
-from roadproof.units import UNITS
+from roadproof.world.units import UNITS
 
 # A value for each knob, in order, in SI units.
 Point: TypeAlias = tuple[Fraction, ...]

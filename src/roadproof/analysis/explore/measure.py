@@ -5,17 +5,17 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.analysis.explore.parts import compared
+from roadproof.engines.search.ask import Search
 from roadproof.errors import UsageError
+from roadproof.library.compose import both, eventually
+from roadproof.library.elaborate import read_claim, read_term
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
 from roadproof.logic import syntax
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text as shown
 from roadproof.logic.syntax import Binding, Expression
 from roadproof.logic.terms import Dimension, Inverse, Term, Varying, leaves
-from roadproof.searching.ask import Search
-from roadproof.spec.compose import both, eventually
-from roadproof.spec.elaborate import read_claim, read_term
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
 
 Sense: TypeAlias = Literal["least", "greatest"]
 

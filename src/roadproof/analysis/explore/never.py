@@ -1,14 +1,14 @@
 """Formulas about one instant that no engine reads: a proof that at given values there is no drive."""
 
 from roadproof.analysis.explore.search import Stage, values_of
+from roadproof.engines.prove.prover import prove
+from roadproof.engines.search.ask import Search
 from roadproof.evidence.certificate import Certificate
+from roadproof.library.compose import negation
+from roadproof.library.motion import Assumed, value_texts
+from roadproof.library.query import Query
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
-from roadproof.proving.prover import prove
-from roadproof.searching.ask import Search
-from roadproof.spec.compose import negation
-from roadproof.spec.motion import Assumed, value_texts
-from roadproof.spec.query import Query
 
 NEVER = "proved for all states, with the parameters at their values here"
 

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from fractions import Fraction
 
+from roadproof.engines.search.ask import Search
+from roadproof.library.compose import both, comparison
+from roadproof.library.query import Query
 from roadproof.logic.syntax import BinaryOperator, Expression
 from roadproof.logic.terms import Dimension
-from roadproof.searching.ask import Search
-from roadproof.spec.compose import both, comparison
-from roadproof.spec.query import Query
 
 
 def with_parts(query: Query, parts: Sequence[Query]) -> Query:

@@ -5,11 +5,11 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, assert_never
 
-from roadproof.encode.place import span
+from roadproof.engines.encode.place import span
+from roadproof.engines.search.question import Posed
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Term
-from roadproof.searching.question import Posed
-from roadproof.signals import LIMITED
+from roadproof.world.signals import LIMITED
 
 Range: TypeAlias = tuple[Fraction, Fraction]
 Ranges: TypeAlias = Mapping[tuple[str, str], Range]

@@ -6,12 +6,12 @@ from fractions import Fraction
 from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
 from roadproof.analysis.explore.extreme import Sought, soughts_of
 from roadproof.analysis.explore.knobs import Point
+from roadproof.analysis.study.evidence_store import Shelf
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.certificate import Certificate
-from roadproof.spec.query import Query
-from roadproof.study.shelf import Shelf
-from roadproof.units import unit_text
+from roadproof.library.query import Query
+from roadproof.world.units import unit_text
 
 _EXTREME = ("best", "missed", "surely")
 

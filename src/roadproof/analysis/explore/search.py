@@ -11,21 +11,21 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Literal, TypeAlias
 
-from roadproof.effort import Late
+from roadproof.engines.search.ask import Search, judge_found, telling_values
+from roadproof.engines.search.grid import COARSEST, coarsest, common_step, durations
+from roadproof.engines.search.question import Posed, Setting, pose
+from roadproof.engines.search.search import Attempt, find_witness, show_none
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged, RejectedError
-from roadproof.judge.replay import first_overlap
+from roadproof.library.bind import values_with
+from roadproof.library.query import Query
+from roadproof.library.specification import Library
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.terms import Parameter, leaves
-from roadproof.searching.ask import Search, judge_found, telling_values
-from roadproof.searching.grid import COARSEST, coarsest, common_step, durations
-from roadproof.searching.question import Posed, Setting, pose
-from roadproof.searching.search import Attempt, find_witness, show_none
-from roadproof.spec.bind import values_with
-from roadproof.spec.library import Library
-from roadproof.spec.query import Query
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.replay import first_overlap
 from roadproof.verdict import Verdict
 
 MOST_STEPS = 40  # beyond, searches seldom come to an end

@@ -11,15 +11,15 @@ from roadproof.analysis.explore.extreme import Sought, find_extreme, find_extrem
 from roadproof.analysis.explore.record import as_kept, explored_of
 from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided, values_of
 from roadproof.analysis.explore.values import explore
-from roadproof.elapsed import now, since
+from roadproof.analysis.study.evidence_store import Question, Shelf, specification_names
+from roadproof.analysis.study.pool import Say, in_order, work
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.answers.explore import SCHEMA
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.drive_file import road_data
-from roadproof.hands import Jobs
-from roadproof.study.pool import Say, in_order, work
-from roadproof.study.shelf import Question, Shelf, specification_names
+from roadproof.runtime.executors import Jobs
+from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
 
 

@@ -26,11 +26,11 @@ from roadproof.analysis.explore.search import (
     duration_parameters,
     look,
 )
-from roadproof.effort import Late
+from roadproof.analysis.study.pool import Say
+from roadproof.engines.search.ask import Search
+from roadproof.engines.search.impossible import Impossibility, show_impossible
 from roadproof.logic.fragment import is_cubic_state
-from roadproof.searching.ask import Search
-from roadproof.searching.impossible import Impossibility, show_impossible
-from roadproof.study.pool import Say
+from roadproof.runtime.budget import Late
 from roadproof.verdict import Verdict
 
 PROOF = 5.0  # units of work for a proof that there is no drive

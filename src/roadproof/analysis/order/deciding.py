@@ -15,17 +15,17 @@ from itertools import permutations
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.kinds import Kind
 from roadproof.analysis.placing import judged_as, placed
-from roadproof.effort import Late
+from roadproof.engines.search.ask import ask
+from roadproof.engines.search.question import usual_road
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Judged
-from roadproof.judge.exact import judge
-from roadproof.searching.ask import ask
-from roadproof.searching.question import usual_road
-from roadproof.spec.bind import bind
-from roadproof.spec.compose import both, implication, negation
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, vehicles_of
+from roadproof.library.bind import bind
+from roadproof.library.compose import both, implication, negation
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, applied, vehicles_of
+from roadproof.runtime.budget import Late
+from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 

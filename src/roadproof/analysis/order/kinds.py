@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from roadproof.library.scenarios import Scenario, applied, numbers_of, without_sectors
+from roadproof.library.specification import Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.spec.library import Specification
-from roadproof.spec.scenarios import Scenario, applied, numbers_of, without_sectors
 
 
 @dataclass(frozen=True)

@@ -16,14 +16,14 @@ from roadproof.analysis.order.deciding import (
 )
 from roadproof.analysis.order.kinds import Kind, families_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
+from roadproof.analysis.study.evidence_store import Question, Shelf
 from roadproof.errors import InputError
 from roadproof.evidence.answers import order as kept
 from roadproof.evidence.answers.order import SCHEMA
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import Judged
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.scenarios import Scenario
-from roadproof.study.shelf import Question, Shelf
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import Scenario
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of, sh
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.codec import read as read_as
 from roadproof.evidence.strict import Fields, rational
+from roadproof.library.compose import both, implication, negation
+from roadproof.library.elaborate import read_claim, read_term
+from roadproof.library.scenarios import Scenario, applied, number_in
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.terms import constant_value
-from roadproof.spec.compose import both, implication, negation
-from roadproof.spec.elaborate import read_claim, read_term
-from roadproof.spec.scenarios import Scenario, applied, number_in
-from roadproof.units import unit_text
+from roadproof.world.units import unit_text
 
 SCHEMA = "roadproof/catalogue/1"
 _FACT = ("test", "other", "relation", "premise", "conclusion", "formula", "verdict", "reason")

@@ -25,11 +25,11 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule, read, unchecked
 from roadproof.evidence.strict import Fields
+from roadproof.library.compose import both, either, equivalence, implication, negation
+from roadproof.library.elaborate import apply_definition, signature
+from roadproof.library.scenarios import LANE, Scenario, applied, name_of, number_in, numbers_of, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.spec.compose import both, either, equivalence, implication, negation
-from roadproof.spec.elaborate import apply_definition, signature
-from roadproof.spec.scenarios import LANE, Scenario, applied, name_of, number_in, numbers_of, vehicles_of
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/classify/1"

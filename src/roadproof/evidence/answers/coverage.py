@@ -28,8 +28,8 @@ from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read, unchecked
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields
+from roadproof.library.scenarios import numbers_of
 from roadproof.logic.formula import Formula
-from roadproof.spec.scenarios import numbers_of
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/coverage/1"

@@ -24,9 +24,9 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, unchecked
 from roadproof.evidence.json_schema import File, Whole
 from roadproof.evidence.strict import Fields, rational
+from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.spec.scenarios import Scenario, applied, name_of
 from roadproof.verdict import DriveVerdict, Verdict
 
 SCHEMA: Final = "roadproof/witness/1"

@@ -17,12 +17,12 @@ from roadproof.evidence import certificate
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, read_drive
 from roadproof.evidence.strict import Fields, rational, read_json
+from roadproof.library.bind import values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import under_limits
+from roadproof.library.specification import Library, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.spec.bind import values_with
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.library import Library, Specification
-from roadproof.spec.motion import under_limits
 
 # What the evidence of an entry is to show of its claim: a proof of it, a proof that it never holds, a drive
 # on which it holds, a drive (or a trace) on which it does not; nothing, where the verdict promises nothing.

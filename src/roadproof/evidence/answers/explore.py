@@ -27,21 +27,21 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.strict import Fields, rational
+from roadproof.library.bind import values_with
+from roadproof.library.compose import always, both, comparison, eventually
+from roadproof.library.elaborate import read_claim, read_term
+from roadproof.library.motion import values_said
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text as show
 from roadproof.logic.syntax import BinaryOperator
-from roadproof.signals import LIMITED, SignalName
-from roadproof.spec.bind import values_with
-from roadproof.spec.compose import always, both, comparison, eventually
-from roadproof.spec.elaborate import read_claim, read_term
-from roadproof.spec.motion import values_said
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, name_of
-from roadproof.units import UNITS, unit_text
 from roadproof.verdict import DriveVerdict
+from roadproof.world.signals import LIMITED, SignalName
+from roadproof.world.units import UNITS, unit_text
 from roadproof.world.vehicle import LIMITS
 
 SCHEMA: Final = "roadproof/explore/1"

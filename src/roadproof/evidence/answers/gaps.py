@@ -3,13 +3,9 @@
 from collections.abc import Sequence
 
 from roadproof.evidence.answers.entry import Common
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import without_names
-from roadproof.spec.compose import both, either, eventually, implication, in_some_lane, negation
-from roadproof.spec.library import Specification
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import (
+from roadproof.library.compose import both, either, eventually, implication, in_some_lane, negation
+from roadproof.library.query import Query
+from roadproof.library.scenarios import (
     LANE,
     PAIR,
     SUBJECT,
@@ -24,6 +20,10 @@ from roadproof.spec.scenarios import (
     sector,
     vehicles_of,
 )
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
 
 
 def fault_of_gap(common: Common, numbers: Sequence[int], formula: str) -> str:

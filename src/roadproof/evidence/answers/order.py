@@ -26,12 +26,8 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
-from roadproof.logic import syntax
-from roadproof.logic.formula import Formula
-from roadproof.logic.parse import parse_claim
-from roadproof.logic.rewrite import without_names
-from roadproof.spec.compose import implication
-from roadproof.spec.scenarios import (
+from roadproof.library.compose import implication
+from roadproof.library.scenarios import (
     LANE,
     SUBJECT,
     Application,
@@ -40,6 +36,10 @@ from roadproof.spec.scenarios import (
     applied,
     vehicles_of,
 )
+from roadproof.logic import syntax
+from roadproof.logic.formula import Formula
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.rewrite import without_names
 
 SCHEMA: Final = "roadproof/order/1"
 _NODE = re.compile(r"([0-9]{1,6})@(\w+)", re.ASCII)

@@ -28,11 +28,11 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.codec import UNCHECKED, Doc, Rule, read
 from roadproof.evidence.json_schema import Shared
 from roadproof.evidence.strict import Fields
+from roadproof.library.compose import both, eventually
+from roadproof.library.query import Query
+from roadproof.library.scenarios import LANE, Scenario, applied, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.spec.compose import both, eventually
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import LANE, Scenario, applied, vehicles_of
 from roadproof.verdict import DriveVerdict, Verdict
 
 SCHEMA: Final = "roadproof/overlap/1"

@@ -5,22 +5,22 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 
+from roadproof.drivers import gradual
+from roadproof.drivers.boundary import Plane, plane_of
+from roadproof.drivers.claims import SIDES, Side, claim_of, with_also
+from roadproof.drivers.driving import Reading
+from roadproof.drivers.idle import idle
+from roadproof.drivers.lemmas import lemmas_for
+from roadproof.drivers.lines import End, Line, line_data, sides_in, told_line, truths
+from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre, ManoeuvreName, signals_of
+from roadproof.drivers.models import MODELS, boundary_of, manoeuvre_of, models_for, parts_of, touched
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields, rational, read_assuming
-from roadproof.preventing import gradual
-from roadproof.preventing.boundary import Plane, plane_of
-from roadproof.preventing.claims import SIDES, Side, claim_of, with_also
-from roadproof.preventing.driving import Reading
-from roadproof.preventing.idle import idle
-from roadproof.preventing.lemmas import lemmas_for
-from roadproof.preventing.lines import End, Line, line_data, sides_in, told_line, truths
-from roadproof.preventing.manoeuvres import MANOEUVRES, Manoeuvre, ManoeuvreName, signals_of
-from roadproof.preventing.models import MODELS, boundary_of, manoeuvre_of, models_for, parts_of, touched
-from roadproof.signals import STARTING
-from roadproof.spec.bind import values_with
+from roadproof.library.bind import values_with
+from roadproof.world.signals import STARTING
 
 SCHEMA = "roadproof/preventable/1"
 DRIVERS = "driver.spec"

@@ -25,10 +25,10 @@ from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.json_schema import File, Shared
 from roadproof.evidence.strict import Fields
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import is_moving, under_limits
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.motion import is_moving, under_limits
 from roadproof.verdict import ClaimVerdict, Verdict
 
 SCHEMA: Final = "roadproof/index/1"

@@ -8,14 +8,14 @@ from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 
+from roadproof.drivers import restriction
 from roadproof.errors import InputError
 from roadproof.evidence import answers
 from roadproof.evidence.answers.entry import Entry
 from roadproof.evidence.answers.reader import Background, FindLabel, Reader, without_labels
 from roadproof.evidence.heading import HEADING, library_of, version
 from roadproof.evidence.strict import Fields
-from roadproof.preventing import restriction
-from roadproof.spec.library import Library
+from roadproof.library.specification import Library
 
 
 @cache

@@ -9,7 +9,7 @@ from roadproof.evidence.answers.entry import Common, Entry, common_of
 from roadproof.evidence.codec import fields_of, read, unchecked
 from roadproof.evidence.heading import HEADING
 from roadproof.evidence.strict import Fields
-from roadproof.spec.library import Library
+from roadproof.library.specification import Library
 
 T = TypeVar("T")
 

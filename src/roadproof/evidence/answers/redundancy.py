@@ -24,11 +24,11 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import UNCHECKED, Doc, Key, read
 from roadproof.evidence.strict import Fields
+from roadproof.library.compose import both, equivalence, implication, negation
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import Scenario, applied, leaves_at_once, vehicles_of
 from roadproof.logic.formula import Formula
-from roadproof.spec.compose import both, equivalence, implication, negation
-from roadproof.spec.elaborate import read_claim
-from roadproof.spec.query import Query
-from roadproof.spec.scenarios import Scenario, applied, leaves_at_once, vehicles_of
 from roadproof.verdict import Verdict
 
 SCHEMA: Final = "roadproof/redundancy/1"

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Shared
-from roadproof.spec.words import Words
+from roadproof.library.words import Words
 
 Formula: TypeAlias = Annotated[
     str, Rule(least=1), Doc("A formula or a claim as text (docs/language.md)."), Shared("formula")

@@ -1,0 +1,147 @@
+"""Judged drives on both sides of a boundary: SV follows its model, and touches POV, or never does."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from fractions import Fraction
+from itertools import islice, pairwise
+from math import ceil
+
+from roadproof.drivers.boundary import Plane
+from roadproof.drivers.claims import Side, claim_of, with_also
+from roadproof.drivers.driving import OWN_LANE, Reading, drive_of, rest_of, road_of
+from roadproof.drivers.manoeuvres import Manoeuvre, Values
+from roadproof.errors import InputError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.library.scenarios import LANE
+from roadproof.library.specification import Specification
+from roadproof.semantics.exact.algebraic import Point, bounds
+from roadproof.semantics.exact.truth import TruthSet
+from roadproof.world.drive import Drive
+
+_FINE = 10**9  # of a line, for spans that have no place with few digits
+_LOOKED_AT = 400  # candidates for a drive
+_NEAR = Fraction(1, 10)  # m from the boundary
+_PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
+
+
+def judged_drive(
+    manoeuvre: Manoeuvre,
+    model: str,
+    values: Values,
+    side: Side,
+    specification: Specification,
+    reading: Reading,
+    also: str = "",
+) -> Judged:
+    """The drive from these values, judged, on ``also``, too: a formula about it in the lane of SV.
+
+    Raises ``RejectedError``, and ``InputError`` as ``drive_of``.
+    """
+    drive = drive_of(manoeuvre, model, values, reading)
+    return _judged(drive, manoeuvre, model, values, side, specification, reading, also)
+
+
+def _judged(
+    drive: Drive,
+    manoeuvre: Manoeuvre,
+    model: str,
+    values: Values,
+    side: Side,
+    specification: Specification,
+    reading: Reading,
+    also: str,
+) -> Judged:
+    file = DriveFile(
+        None,
+        specification.set_name,
+        with_also(claim_of(manoeuvre, model, values, side, reading), also),
+        rest_of(drive),
+        {LANE: OWN_LANE} if also else {},
+        reading.values,
+        reading.options,
+        road_of(values),
+        drive,
+        overlaps_allowed=True,
+    )
+    if also:  # what is about the scenario alone is quickly seen to be false
+        Judged(replace(file, formula=also), specification.library)
+    return Judged(file, specification.library)
+
+
+def beside_boundary(plane: Plane, lines: tuple[TruthSet, ...], side: Side) -> Iterator[dict[str, Fraction]]:
+    """Initial values near the boundary on one side, those of middle rows first."""
+    middle = (plane.across[0] + plane.across[1]) / 2
+    rows = sorted(zip(plane.rows, lines, strict=True), key=lambda x: abs(x[0] - middle))
+    for row, true in rows:
+        for place in _places(plane, true, side):
+            yield plane.values(row, place)
+
+
+def _places(plane: Plane, true: TruthSet, side: Side) -> Iterator[Fraction]:
+    """Places with few digits that are on the wanted side of an end of a span; then some of each span."""
+    low, high = plane.along
+    wanted = side == "unpreventable"
+    ends = [cut.point for cut in reversed(true.cuts)] or [high if side == "preventable" else low]
+    for end in ends:
+        middle = _near(end, _NEAR / 100)
+        for step in (_NEAR, -_NEAR, _NEAR / 10, -_NEAR / 10):
+            place = Fraction(round((middle + step) * 100), 100)
+            if low <= place <= high and true.at(place) is wanted:
+                yield place
+    near = (_near(cut.point, (high - low) / _FINE) for cut in true.cuts)
+    for one, other in pairwise(sorted((low, *near, high))):
+        if true.at((one + other) / 2) is wanted and one < other:
+            yield from (one + (other - one) * part for part in _PARTS)
+
+
+def _near(point: Point, width: Fraction) -> Fraction:
+    """A fraction that is no farther from a point than that."""
+    low, high = bounds(point, width)
+    return (low + high) / 2
+
+
+def first_drive(
+    plane: Plane,
+    model: str,
+    candidates: Iterable[dict[str, Fraction]],
+    side: Side,
+    specification: Specification,
+    reading: Reading,
+    also: str = "",
+    most: int = 3,
+) -> tuple[dict[str, Fraction], Judged] | str:
+    """A judged drive from one of the candidates, initial values of that side; or why there is none.
+
+    ``also`` as for ``judged_drive``; ``most`` candidates are tried, besides those that have no exact drive.
+    A drive that is rejected, though nothing else is asked of it, contradicts the boundary: no other is tried.
+    """
+    reason = f"no place of the plane is {side}"
+    tried = 0
+    for values in islice(candidates, _LOOKED_AT):
+        try:
+            drive = drive_of(plane.manoeuvre, model, values, reading)
+            tried += 1
+            judged = _judged(drive, plane.manoeuvre, model, values, side, specification, reading, also)
+            return values, judged
+        except RejectedError as error:
+            reason = str(error)
+            if not also:
+                told = ", ".join(f"{name}={value}" for name, value in values.items())
+                return f"the drive from {told} (SI) is not {side}, as the boundary says it is: {reason}"
+        except InputError as error:
+            reason = str(error)
+        if tried == most:
+            break
+    return reason
+
+
+def far_apart(
+    plane: Plane, candidates: Iterable[dict[str, Fraction]], most: int
+) -> list[dict[str, Fraction]]:
+    """The first candidate of each row and the last ones, of at most so many rows."""
+    rows: dict[Fraction, list[dict[str, Fraction]]] = {}
+    for values in candidates:
+        rows.setdefault(values[plane.manoeuvre.across], []).append(values)
+    some = list(rows.values())[:: ceil(len(rows) / most) or 1]
+    return [values for row in some for values in (row[0], *row[1:][-len(_PARTS) :])]

@@ -1,0 +1,332 @@
+"""Which initial values of a manoeuvre a driver can prevent a collision from: exact lines, drives, lemmas.
+
+A question in pieces: a plate for each model and choice of fixed values, and the lemmas which say that the
+formula is the boundary.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import Any, TypeAlias
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.preventable.sides import beside_boundary, far_apart, first_drive
+from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.drivers import gradual
+from roadproof.drivers.boundary import Plane, plane_of
+from roadproof.drivers.claims import SIDES, Side
+from roadproof.drivers.driving import Reading
+from roadproof.drivers.idle import chosen, idle
+from roadproof.drivers.lemmas import Lemma, lemmas_for
+from roadproof.drivers.lines import Line, end_of, line_data, read_line, sides_in, told_line, truths
+from roadproof.drivers.manoeuvres import Manoeuvre, Values
+from roadproof.drivers.models import MODELS, Model, boundary_of, parts_of, touched
+from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of, spans_of
+from roadproof.engines.prove.prover import prove
+from roadproof.errors import InputError
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import Assumed, statement, value_texts
+from roadproof.runtime.budget import Late
+from roadproof.verdict import Verdict
+
+SCHEMA = "roadproof/preventable/1"
+_ROWS = 10  # in which a drive of a scenario is looked for
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A drive on one side of the boundary with its initial values; or why there is none.
+
+    ``scenario``: the scenario that it is of, as a formula, or what happens in that; empty where neither.
+    """
+
+    side: Side
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    drive: Judged | None = None
+    reason: str = ""
+    scenario: str = ""
+
+
+@dataclass(frozen=True)
+class Plate:
+    """One model over the plane whose lines run ``along`` (SI)."""
+
+    name: str
+    model: str
+    fixed: Values
+    along: tuple[Fraction, Fraction]
+    lines: tuple[Line, ...] = ()
+    shown: tuple[Shown, ...] = ()
+    reason: str = ""
+
+    @property
+    def stepped(self) -> str:
+        """What is said of a plate whose lines are no exact boundary; empty where they are one."""
+        return TOLD if MODELS[self.model].is_stepped else ""
+
+    @property
+    def motion(self) -> str:
+        """What is said of a plate whose ends are worked out from the motion; empty where a formula says."""
+        return gradual.TOLD if gradual.RATE in self.fixed else ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """WITNESSED where each side that the plane has is shown by a drive."""
+        sides = sides_in(self.lines, self.along, MODELS[self.model].is_stepped)
+        lacking = any(x.drive is None and x.side in sides for x in self.shown)
+        return Verdict.UNKNOWN if lacking or not self.lines else Verdict.WITNESSED
+
+
+@dataclass(frozen=True)
+class Proved:
+    """A lemma with its verdict."""
+
+    lemma: Lemma
+    verdict: Verdict
+    assuming: tuple[str, ...] = ()
+    certificate: Certificate | None = None
+    reason: str = ""
+
+
+Answer: TypeAlias = Plate | Proved
+
+
+@dataclass(frozen=True)
+class PlatePiece:
+    """One plate to be drawn."""
+
+    name: str
+    model: Model
+    fixed: Values
+
+
+Piece: TypeAlias = PlatePiece | Lemma
+
+
+@dataclass(frozen=True)
+class Preventable:
+    """The question as a ``study.frame.Study``: ``sheet`` has the values that differ from plate to plate.
+
+    ``scenario``: the number of the one that drives should be of, where the manoeuvre was asked for by it.
+    """
+
+    basis: Basis
+    manoeuvre: Manoeuvre
+    models: tuple[Model, ...]
+    fixed: Values
+    sheet: Mapping[str, tuple[Fraction, ...]]
+    along: tuple[Fraction, Fraction]
+    across: tuple[Fraction, Fraction]
+    rows: int = 100
+    with_lemmas: bool = True
+    scenario: int | None = None
+
+    @property
+    def question(self) -> Question:
+        said = {
+            "set": self.basis.specification.set_name,
+            "manoeuvre": self.manoeuvre.name,
+            "scenario": self.scenario,
+            "along": [self.manoeuvre.line, *map(str, self.along)],
+            "across": [self.manoeuvre.across, *map(str, self.across), str(self.rows)],
+        }
+        return Question(SCHEMA, said | self.basis.said(), {}, self.basis.library)
+
+    @cached_property
+    def plates(self) -> dict[str, PlatePiece]:
+        """The plates by name: for each choice of the sheet's values, each model."""
+        found: dict[str, PlatePiece] = {}
+        for values in product(*self.sheet.values()):
+            fixed = {**self.fixed, **dict(zip(self.sheet, values, strict=True))}
+            told = "-".join(f"{name}-{value}".replace("/", "_") for name, value in fixed.items())
+            for model in self.models:
+                name = f"{model.name}-{told}" if told else model.name
+                found[name] = PlatePiece(name, model, fixed)
+        return found
+
+    @cached_property
+    def lemmas(self) -> dict[str, Lemma]:
+        """The lemmas by name."""
+        aeb = self.basis.specification.options["cc_aeb"]
+        is_said = gradual.RATE not in self.fixed and gradual.RATE not in self.sheet
+        asked = lemmas_for(self.manoeuvre.name, self.models, aeb) if self.with_lemmas and is_said else []
+        return {f"lemma-{lemma.name}": lemma for lemma in asked}
+
+    def pieces(self, known: Mapping[str, Answer]) -> Sequence[Piece]:
+        left: dict[str, Piece] = {**self.plates, **self.lemmas}
+        return [piece for name, piece in left.items() if name not in known]
+
+    def settle(self, piece: Piece) -> dict[str, Answer]:
+        if isinstance(piece, Lemma):
+            return {f"lemma-{piece.name}": self._prove(piece)}
+        return {piece.name: self._plate(piece)}
+
+    def doubt(self, piece: Piece, reason: str) -> dict[str, Answer]:
+        if isinstance(piece, Lemma):
+            return {f"lemma-{piece.name}": Proved(piece, Verdict.UNKNOWN, self._said(piece), reason=reason)}
+        return {piece.name: Plate(piece.name, piece.model.name, piece.fixed, self.along, reason=reason)}
+
+    def is_sure(self, answer: Answer) -> bool:
+        return answer.verdict is not Verdict.UNKNOWN
+
+    @cached_property
+    def reading(self) -> Reading:
+        """Values of parameters, and options."""
+        return Reading(self.basis.all_values(), self.basis.specification.options)
+
+    def plane(self, fixed: Values) -> Plane:
+        """The plane of a plate."""
+        return plane_of(self.manoeuvre, fixed, self.along, self.across, self.rows)
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Options and parameters that were chosen, and on which boundaries here depend."""
+        made = chosen(self.basis.specification, self.basis.values)
+        return tuple(x for x in (f"{name}={value}" for name, value in made.items()) if x not in self.idle)
+
+    @cached_property
+    def idle(self) -> tuple[str, ...]:
+        """Options and parameters that were chosen, and on which nothing here depends."""
+        return idle(self.basis.specification, self.basis.values, self.manoeuvre, self.models)
+
+    def _plate(self, piece: PlatePiece) -> Plate:
+        plane, model = self.plane(piece.fixed), piece.model.name
+        if piece.model.is_stepped:
+            return self._stepped(piece, plane)
+        true = tuple(truths(self.basis.specification, plane, model, self.basis.all_values()))
+        lines = tuple(map(told_line, plane.rows, true))
+        shown = tuple(self._show(plane, model, beside_boundary(plane, true, side), side) for side in SIDES)
+        return Plate(piece.name, model, piece.fixed, self.along, lines, shown)
+
+    def _stepped(self, piece: PlatePiece, plane: Plane) -> Plate:
+        """The plate of a controller: what it does from each place that is looked at."""
+        model, places, labels = piece.model.name, places_of(plane), labels_of(plane)
+        lines = tuple(
+            Line(row, tuple((end_of(a), end_of(b)) for a, b in spans_of(places, found)))
+            for row, found in zip(plane.rows, labels, strict=True)
+        )
+        shown = tuple(
+            self._show(plane, model, beside_change(plane, labels, side == "unpreventable"), side)
+            for side in SIDES
+        )
+        return Plate(piece.name, model, piece.fixed, self.along, lines, shown)
+
+    def _show(self, plane: Plane, model: str, candidates: Iterable[dict[str, Fraction]], side: Side) -> Shown:
+        places = list(candidates) if self._parts else candidates
+        for also in self._parts:
+            rows = far_apart(plane, places, _ROWS)
+            shown = first_drive(
+                plane, model, rows, side, self.basis.specification, self.reading, also, most=len(rows)
+            )
+            if not isinstance(shown, str):
+                return Shown(side, *shown, scenario=also)
+        found = first_drive(plane, model, places, side, self.basis.specification, self.reading)
+        return Shown(side, reason=found) if isinstance(found, str) else Shown(side, *found)
+
+    @property
+    def _parts(self) -> tuple[str, ...]:
+        """What drives should be of, the scenario before what happens in it."""
+        return () if self.scenario is None else parts_of(self.scenario, self.manoeuvre.vehicles)
+
+    def _said(self, lemma: Lemma) -> tuple[str, ...]:
+        values = self.basis.all_values()
+        return value_texts(self.basis.specification, {name: values[name] for name in lemma.parameters})
+
+    def _prove(self, lemma: Lemma) -> Proved:
+        home, said = self.basis.specification, self._said(lemma)
+        try:
+            query, effort = read_claim(home, lemma.claim), self.basis.effort.of(20)
+            result = prove(home, query, effort, assumed=Assumed(said))
+        except Late as late:
+            return Proved(lemma, Verdict.UNKNOWN, said, reason=str(late))
+        return Proved(lemma, result.verdict, said, result.certificate, result.reason)
+
+    # --- answers as plain data -------------------------------------------------------------------
+
+    def record(self, name: str, answer: Answer, shelf: Shelf) -> dict[str, Any]:
+        if isinstance(answer, Proved):
+            return {
+                "lemma": {
+                    "name": answer.lemma.name,
+                    "title": answer.lemma.title,
+                    "claim": answer.lemma.claim,
+                    "assuming": list(answer.assuming),
+                    "verdict": str(answer.verdict),
+                    "certificate": shelf.certificate(f"{name}.json", answer.certificate),
+                    "reason": answer.reason,
+                }
+            }
+        return {
+            "plate": {
+                "name": name,
+                "model": answer.model,
+                "fixed": {key: str(value) for key, value in answer.fixed.items()},
+                "verdict": str(answer.verdict),
+                "formula": touched(self.manoeuvre.vehicles)
+                if answer.motion
+                else boundary_of(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
+                "stepped": answer.stepped,
+                "motion": answer.motion,
+                "lines": [line_data(x) for x in answer.lines],
+                "shown": [self._shown_data(answer, x, shelf) for x in answer.shown],
+                "reason": answer.reason,
+            }
+        }
+
+    def _shown_data(self, plate: Plate, shown: Shown, shelf: Shelf) -> dict[str, Any]:
+        drive = shown.drive
+        claim = "" if drive is None else drive.file.formula
+        return {
+            "side": shown.side,
+            "at": {name: str(value) for name, value in shown.values.items()},
+            "verdict": str(Verdict.UNKNOWN if drive is None else Verdict.WITNESSED),
+            "formula": claim,
+            "scenario": shown.scenario,
+            "drive": shelf.drive(f"{plate.name}-{shown.side}.json", drive),
+            "reason": shown.reason,
+        }
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answer]:
+        if "lemma" in record:
+            said = record["lemma"]
+            name = f"lemma-{said['name']}"
+            if name not in self.lemmas or self.lemmas[name].claim != said["claim"]:
+                raise InputError(f"{name} is no lemma of this question")
+            certificate = shelf.read_certificate(said["certificate"])
+            verdict, assuming = Verdict(said["verdict"]), tuple(said["assuming"])
+            return name, Proved(self.lemmas[name], verdict, assuming, certificate, said["reason"])
+        said = record["plate"]
+        fixed = {name: Fraction(value) for name, value in said["fixed"].items()}
+        shown = tuple(
+            Shown(
+                x["side"],
+                {name: Fraction(value) for name, value in x["at"].items()},
+                shelf.read_drive(x["drive"]),
+                x["reason"],
+                x["scenario"],
+            )
+            for x in said["shown"]
+        )
+        lines = tuple(read_line(x) for x in said["lines"])
+        plate = Plate(said["name"], said["model"], fixed, self.along, lines, shown, said["reason"])
+        return said["name"], plate
+
+    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+        return {
+            **self.question.heading,
+            "view": "dense",
+            "seconds": round(seconds, 1),
+            "idle": list(self.idle),
+            "plates": [records[name]["plate"] for name in self.plates],
+            "lemmas": [records[name]["lemma"] for name in self.lemmas],
+        }
+
+
+def said_of(proved: Proved) -> str:
+    """A lemma as a claim, with the values of parameters in front."""
+    return statement(proved.assuming, proved.lemma.claim)

@@ -1,0 +1,215 @@
+"""Where the evidence of a study is: files in a folder, with one file an answer, or inside the answers.
+
+An answer is kept in ``answers/NAME.json``, written whole, so that several runs can share a folder. It counts
+again only where its seal holds and it says what its evidence says (``evidence.journal``).
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Container, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from roadproof.drivers.restriction import told
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.answers.reader import FindLabel, without_labels
+from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data, to_json
+from roadproof.evidence.drive_file import natural_of, read_drive
+from roadproof.evidence.heading import heading
+from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.kernel.accept import find_tableau
+from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
+from roadproof.library.specification import Library
+from roadproof.runtime.files import json_bytes, make_folder, write_json, write_whole
+
+INDEX = "index.json"
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is asked: ``schema`` is that of the index, ``said`` what the index says once for all answers.
+
+    ``more`` is what else an answer depends on. ``find_label`` knows the names of claims, where they have any.
+    """
+
+    schema: str
+    said: Mapping[str, Any]
+    more: Mapping[str, str]
+    library: Library
+    find_label: FindLabel = without_labels
+
+    @property
+    def beginning(self) -> dict[str, Any]:
+        """How every answer begins: its kind, the version, the library, what begins so that is asked about."""
+        return {**heading(self.schema, self.library), **told(self.said.get("options", {}))}
+
+    @property
+    def heading(self) -> dict[str, Any]:
+        """How the index begins: as ``beginning``, and with what is said once."""
+        return {**self.beginning, **self.said}
+
+    @property
+    def fingerprint(self) -> str:
+        """A short text that changes with the question, with all that the library says, with the version."""
+        asked = json.dumps([dict(self.more), self.heading], sort_keys=True)
+        return hashlib.sha256(asked.encode()).hexdigest()[:16]
+
+
+class Shelf:
+    """The evidence of one question in a folder, or in memory where there is none.
+
+    Raises ``UsageError`` where the folder holds another's.
+    """
+
+    def __init__(self, folder: Path | None, question: Question) -> None:
+        self.folder = folder
+        self.library = question.library
+        self.find_label = question.find_label
+        self.question = "" if folder is None else question.fingerprint
+        self.head = head_of(question.schema, self.question, question.said)
+        self.written: list[str] = []
+        self.names: set[str] = set()
+        if folder is not None:
+            for place in (folder, folder / ANSWERS):
+                make_folder(place)
+            if not (folder / HEAD).exists():
+                write_json(folder / HEAD, self.head)
+            keep_specifications(folder, question.library)
+
+    # --- evidence ------------------------------------------------------------------------------
+
+    def certificate(self, name: str, certificate: Certificate | None) -> str | dict[str, Any] | None:
+        """The name of a file with a certificate, or its data; a file has its tableau too, if one is found."""
+        if certificate is None or self.folder is None:
+            return None if certificate is None else certificate_data(certificate)
+        if certificate.tableau is None:
+            certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
+        return self._put(self.folder, name, to_json(certificate).encode())
+
+    def drive(self, name: str, drive: Judged | None) -> str | dict[str, Any] | None:
+        """The name of a drive file, or its data."""
+        if drive is None or self.folder is None:
+            return None if drive is None else drive.as_data()
+        return self._put(self.folder, name, json_bytes(drive.as_data()))
+
+    def read_certificate(self, kept: object) -> Certificate | None:
+        """The inverse of ``certificate``. Raises ``InputError``."""
+        return None if kept is None else read_certificate_data(self._get(kept), str(kept)[:60])
+
+    def read_drive(self, kept: object) -> Judged | None:
+        """The inverse of ``drive``: judged again. Raises ``InputError``."""
+        if kept is None:
+            return None
+        content, where = self._get(kept), str(kept)[:60]
+        return Judged(read_drive(content, where), self.library, natural_of(content, where))
+
+    def _put(self, folder: Path, name: str, content: bytes) -> str:
+        refuse_vanished(folder)
+        write_whole(folder / name, content)
+        self.written.append(name)
+        return name
+
+    def _get(self, kept: object) -> object:
+        if isinstance(kept, str) and self.folder is not None:
+            return read_json(self.folder / kept, LARGEST_EVIDENCE)
+        return kept
+
+    # --- answers -------------------------------------------------------------------------------
+
+    def answers(
+        self, say: Callable[[str], None] | None = None, known: Container[str] = ()
+    ) -> Iterator[tuple[str, Mapping[str, Any]]]:
+        """The answers that count, by name, but for those that are ``known``.
+
+        Of answers that do not count ``say`` is told, and they are asked again.
+        """
+        if self.folder is None:
+            return
+        try:
+            kept = read_kept(self.folder, known)
+        except InputError as error:
+            raise UsageError(self._foreign(f"they are not of this version ({error})")) from None
+        if kept is None or kept.head.content != self.head:
+            raise UsageError(self._foreign("to this one under another library"))
+        for line in answers_of(kept, self.library, self.find_label):
+            if line.fault and say is not None:
+                say(f"asked again, since a kept answer does not count: {line.fault}")
+            elif not line.fault and line.record is not None:
+                self.names |= set(line.record.texts("evidence"))
+                bare = {k: v for k, v in line.record.content.items() if k not in ("evidence", "seal")}
+                yield line.name, bare
+
+    def _foreign(self, otherwise: str) -> str:
+        return (
+            f"{self.folder} holds the answers to another question, or {otherwise}: name another folder with "
+            "--out, or remove it"
+        )
+
+    def keep(self, name: str, record: dict[str, Any], sure: bool) -> dict[str, Any]:
+        """Keep an answer under its seal, whose evidence has been written before, if it is ``sure``."""
+        names, self.written = self.written, []
+        self.names |= set(names)
+        if self.folder is not None and sure:
+            refuse_vanished(self.folder)
+            sealed = {"evidence": names, **record}
+            sealed["seal"] = seal_of(sealed, self.question, self.folder)
+            write_json(self.folder / ANSWERS / f"{name}.json", sealed)
+        return record
+
+    def with_paths(self, data: Any) -> Any:
+        """``data`` with the names of evidence files as paths from here."""
+        match data:
+            case dict():
+                return {k: self.with_paths(v) for k, v in data.items()}
+            case list():
+                return [self.with_paths(item) for item in data]
+            case str() if data in self.names and self.folder is not None:
+                return str(self.folder / data)
+            case _:
+                return data
+
+
+def write_index(folder: Path, data: Mapping[str, Any]) -> None:
+    """The index of a folder; files in it are named as they are from there. Raises ``InputError``."""
+    refuse_vanished(folder)
+    write_json(folder / INDEX, inside(dict(data), folder))
+
+
+def refuse_vanished(folder: Path) -> None:
+    """Raises ``InputError`` where a folder of answers has gone since they were begun, and their evidence."""
+    if not (folder / HEAD).is_file():
+        raise InputError(
+            f"{folder} was there when the run began, and is gone or has lost {HEAD}, and with it evidence "
+            "that the answers name; run the command again, which asks anew what is lost"
+        )
+
+
+def inside(data: Any, folder: Path) -> Any:
+    """``data`` with paths into ``folder`` as they are from there, so that the folder may be moved."""
+    match data:
+        case dict():
+            return {key: inside(value, folder) for key, value in data.items()}
+        case list():
+            return [inside(item, folder) for item in data]
+        case str() if data.startswith(f"{folder}{os.sep}"):
+            return Path(data).relative_to(folder).as_posix()
+        case _:
+            return data
+
+
+def specification_names(library: Library) -> list[str]:
+    """The names of the users' specification files, as ``check`` looks for them beside the evidence."""
+    names = [Path(source.name).name for source in library.files]
+    if len(set(names)) < len(names):
+        told = ", ".join(source.name for source in library.files)
+        raise UsageError(f"two files of --spec have the same name: {told}")
+    return names
+
+
+def keep_specifications(folder: Path, library: Library) -> None:
+    """Copies of the users' specification files in a folder of evidence: ``check`` reads them there."""
+    for name, source in zip(specification_names(library), library.files, strict=True):
+        write_whole(folder / name, source.text.encode("utf-8"))

@@ -1,0 +1,153 @@
+"""A long question: asked in pieces, each answered by itself, kept, and taken up again.
+
+What is asked is a ``Study``; ``conduct`` asks it, in several processes, and with a folder of evidence so that
+a run that was broken off goes on where it was.
+"""
+
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, Protocol, TypeVar
+
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.pool import Progress
+from roadproof.errors import InputError, SharedError, UsageError
+from roadproof.runtime.executors import Jobs, Shard, hands_of
+
+Piece = TypeVar("Piece")
+Answer = TypeVar("Answer")
+
+
+class Study(Protocol[Piece, Answer]):
+    """A long question. Pieces and answers are plain data that can be sent to other processes."""
+
+    @property
+    def question(self) -> Question:
+        """What is asked, and on what the answers depend."""
+
+    def pieces(self, known: Mapping[str, Answer]) -> Sequence[Piece]:
+        """What is to be asked next; nothing where all that is wanted is among the ``known`` answers.
+
+        It is asked again after all these are answered, so later pieces may rest on earlier answers, and a
+        doubt may be asked again.
+        """
+
+    def settle(self, piece: Piece) -> Mapping[str, Answer]:
+        """The answers to a piece by name, in a process of its own; doubts where the clock cuts it off."""
+
+    def doubt(self, piece: Piece, reason: str) -> Mapping[str, Answer]:
+        """The answers to a piece that nothing is known of."""
+
+    def is_sure(self, answer: Answer) -> bool:
+        """Whether an answer stands; others are asked again by the next run into the same folder."""
+
+    def record(self, name: str, answer: Answer, shelf: Shelf) -> dict[str, Any]:
+        """An answer as plain data; its evidence goes to the shelf."""
+
+    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answer]:
+        """The inverse of ``record``, with the name that is told from what it says.
+
+        Raises ``InputError`` where it is no whole answer.
+        """
+
+
+@dataclass(frozen=True)
+class Conducted(Generic[Answer]):
+    """All answers by name, and the same as plain data; evidence that has a file is named by its path."""
+
+    answers: Mapping[str, Answer]
+    records: Mapping[str, Mapping[str, Any]]
+
+
+def put_away(study: Study[Piece, Answer], answers: Mapping[str, Answer], folder: Path) -> Conducted[Answer]:
+    """The same answers, kept in a folder. Raises ``UsageError`` where it holds those to another question."""
+    shelf = Shelf(folder, study.question)
+    records = {
+        name: shelf.keep(name, study.record(name, answer, shelf), study.is_sure(answer))
+        for name, answer in answers.items()
+    }
+    return Conducted(answers, {name: shelf.with_paths(record) for name, record in records.items()})
+
+
+def conduct(
+    study: Study[Piece, Answer],
+    folder: Path | None = None,
+    hands: Jobs = None,
+    progress: Progress | None = None,
+    what: str = "pieces",
+    say: Callable[[str], None] | None = None,
+    each: Callable[[str, Answer], None] | None = None,
+) -> Conducted[Answer]:
+    """Ask all pieces that a folder does not have the answers of; ``hands``: who does the work.
+
+    Of several runs that divide the question each asks its share, and takes over what others have kept in the
+    same folder. ``what`` is the word for many pieces, for ``progress``; ``say`` is told of kept answers that
+    do not count, ``each`` of every answer with its name: of kept ones first, then of others as they come.
+    Raises ``UsageError`` where the folder holds the answers to another question, ``SharedError`` where the
+    rest is for other runs, and what ``study.settle`` raises.
+    """
+    shard = hands_of(hands).shard
+    if shard is not None and folder is None:
+        raise UsageError(f"--shard {shard} needs a folder in which the runs keep their answers: name --out")
+    shelf = Shelf(folder, study.question)
+    records: dict[str, dict[str, Any]] = {}
+    known: dict[str, Answer] = {}
+
+    def add(name: str, record: dict[str, Any], answer: Answer) -> None:
+        records[name], known[name] = record, answer
+        if each is not None:
+            each(name, answer)
+
+    def take_over() -> bool:
+        """Whether the folder has answers that are new to us."""
+        before = len(known)
+        for name, record, answer in _kept(study, shelf, known, say):
+            add(name, record, answer)
+        return len(known) > before
+
+    take_over()
+    while pieces := study.pieces(known):
+        ours = [piece for piece in pieces if shard is None or shard.has(_name(study, piece))]
+        if not ours:
+            if take_over():
+                continue
+            unsure = sum(not study.is_sure(answer) for answer in known.values())
+            raise SharedError(_told(shard, len(known) - unsure, unsure, len(pieces), what))
+        with closing(pool.work(study.settle, ours, hands, study.doubt, progress, what)) as answered:
+            for _, answers in answered:
+                for name, answer in answers.items():
+                    made = study.record(name, answer, shelf)
+                    add(name, shelf.keep(name, made, study.is_sure(answer)), answer)
+    return Conducted(known, {name: shelf.with_paths(record) for name, record in records.items()})
+
+
+def _kept(
+    study: Study[Piece, Answer], shelf: Shelf, known: Container[str], say: Callable[[str], None] | None
+) -> Iterator[tuple[str, dict[str, Any], Answer]]:
+    """The kept answers that count and are not ``known``, each with its name and its record."""
+    for file, record in shelf.answers(say, known):
+        try:
+            name, answer = study.recall(record, shelf)
+            if name != file:
+                raise InputError(f"the answer '{file}' is that of '{name}'")
+        except InputError as error:
+            if say is not None:
+                say(f"asked again, since a kept answer does not count: {error}")
+            continue
+        yield name, dict(record), answer
+
+
+def _name(study: Study[Piece, Answer], piece: Piece) -> str:
+    """What a piece is called: as the first of its answers."""
+    return min(study.doubt(piece, "it is not asked here"))
+
+
+def _told(shard: Shard | None, sure: int, unsure: int, left: int, what: str) -> str:
+    """How far a run that has its share done is."""
+    doubts = f", {unsure} in doubt, which are asked again" if unsure else ""
+    return (
+        f"shard {shard} is done: {sure} answers are kept{doubts}; {left} {what} are left to other runs. When "
+        "they are done, ask once more without --shard for the whole"
+    )

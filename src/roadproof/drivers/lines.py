@@ -1,0 +1,96 @@
+"""The lines of a plate: on each, between which values a collision is unpreventable, with its exact ends."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from roadproof.drivers import gradual
+from roadproof.drivers.boundary import Plane, line
+from roadproof.drivers.claims import Side
+from roadproof.drivers.driving import Reading
+from roadproof.drivers.models import unpreventable
+from roadproof.library.bind import bind
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Specification
+from roadproof.semantics.exact.algebraic import Point, Root, approximate
+from roadproof.semantics.exact.truth import TruthSet
+from roadproof.world.road import Road
+
+_PLACES = 6
+_NO_ROAD = Road("none", (), frozenset())
+
+
+@dataclass(frozen=True)
+class End:
+    """An end of a span: a number near it, and what it is exactly: a fraction, or a root of a polynomial."""
+
+    near: float
+    exact: str
+
+
+@dataclass(frozen=True)
+class Line:
+    """At a value of the other side (SI), where along the line a collision is unpreventable.
+
+    Of a controller that is stepped, spans are from the first to the last of neighbouring places looked at.
+    """
+
+    at: Fraction
+    spans: tuple[tuple[End, End], ...]
+
+
+def truths(
+    specification: Specification, plane: Plane, model: str, values: Mapping[str, Fraction]
+) -> Iterator[TruthSet]:
+    """Where a model that is not stepped cannot prevent a collision on each line of a plane, in order.
+
+    By the formula of its boundary, or from the motion where POV's braking grows at a finite rate; ``values``
+    are those of all parameters (SI).
+    """
+    if gradual.RATE in plane.fixed:
+        reading = Reading(values, specification.options)
+        return (gradual.line(plane, model, reading, row) for row in plane.rows)
+    text = unpreventable(plane.manoeuvre.name, model, plane.manoeuvre.vehicles)
+    formula = bind(read_claim(specification, text).formula, _NO_ROAD, {}, values)
+    return (line(plane, formula, row) for row in plane.rows)
+
+
+def told_line(row: Fraction, true: TruthSet) -> Line:
+    """What is true on a row's line, told."""
+    spans = tuple((end_of(x.begin.point), end_of(x.end.point)) for x in true.spans() if x.end is not None)
+    return Line(row, spans)
+
+
+def sides_in(lines: Sequence[Line], along: tuple[Fraction, Fraction], is_stepped: bool) -> frozenset[Side]:
+    """The sides of the boundary that a plate has more than single places of.
+
+    ``along``: the range of every line. Of a controller that is stepped a single place is a side, too.
+    """
+    whole = tuple(end_of(x) for x in along)
+    found: set[Side] = set()
+    for one in lines:
+        if any(is_stepped or a != b for a, b in one.spans):
+            found.add("unpreventable")
+        if one.spans != (whole,):
+            found.add("preventable")
+    return frozenset(found)
+
+
+def end_of(point: Point) -> End:
+    """A point of a line, told."""
+    if isinstance(point, Root):
+        return End(round(approximate(point), _PLACES), f"root of {list(point.polynomial)}, constant first")
+    return End(round(float(point), _PLACES), str(point))
+
+
+def line_data(told: Line) -> dict[str, Any]:
+    """A line as plain data."""
+    spans = [[{"near": end.near, "exact": end.exact} for end in span] for span in told.spans]
+    return {"at": str(told.at), "unpreventable": spans}
+
+
+def read_line(said: Mapping[str, Any]) -> Line:
+    """A line from plain data."""
+    spans = tuple((End(a["near"], a["exact"]), End(b["near"], b["exact"])) for a, b in said["unpreventable"])
+    return Line(Fraction(said["at"]), spans)

@@ -1,0 +1,241 @@
+"""Initial values of cut-ins, cut-outs and decelerations, as the sheets of UN R157 name them, and the states
+of vehicles that they say.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+from typing import Any, Literal, TypeAlias, assert_never
+
+from roadproof.errors import UsageError
+from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
+from roadproof.library.specification import unknown
+from roadproof.logic.terms import Own, Signal, Size
+from roadproof.semantics.exact.piecewise import Pieces, constant
+from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.world.signals import SIGNALS, STARTING
+
+KMH = Fraction(5, 18)
+OTHER, FIRST, SECOND = PAIR[1], *TRIPLE[1:]
+BESIDE = Fraction("1.6")  # m between vehicles in the middles of lanes beside each other
+
+ManoeuvreName: TypeAlias = Literal["cut-in", "cut-out", "deceleration"]
+Course: TypeAlias = Literal[ManoeuvreName, "gradual-deceleration"]
+"""A manoeuvre as formulas about driver models name it."""
+# Initial values by name, SI units.
+Values: TypeAlias = Mapping[str, Fraction]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An initial value: its unit, the value where none is given (SI), what it is, and its least value.
+
+    ``is_optional``: where none is given there is none.
+    """
+
+    name: str
+    unit: str
+    value: Fraction
+    doc: str
+    least: Fraction = Fraction(0)
+    is_open: bool = False
+    is_optional: bool = False
+
+    def check(self, value: Fraction) -> None:
+        """Raises ``UsageError`` for a value that no vehicle has."""
+        if value < self.least or (self.is_open and value == self.least):
+            sign = ">" if self.is_open else ">="
+            raise UsageError(f"{self.name}={value} (SI): {self.doc} has to be {sign} {self.least}")
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """``line``: the value that is solved for; ``across``: the other side of a plane; with their ranges (SI).
+
+    ``sheet``: the values that plates differ in where nothing else is asked for.
+    """
+
+    name: ManoeuvreName
+    vehicles: tuple[str, ...]
+    quantities: Mapping[str, Quantity]
+    line: str
+    along: tuple[Fraction, Fraction]
+    across: str
+    range: tuple[Fraction, Fraction]
+    sheet: Mapping[str, tuple[Fraction, ...]]
+
+    def values(self, given: Values) -> dict[str, Fraction]:
+        """All initial values. Raises ``UsageError`` for unknown names, and for what no vehicle can have."""
+        for name in given:
+            if name not in self.quantities:
+                raise UsageError(
+                    f"{name}: {unknown('initial value of a ' + self.name, name, self.quantities)}"
+                )
+        values = {
+            name: given.get(name, x.value)
+            for name, x in self.quantities.items()
+            if name in given or not x.is_optional
+        }
+        for name, value in values.items():
+            self.quantities[name].check(value)
+        if "dV0" in given and values["dV0"] > values["Ve0"]:
+            raise UsageError(
+                f"dV0={values['dV0']} (SI): SV cannot be more than Ve0={values['Ve0']} faster than POV"
+            )
+        return values
+
+
+def _named(*quantities: Quantity) -> Mapping[str, Quantity]:
+    return MappingProxyType({x.name: x for x in quantities})
+
+
+_LENGTH = Quantity("length", "m", Fraction("4.3"), "the length of every vehicle", is_open=True)
+_WIDTH = Quantity("width", "m", Fraction("1.9"), "the width of every vehicle", is_open=True)
+_EGO = Quantity("Ve0", "km/h", 60 * KMH, "the speed of SV")
+_LATERAL = Quantity("Vy", "m/s", Fraction(1), "the lateral speed of POV", is_open=True)
+
+CUT_IN = Manoeuvre(
+    "cut-in",
+    PAIR,
+    _named(
+        _EGO,
+        Quantity("dV0", "km/h", 20 * KMH, "how much faster SV is than POV, Ve0-Vo0"),
+        _LATERAL,
+        Quantity("dx0", "m", Fraction(20), "the gap along the road"),
+        Quantity("dy0", "m", BESIDE, "the gap across the road"),
+        _LENGTH,
+        _WIDTH,
+    ),
+    "dx0",
+    (Fraction(0), Fraction(120)),
+    "dV0",
+    (Fraction(0), 130 * KMH),
+    {"Ve0": (60 * KMH, 90 * KMH, 130 * KMH), "Vy": (Fraction(1, 2), Fraction(1), Fraction(3, 2))},
+)
+CUT_OUT = Manoeuvre(
+    "cut-out",
+    TRIPLE,
+    _named(
+        _EGO,
+        Quantity("Vf0", "km/h", Fraction(0), "the speed of the vehicle in front of the one that cuts out"),
+        _LATERAL,
+        Quantity("headway", "s", Fraction(2), "the time headway at which SV follows"),
+        Quantity("dx0_f", "m", Fraction(30), "the gap from the vehicle that cuts out to the one in front"),
+        _LENGTH,
+        _WIDTH,
+    ),
+    "dx0_f",
+    (Fraction(0), Fraction(150)),
+    "Vy",
+    (Fraction(1, 10), Fraction(3)),
+    {"Ve0": (60 * KMH, 90 * KMH, 110 * KMH, 130 * KMH)},
+)
+DECELERATION = Manoeuvre(
+    "deceleration",
+    PAIR,
+    _named(
+        _EGO,
+        Quantity("Gx", "m/s^2", Fraction(6), "how hard POV brakes", is_open=True),
+        Quantity("dx0", "m", Fraction(20), "the gap along the road"),
+        Quantity("dV0", "km/h", Fraction(0), "how much faster SV is than POV"),
+        Quantity(
+            "dGdt",
+            "m/s^3",
+            Fraction(0),
+            "how fast POV's braking grows (left out: it is there at once)",
+            is_open=True,
+            is_optional=True,
+        ),
+        _LENGTH,
+        _WIDTH,
+    ),
+    "dx0",
+    (Fraction(0), Fraction(80)),
+    "Gx",
+    (Fraction("0.1"), Fraction("9.81")),
+    {"Ve0": (30 * KMH, 60 * KMH, 90 * KMH, 130 * KMH)},
+)
+MANOEUVRES: Mapping[ManoeuvreName, Manoeuvre] = MappingProxyType(
+    {x.name: x for x in (CUT_IN, CUT_OUT, DECELERATION)}
+)
+
+
+def is_possible(manoeuvre: Manoeuvre, values: Values) -> bool:
+    """Whether no vehicle would have to go backwards."""
+    return "dV0" not in values or values["dV0"] <= values["Ve0"]
+
+
+@dataclass(frozen=True)
+class States:
+    """The states of all vehicles along a line; what the judge takes for time is the value that runs."""
+
+    signals: Mapping[tuple[str, str], Polynomial]
+    length: Fraction
+    width: Fraction
+
+    def signal(self, signal: Signal | Own) -> Pieces:
+        """Raises ``UsageError`` for vehicles and signals that the manoeuvre does not have."""
+        found = self.signals.get((signal.name, signal.vehicle))
+        if found is None:
+            raise UsageError(f"the initial values say nothing of {signal.name}({signal.vehicle})")
+        return constant(found)
+
+    def size(self, size: Size) -> Fraction:
+        if size.name not in ("length", "width"):
+            raise UsageError(f"the initial values say nothing of {size.name}({size.vehicle})")
+        return self.length if size.name == "length" else self.width
+
+
+def along_line(manoeuvre: Manoeuvre, values: Values) -> States:
+    """The states along the line through ``values``: every signal is an affine function of what runs."""
+    begin = signals_of(manoeuvre, {**values, manoeuvre.line: Fraction(0)})
+    one = signals_of(manoeuvre, {**values, manoeuvre.line: Fraction(1)})
+    signals = {key: polynomial(value, one[key] - value) for key, value in begin.items()}
+    return States(signals, values["length"], values["width"])
+
+
+def signals_of(manoeuvre: Manoeuvre, values: Mapping[str, Any]) -> dict[tuple[str, str], Any]:
+    """The state at time 0, of numbers or arrays of them.
+
+    The front of SV is at s = 0, SV in the middle of its lane, POV ahead of it or in the lane to its left.
+    """
+    ego, length = values["Ve0"], values["length"]
+    lane = lane_width(values)
+    left = (lane + values["width"]) / 2
+    still = 0 * ego
+    signals = _vehicle(SUBJECT, still, still + left, ego, still, still)
+    match manoeuvre.name:
+        case "cut-in":
+            place, speed = values["dx0"] + length, ego - values["dV0"]
+            signals |= _vehicle(OTHER, place, still + left + lane, speed, -values["Vy"], still)
+        case "cut-out":
+            first = values["headway"] * ego + length
+            second = first + values["dx0_f"] + length
+            signals |= _vehicle(FIRST, first, still + left, ego, values["Vy"], still)
+            signals |= _vehicle(SECOND, second, still + left, values["Vf0"], still, still)
+        case "deceleration":
+            place, speed = values["dx0"] + length, ego - values["dV0"]
+            signals |= _vehicle(OTHER, place, still + left, speed, still, -values["Gx"])
+        case _:
+            assert_never(manoeuvre.name)
+    return signals
+
+
+def lane_width(values: Mapping[str, Any]) -> Any:
+    """Lanes as wide as puts the vehicles into their middles."""
+    return values["width"] + values.get("dy0", BESIDE)
+
+
+def _vehicle(
+    name: str, place: Any, left: Any, speed: Any, lateral: Any, acceleration: Any
+) -> dict[tuple[str, str], Any]:
+    begins = zip(STARTING, (place, left, speed, lateral), strict=True)
+    known: dict[str, Any] = {**dict(begins), "a_lon": acceleration}
+    nothing = 0 * speed
+    return {(signal, name): known.get(signal, nothing) + nothing for signal in SIGNALS}
+
+
+def spread(low: Fraction, high: Fraction, count: int) -> Sequence[Fraction]:
+    """``count`` values from ``low`` to ``high``, both with them."""
+    return tuple(low + (high - low) * k / max(1, count - 1) for k in range(count))

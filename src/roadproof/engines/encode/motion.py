@@ -1,0 +1,175 @@
+"""Vehicles as pairs of double integrators without jerk, exact at the samples (semantics §2).
+
+The unknowns of a vehicle are position and speed along and across the road at each sample; the
+acceleration between two samples is constant, so it is the difference of speeds over dt, and
+positions follow the trapezoid rule exactly. After the last sample there is no acceleration.
+"""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import assert_never
+
+from roadproof.engines.encode.custom_signals import OwnColumns, index_of
+from roadproof.engines.encode.polynomial import Polynomial, affine, constant, variable
+from roadproof.engines.encode.problem import Column, Row, Unknown, row_of
+from roadproof.engines.encode.unroll import Grid
+from roadproof.world.signals import STARTING, OwnName, SignalName
+from roadproof.world.vehicle import Range, Vehicle
+
+# A position and the speed that it grows by.
+_ALONG: tuple[SignalName, SignalName] = ("s", "v_lon")
+_ACROSS: tuple[SignalName, SignalName] = ("d", "v_lat")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Which column holds which signal of which vehicle at which sample."""
+
+    vehicles: tuple[str, ...]
+    grid: Grid
+    own: tuple[OwnColumns, ...] = ()
+
+    def column(self, vehicle: str, signal: SignalName, step: int) -> int:
+        """Raises ``ValueError`` for a signal that follows from others, and so has no columns."""
+        if signal not in STARTING:
+            raise ValueError(f"signal={signal} has no columns: those that have are {', '.join(STARTING)}")
+        samples = self.grid.steps + 1
+        row = self.vehicles.index(vehicle) * len(STARTING) + STARTING.index(signal)
+        return row * samples + step
+
+    def unknowns(self, vehicle: str) -> Iterator[Unknown]:
+        """What the columns of a vehicle stand for, in their order."""
+        for signal in STARTING:
+            for step in range(self.grid.steps + 1):
+                yield Unknown(vehicle, signal, step)
+
+    def own_column(self, vehicle: str, name: str, step: int) -> int:
+        """The columns of own signals come after those of all vehicles."""
+        rows = len(self.vehicles) * len(STARTING) + index_of(self.own, name, vehicle)
+        return rows * (self.grid.steps + 1) + step
+
+    def own_unknowns(self) -> Iterator[Column]:
+        """The columns of own signals, in their order."""
+        for x in self.own:
+            for step in range(self.grid.steps + 1):
+                yield Column(Unknown(x.signal.vehicle, OwnName(x.signal.name), step), *x.range)
+
+    def state(self, vehicle: str, signal: SignalName | OwnName, step: int) -> Polynomial[int]:
+        """A signal at a sample; an acceleration is that of the piece which begins there, and jerk is none."""
+        if isinstance(signal, OwnName):
+            return variable(self.own_column(vehicle, signal, step))
+        match signal:
+            case "s" | "d" | "v_lon" | "v_lat":
+                return variable(self.column(vehicle, signal, step))
+            case "a_lon":
+                return self._change("v_lon", vehicle, step)
+            case "a_lat":
+                return self._change("v_lat", vehicle, step)
+            case "j_lon":
+                return constant(Fraction(0))
+            case _:
+                assert_never(signal)
+
+    def _change(self, speed: SignalName, vehicle: str, step: int) -> Polynomial[int]:
+        """The acceleration from a sample to the next; after the last there is none."""
+        if step == self.grid.steps:
+            return constant(Fraction(0))
+        before, after = self.column(vehicle, speed, step), self.column(vehicle, speed, step + 1)
+        return affine([(after, 1 / self.grid.dt), (before, -1 / self.grid.dt)])
+
+
+@dataclass(frozen=True)
+class Motions:
+    """Columns and rows of all vehicles on one grid."""
+
+    layout: Layout
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+
+
+def encode_motions(
+    vehicles: Mapping[str, Vehicle],
+    grid: Grid,
+    starts: Mapping[str, Range],
+    across: Mapping[str, Range],
+    natural: bool,
+    inside: Fraction,
+    straight: Collection[str] = (),
+    own: tuple[OwnColumns, ...] = (),
+) -> Motions:
+    """Columns and rows for ``vehicles``.
+
+    ``starts``: where the front of each vehicle may be at time 0; ``across``: where its left side may
+    be at all (m). ``natural`` asks in addition that no vehicle moves across the road at the first
+    and last sample and that accelerations change by no more than the vehicle's jumps, from and to
+    none at the end; the first speed is then the vehicle's cruising speed. ``inside`` is how far
+    accelerations stay inside their limits, so that rounding cannot break them. Vehicles in
+    ``straight`` never move across the road. ``own``: own signals, whose columns come last.
+    """
+    layout = Layout(tuple(vehicles), grid, own)
+    columns = tuple(
+        Column(of, *_bounds(of, vehicle, grid, starts[name], across[name], natural, name in straight))
+        for name, vehicle in vehicles.items()
+        for of in layout.unknowns(name)
+    )
+    rows = [
+        row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural, inside)
+    ]
+    return Motions(layout, (*columns, *layout.own_unknowns()), tuple(rows))
+
+
+def _bounds(
+    of: Unknown, vehicle: Vehicle, grid: Grid, start: Range, across: Range, natural: bool, straight: bool
+) -> Range:
+    slow, fast = vehicle.v_lon
+    match of.signal:
+        case "s":
+            time = of.step * grid.dt
+            return start[0] + slow * time, start[1] + fast * time
+        case "d":
+            return across
+        case "v_lon":
+            return vehicle.cruise if natural and of.step == 0 else vehicle.v_lon
+        case "v_lat" if straight:
+            return Fraction(0), Fraction(0)
+        case "v_lat" if natural:
+            away = min(of.step, grid.steps - of.step) * grid.dt
+            bound = away * max(vehicle.a_lat[1], -vehicle.a_lat[0])
+            return max(vehicle.v_lat[0], -bound), min(vehicle.v_lat[1], bound)
+        case "v_lat":
+            return vehicle.v_lat
+        case _:
+            raise ValueError(f"signal={of.signal}: the bounds of its columns are not known")
+
+
+def _rows(name: str, vehicle: Vehicle, layout: Layout, natural: bool, inside: Fraction) -> Iterable[Row]:
+    grid = layout.grid
+    half = grid.dt / 2
+    limits_of: Mapping[SignalName, Range] = {"a_lon": vehicle.a_lon, "a_lat": vehicle.a_lat}
+
+    def column(signal: SignalName, k: int) -> int:
+        return layout.column(name, signal, k)
+
+    for k in range(grid.steps):
+        for place, speed in (_ALONG, _ACROSS):
+            moved = [(column(place, k + 1), Fraction(1)), (column(place, k), Fraction(-1))]
+            driven = [(column(speed, k), -half), (column(speed, k + 1), -half)]
+            yield row_of(affine(moved + driven), Fraction(0), Fraction(0))
+        for acceleration, limits in limits_of.items():
+            yield row_of(layout.state(name, acceleration, k), limits[0] + inside, limits[1] - inside)
+    for k in range(grid.steps + 1):
+        for sign in (1, -1):
+            share = [(column("v_lon", k), vehicle.lateral_share), (column("v_lat", k), Fraction(sign))]
+            yield row_of(affine(share), inside, None)
+    if natural:
+        yield from _jumps(name, vehicle, layout, inside)
+
+
+def _jumps(name: str, vehicle: Vehicle, layout: Layout, inside: Fraction) -> Iterable[Row]:
+    jumps: Mapping[SignalName, Fraction] = {"a_lon": vehicle.jump_lon, "a_lat": vehicle.jump_lat}
+    for acceleration, jump in jumps.items():
+        for k in range(layout.grid.steps):
+            later = layout.state(name, acceleration, k + 1)
+            change = later + layout.state(name, acceleration, k).scaled(Fraction(-1))
+            yield row_of(change, inside - jump, jump - inside)

@@ -1,0 +1,141 @@
+"""Time becomes steps, here and nowhere else.
+
+A bound formula and a grid become a circuit over atoms at samples. Negation disappears: it is pushed
+to the comparisons, where it turns ``<`` into ``>=``. Grid semantics: an operator ranges over samples
+k·dt; the last sample stands for every later one, so that a window that reaches past the horizon
+ends on it (the motion goes on without acceleration, see ``encode.build``). Until is the paper's
+(semantics §1): the left side is asked for from the start of the interval on, not before.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from math import gcd
+from typing import assert_never
+
+from roadproof.engines.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
+from roadproof.errors import UsageError
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Compare, Comparison, Formula, Interval
+from roadproof.logic.rewrite import bounds_of
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Samples 0, dt, …, steps·dt (seconds)."""
+
+    dt: Fraction
+    steps: int
+
+    @property
+    def horizon(self) -> Fraction:
+        return self.dt * self.steps
+
+    def finer(self, factor: int) -> "Grid":
+        """The same horizon in ``factor`` times as many steps."""
+        return Grid(self.dt / factor, self.steps * factor)
+
+    def window(self, interval: Interval) -> tuple[int, int | None]:
+        """An interval in steps; None is without end. Raises ``UsageError`` for no multiple of dt."""
+        low, high = bounds_of(interval)
+        return self._steps(low), None if high is None else self._steps(high)
+
+    def _steps(self, bound: Fraction) -> int:
+        steps = bound / self.dt
+        if steps.denominator != 1:
+            raise UsageError(
+                f"the interval bound {float(bound):g} s is no multiple of dt={float(self.dt):g} s: "
+                f"choose a dt that divides both, such as dt={_common_divisor(bound, self.dt)}"
+            )
+        return int(steps)
+
+
+def _common_divisor(a: Fraction, b: Fraction) -> Fraction:
+    """The greatest time of which both are multiples."""
+    return Fraction(
+        gcd(a.numerator * b.denominator, b.numerator * a.denominator), a.denominator * b.denominator
+    )
+
+
+@dataclass(frozen=True)
+class At:
+    """A comparison at a sample; at the last sample it is asked for from there on for ever."""
+
+    atom: Compare
+    step: int
+
+
+def unroll(formula: Formula, grid: Grid) -> Circuit[At]:
+    """The circuit that is true exactly where ``formula`` holds at sample 0 of the grid.
+
+    ``formula`` is bound: no parameters, quantifiers or lane atoms.
+    """
+    return unroll_at(formula, grid, 0)
+
+
+def unroll_at(formula: Formula, grid: Grid, step: int) -> Circuit[At]:
+    """The same at another sample."""
+    return _Unrolling(grid).at(formula, True, step)
+
+
+_OPPOSITE: dict[Comparison, Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+
+
+class _Unrolling:
+    def __init__(self, grid: Grid) -> None:
+        self.grid = grid
+        self.done: dict[tuple[Formula, bool, int], Circuit[At]] = {}
+
+    def at(self, formula: Formula, wanted: bool, step: int) -> Circuit[At]:
+        """``formula`` (its negation where not ``wanted``) at a sample."""
+        key = (formula, wanted, step)
+        if key not in self.done:
+            self.done[key] = self._at(formula, wanted, step)
+        return self.done[key]
+
+    def _at(self, formula: Formula, wanted: bool, step: int) -> Circuit[At]:
+        both, either = (all_of, any_of) if wanted else (any_of, all_of)
+        match formula:
+            case f.Truth(value):
+                return All(()) if value == wanted else AnyOf(())
+            case Compare(left, op, right):
+                return Leaf(At(formula if wanted else Compare(left, _OPPOSITE[op], right), step))
+            case f.Not(body):
+                return self.at(body, not wanted, step)
+            case f.And(parts):
+                return both(self.at(p, wanted, step) for p in parts)
+            case f.Or(parts):
+                return either(self.at(p, wanted, step) for p in parts)
+            case f.Named(_, _, body):
+                return self.at(body, wanted, step)
+            case f.Eventually(interval, body):
+                return either(self.at(body, wanted, k) for k in self._samples(interval, step))
+            case f.Always(interval, body):
+                return both(self.at(body, wanted, k) for k in self._samples(interval, step))
+            case f.Until(left, interval, right):
+                return self._until(left, self._samples(interval, step), right, wanted, both, either)
+            case f.Occupies() | f.Some() | f.Every():
+                raise ValueError(f"bind the formula to a road first: {type(formula).__name__}")
+            case _:
+                assert_never(formula)
+
+    def _samples(self, interval: Interval, step: int) -> range:
+        low, high = self.grid.window(interval)
+        last = self.grid.steps
+        first = min(step + low, last)
+        return range(first, 1 + (last if high is None else min(step + high, last)))
+
+    def _until(
+        self,
+        left: Formula,
+        samples: range,
+        right: Formula,
+        wanted: bool,
+        both: Callable[[list[Circuit[At]]], Circuit[At]],
+        either: Callable[[list[Circuit[At]]], Circuit[At]],
+    ) -> Circuit[At]:
+        """From the last sample back: ψ now, or φ now and the same from the next sample on."""
+        result = self.at(right, wanted, samples[-1])
+        for k in reversed(samples[:-1]):
+            result = either([self.at(right, wanted, k), both([self.at(left, wanted, k), result])])
+        return result

@@ -1,0 +1,229 @@
+"""Why a claim ends UNKNOWN: an enumeration of causes, each with the one option or premise that helps.
+
+The prover says where it stopped (``Stop``). Together with the form of the claim this tells the cause: some
+forms need a kind of reasoning that the prover does not have, so that more work is in vain.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from roadproof.evidence.answers import proofs as kept
+from roadproof.evidence.codec import read
+from roadproof.library.motion import is_moving
+from roadproof.library.query import Query
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import signals_of
+from roadproof.runtime.budget import Effort
+from roadproof.world.signals import SIGNALS
+
+# Below so many units of work nothing is concluded from the form of a claim: more work comes first.
+ENOUGH = 5.0
+
+
+class Stop(StrEnum):
+    """Where a search for a proof and for a counterexample stopped."""
+
+    WORK = "work"
+    CLOCK = "clock"
+    PROCESS = "process"
+    SOLVER = "solver"
+    ROUNDS = "rounds"
+    LANES = "lanes"
+    PLACE = "place"
+    FACTS = "facts"
+    CERTIFICATE = "certificate"
+
+
+class Cause(StrEnum):
+    """Why there is no answer."""
+
+    WORK = "work"
+    CLOCK = "clock"
+    PROCESS = "process"
+    SOLVER = "solver"
+    PLACE = "place"
+    FACTS = "facts"
+    CERTIFICATE = "certificate"
+    LANES = "lanes"
+    INDUCTION = "induction"
+    ALTERNATION = "alternation"
+    FIRST_INSTANT = "first-instant"
+    SECOND_ORDER = "second-order"
+
+    @property
+    def words(self) -> str:
+        """The cause as a clause."""
+        return _WORDS[self][0]
+
+    @property
+    def effort_helps(self) -> bool:
+        """Whether more work can change the answer."""
+        return self in (Cause.WORK, Cause.CLOCK, Cause.PROCESS)
+
+    @property
+    def remedy(self) -> str:
+        """The option or premise that helps, as an imperative."""
+        return _WORDS[self][1]
+
+
+_WORDS = {
+    Cause.WORK: ("the work limit ended the search", "raise --effort"),
+    Cause.CLOCK: ("the clock ended the search", "raise --timeout, or ask on an idle machine"),
+    Cause.PROCESS: ("the process of this claim ended", "ask this claim alone, with --jobs 1"),
+    Cause.SOLVER: (
+        "z3 could not decide the arithmetic",
+        "fix parameters with --declared or --param, or bound the signals in the premise",
+    ),
+    Cause.PLACE: (
+        "candidate counterexamples were found, but none could be placed on a road",
+        "ask about drives on one road: --engine smt --road NAME",
+    ),
+    Cause.FACTS: (
+        "the facts about motion give no proof, and no drive was found that refutes the claim",
+        "add the limits of the vehicles: --vehicle SV=car",
+    ),
+    Cause.CERTIFICATE: (
+        "a proof was found, but its certificate could not be confirmed",
+        "state the parts of the conclusion as claims of their own",
+    ),
+    Cause.LANES: (
+        "the claim asks for more and more lanes and lanelets",
+        "name the lanes (L, L1) instead of quantifying over them",
+    ),
+    Cause.INDUCTION: (
+        "the claim repeats a step of bounded time for ever; the prover has no induction that fits it",
+        "bound the time, such as F[0, 10 s] and G[0, 10 s]",
+    ),
+    Cause.ALTERNATION: (
+        "a counterexample would have to change infinitely often; none was found",
+        "bound the time, such as F[0, 10 s] and G[0, 10 s]",
+    ),
+    Cause.FIRST_INSTANT: (
+        "the claim asks for a first instant of what it compares, and signals that jump need not have one",
+        "add --assume motion, so that positions and speeds are continuous",
+    ),
+    Cause.SECOND_ORDER: (
+        "the claim relates positions to accelerations beyond the facts of second order",
+        "add a bound of the speed in between, such as G[0, 2 s] v_lon(SV) <= 20 m/s, to the premise",
+    ),
+}
+
+
+class Try(StrEnum):
+    """What was tried, in the order of trial."""
+
+    PROOF = "a proof"
+    TRACES = "traces"
+    DRIVES = "drives"
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Why a claim ends UNKNOWN. ``units``: the work limit; ``detail``: what a solver said, or empty."""
+
+    cause: Cause
+    tried: tuple[Try, ...]
+    units: float
+    detail: str = ""
+
+    @property
+    def remedy(self) -> str:
+        """What to do, with the work limit to ask with where more work can help."""
+        more = f" (now {self.units:g})" if self.cause is Cause.WORK else ""
+        return f"{self.cause.remedy}{more}"
+
+    @property
+    def kept(self) -> kept.Doubt:
+        """As the answer has it."""
+        said = {
+            "cause": str(self.cause),
+            "tried": [x.name.lower() for x in self.tried],
+            "effort_helps": self.cause.effort_helps,
+            "remedy": self.remedy,
+            "detail": self.detail,
+        }
+        return read(kept.Doubt, said, "a doubt")
+
+    def __str__(self) -> str:
+        if self.cause is Cause.WORK:
+            said = f"no answer within {self.units:g} units of work"
+        elif self.cause in (Cause.CLOCK, Cause.PROCESS):
+            return self.detail
+        else:
+            said = self.cause.words + (f" ({self.detail})" if self.detail else "")
+        helps = "may help" if self.cause.effort_helps else "does not help"
+        return f"{said}; tried: {', '.join(self.tried)}; more work {helps}: {self.remedy}"
+
+
+def doubt_of(
+    query: Query, said: Sequence[str], stop: Stop, effort: Effort, seek_drive: bool, detail: str = ""
+) -> Doubt:
+    """Why ``query``, asked under what is ``said``, ends UNKNOWN where the search stopped at ``stop``."""
+    moving = is_moving(said)
+    tries = ((Try.PROOF, True), (Try.TRACES, not moving), (Try.DRIVES, seek_drive))
+    tried = tuple(x for x, done in tries if done)
+    cause = _cause(query.formula, said, stop, effort.units)
+    kept = cause in (Cause.CLOCK, Cause.PROCESS, Cause.SOLVER, Cause.CERTIFICATE)
+    return Doubt(cause, tried, effort.units, detail if kept else "")
+
+
+def _cause(claim: Formula, said: Sequence[str], stop: Stop, units: float) -> Cause:
+    if stop not in (Stop.WORK, Stop.ROUNDS, Stop.PLACE, Stop.FACTS):
+        return Cause(stop)
+    if stop is Stop.WORK and units < ENOUGH:
+        return Cause.WORK
+    endless = set(_chains(claim, False, False))
+    if endless:
+        return Cause.INDUCTION if True in endless else Cause.ALTERNATION
+    if is_moving(said) and _is_of_second_order(claim, said):
+        return Cause.SECOND_ORDER
+    if not is_moving(said) and stop is not Stop.PLACE and _has_until(claim, True):
+        return Cause.FIRST_INSTANT
+    return Cause.WORK if stop is Stop.ROUNDS else Cause(stop)
+
+
+def _chains(formula: Formula, wanted: bool, forever: bool) -> list[bool]:
+    """Of each "at some time" that has to hold at all times: whether its time is bounded.
+
+    ``wanted``: whether the formula is to be true; ``forever``: whether at all times without end.
+    """
+    match formula:
+        case f.Not(body):
+            return _chains(body, not wanted, forever)
+        case f.Eventually(interval, body) | f.Always(interval, body):
+            lasts = isinstance(formula, f.Always) == wanted
+            endless = interval.high is None
+            here = [not endless] if forever and not lasts else []
+            return here + _chains(body, wanted, forever or (lasts and endless))
+        case f.Until(left, interval, right):
+            here = [interval.high is not None] if forever and wanted else []
+            inner = forever or interval.high is None
+            later = forever if wanted else inner
+            return here + _chains(left, wanted, inner) + _chains(right, wanted, later)
+        case _:
+            return [x for part in f.children(formula) for x in _chains(part, wanted, forever)]
+
+
+def _has_until(formula: Formula, claimed: bool) -> bool:
+    """Whether an until is claimed, not supposed."""
+    match formula:
+        case f.Not(body):
+            return _has_until(body, not claimed)
+        case f.Until():
+            return claimed or any(_has_until(x, claimed) for x in f.children(formula))
+        case _:
+            return any(_has_until(x, claimed) for x in f.children(formula))
+
+
+def _is_of_second_order(claim: Formula, said: Sequence[str]) -> bool:
+    """Whether a position is spoken of, and the acceleration in the same direction."""
+    spoken = {*signals_of([claim])}
+    rates = {x: about.rate_of for x, about in SIGNALS.items() if about.rate_of is not None}
+    second = {x: rates.get(y) for x, y in rates.items()}
+    return any(
+        place in spoken and (x in spoken or any(limit.startswith(f"{x}(") for limit in said))
+        for x, place in second.items()
+        if place is not None
+    )

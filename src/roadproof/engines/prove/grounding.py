@@ -1,0 +1,349 @@
+"""The negated claim as a growing set of ground clauses in a live solver session.
+
+Each quantifier met at a moment is an obligation with a Boolean name; asserting the name demands
+what the quantifier demands. Existentials are named at once; universals wait to be instantiated.
+This is the finder: what it finds is derived again by ``evidence.derivation``, which shares no
+grounding code with it.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TypeAlias, assert_never
+
+from roadproof.engines.prove.small_roads import Roster
+from roadproof.engines.solve.smt import Session
+from roadproof.evidence.atoms import ZONES, Atoms, is_rigid, membership, true_of_roads
+from roadproof.evidence.derivation import Lemma, Site, prefix_form
+from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import rename
+
+# What speaks of other moments, or of elements of a road.
+Timed: TypeAlias = f.Temporal | f.Some | f.Every
+
+
+@dataclass(frozen=True)
+class Window:
+    """Moments from ``low`` to ``high`` (None: unbounded); ``strict`` leaves the end out."""
+
+    low: Moment
+    high: Moment | None
+    strict: bool = False
+
+    def inside(self, instants: Iterable[Fraction], values: dict[str, Fraction]) -> list[Fraction]:
+        """Those of ``instants`` that lie inside, in the model ``values``."""
+        low = self.low.value(values)
+        if self.high is None:
+            return [instant for instant in instants if low <= instant]
+        high = self.high.value(values)
+        return [x for x in instants if low <= x and (x < high if self.strict else x <= high)]
+
+    def smt(self, when: Moment) -> list[str]:
+        guards = [f"(<= {self.low.smt()} {when.smt()})"]
+        if self.high is not None:
+            guards.append(f"({'<' if self.strict else '<='} {when.smt()} {self.high.smt()})")
+        return guards
+
+
+@dataclass
+class Universal:
+    """A universal over time: at every moment of ``window``, what ``body`` says there.
+
+    ``easily`` is enough for ``body``, and speaks of that moment alone.
+    """
+
+    site: Site
+    switch: str
+    window: Window
+    body: Callable[[Moment], str]
+    is_flat: bool
+    easily: Callable[[Moment], str]
+    done: list[Moment] = field(default_factory=list)
+
+
+@dataclass
+class RoadUniversal:
+    """A universal over lanes or lanelets."""
+
+    site: Site
+    switch: str
+    domain: f.Domain
+    body: Callable[[str], str]
+    done: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Grounding:
+    """All that has been told to the solver, by what it was told for.
+
+    ``switches`` turns instance and lemma clauses on: assumption name → what it stands for.
+    ``prefixes`` begin the names of times and of lanes or lanelets; no name of the claim begins so.
+    ``timing`` are the parameters in interval bounds. ``origins`` tells under which switch a name was
+    met first; '' is in the claim itself.
+    ``wishes`` are assumptions that a named time falls on a moment known before it: models in which
+    they hold have few instants, so that instantiation comes to an end.
+    """
+
+    atoms: Atoms
+    bounds: dict[str, str]
+    prefixes: tuple[str, str] = ("t", "M")
+    timing: frozenset[str] = frozenset()
+    wishful: bool = False
+    names: dict[Site, str] = field(default_factory=dict)
+    roster: Roster | None = None
+    session: Session = field(default_factory=Session)
+    universals: list[Universal] = field(default_factory=list)
+    road_universals: list[RoadUniversal] = field(default_factory=list)
+    moments: dict[Moment, None] = field(default_factory=lambda: {ZERO: None})
+    elements: dict[str, f.Domain] = field(default_factory=dict)
+    facts: dict[tuple[f.Domain, str], None] = field(default_factory=dict)
+    switches: dict[str, tuple[Site, str] | Lemma] = field(default_factory=dict)
+    wishes: list[str] = field(default_factory=list)
+    applied: dict[tuple[str, Moment], str] = field(default_factory=dict)
+    origins: dict[str, str] = field(default_factory=dict)
+    _known: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
+    _declared: set[str] = field(default_factory=set)
+
+    def known_parameters(self) -> list[str]:
+        """The parameters that some clause speaks of."""
+        return [name for name in self.bounds if name in self._declared]
+
+    def demand(self, formula: Formula, positive: bool) -> None:
+        """Assert an abstracted formula, or its negation, at time 0."""
+        self.session.tell(f"(assert {self.truth(formula, positive, ZERO)})")
+        self.origins = dict.fromkeys(self.origins, "")
+
+    def truth(self, formula: Formula, positive: bool, moment: Moment) -> str:
+        match formula:
+            case f.Truth(value):
+                return "true" if value == positive else "false"
+            case f.Named(name, _, _):
+                applied = self.atom(name, moment)
+                return applied if positive else f"(not {applied})"
+            case f.Not(body):
+                return self.truth(body, not positive, moment)
+            case f.And(parts) | f.Or(parts):
+                word = "and" if isinstance(formula, f.And) == positive else "or"
+                return f"({word} {' '.join(self.truth(p, positive, moment) for p in parts)})"
+            case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
+                return self._obligation(formula, positive, moment)
+            case f.Compare() | f.Occupies():
+                raise ValueError(f"no atom: {type(formula).__name__}; abstract the formula first")
+            case _:
+                assert_never(formula)
+
+    def atom(self, name: str, moment: Moment) -> str:
+        times = compared_times(self.atoms.meaning(name), self.timing)
+        if times is not None:
+            left, op, right = times
+            return f"({op} {self.declare_moment(left)} {self.declare_moment(right)})"
+        when = ZERO if is_rigid(self.atoms.meaning(name)) else moment
+        if (name, when) not in self.applied:
+            self._declare(f"|{name}|", f"(declare-fun |{name}| (Real) Bool)")
+            self.applied[name, when] = f"(|{name}| {self.declare_moment(when)})"
+        return self.applied[name, when]
+
+    def declare_moment(self, moment: Moment) -> str:
+        """The moment in SMT-LIB, its parameters known to the solver with their bounds."""
+        for name, _ in moment.parts:
+            if name in self.bounds:
+                bound = self.bounds[name]
+                known = f"(assert ({bound} {constant(name)} 0.0))" if bound else ""
+                self._declare(name, f"(declare-const {constant(name)} Real){known}")
+        return moment.smt()
+
+    def _declare(self, name: str, command: str) -> None:
+        if name not in self._declared:
+            self._declared.add(name)
+            self.session.tell(command)
+
+    def _obligation(self, formula: Timed, positive: bool, moment: Moment) -> str:
+        key = (formula, positive, moment)
+        if key not in self._known:
+            switch = f"q${len(self._known) + 1}"
+            self._known[key] = switch
+            self._declare(switch, f"(declare-const {switch} Bool)")
+            self._unfold(formula, positive, moment, switch)
+        return self._known[key]
+
+    def _unfold(self, formula: Timed, positive: bool, moment: Moment, switch: str) -> None:
+        site = Site(prefix_form(formula), positive, str(moment))
+        match formula:
+            case f.Eventually(interval, body) | f.Always(interval, body):
+                window = self._window(moment, interval)
+                if isinstance(formula, f.Eventually) == positive:
+                    when = self._name_time(site, window.low)
+                    self._require(switch, *window.smt(when), self.truth(body, positive, when))
+                else:
+                    self._wait(site, switch, window, body, positive)
+            case f.Until(left, interval, right) if positive:
+                window = self._window(moment, interval)
+                end = self._name_time(site, window.low)
+                self._require(switch, *window.smt(end), self.truth(right, True, end))
+                before = Window(window.low, end, strict=True)
+                self._wait(site, switch, before, left, True)
+            case f.Until(_, interval, right):
+                until = formula
+                window = self._window(moment, interval)
+                self.universals.append(
+                    Universal(
+                        site,
+                        switch,
+                        window,
+                        lambda when: self._fails(until, site, window.low, when),
+                        False,
+                        lambda when: self._easily(right, False, when),
+                    )
+                )
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+
+                def at_element(element: str) -> str:
+                    instance = self.atoms.abstract(rename(body, variable, element))
+                    return self.truth(instance, positive, moment)
+
+                if self.roster is not None:
+                    self._require(switch, self._over_roster(self.roster, formula, positive, at_element))
+                elif isinstance(formula, f.Some) == positive:
+                    element = self._name_element(site, domain)
+                    self._require(switch, self._fact(domain, element), at_element(element))
+                else:
+                    self.road_universals.append(RoadUniversal(site, switch, domain, at_element))
+            case _:
+                assert_never(formula)
+
+    def _over_roster(
+        self,
+        roster: Roster,
+        formula: f.Some | f.Every,
+        positive: bool,
+        at_element: Callable[[str], str],
+    ) -> str:
+        """A quantifier over all elements of the roster; a lanelet has its lane there, and one zone."""
+        domain, exists = formula.domain, isinstance(formula, f.Some) == positive
+        parts = ["false" if exists else "true"]
+        for element in roster.members(domain):
+            fact = self._fact(domain, element)
+            if domain.kind == "lanelets":
+                self._declare(f"(assert {fact})", f"(assert {fact})")
+            if domain.kind == "zone":
+                for zone in ZONES:
+                    self._fact(f.Domain("zone", zone), element)
+            parts.append(f"({'and' if exists else '=>'} {fact} {at_element(element)})")
+        return f"({'or' if exists else 'and'} {' '.join(parts)})"
+
+    def _fails(self, until: f.Until, site: Site, low: Moment, when: Moment) -> str:
+        failed = self._name_time(Site(site.formula, False, site.moment, str(when)), low)
+        early = Window(low, when, strict=True).smt(failed)
+        broken = f"(and {' '.join(early)} {self.truth(until.left, False, failed)})"
+        return f"(or {self.truth(until.right, False, when)} {broken})"
+
+    def _window(self, moment: Moment, interval: f.Interval) -> Window:
+        low, high = moment_of(interval.low), interval.high
+        for bound in (low, ZERO if high is None else moment_of(high)):
+            self.declare_moment(bound)
+        return Window(moment + low, None if high is None else moment + moment_of(high))
+
+    def _require(self, switch: str, *parts: str) -> None:
+        self.session.tell(f"(assert (=> {switch} (and {' '.join(parts)})))")
+
+    def _wait(self, site: Site, switch: str, window: Window, body: Formula, positive: bool) -> None:
+        flat = f.is_state(body) and not _has_quantifier(body)
+        self.universals.append(
+            Universal(
+                site,
+                switch,
+                window,
+                lambda when: self.truth(body, positive, when),
+                flat,
+                lambda when: self._easily(body, positive, when),
+            )
+        )
+
+    def _easily(self, formula: Formula, positive: bool, moment: Moment) -> str:
+        """What is enough for ``formula`` to be true, or false, and speaks of ``moment`` alone."""
+        match formula:
+            case f.Truth() | f.Named():
+                return self.truth(formula, positive, moment)
+            case f.Not(body):
+                return self._easily(body, not positive, moment)
+            case f.And(parts) | f.Or(parts):
+                word = "and" if isinstance(formula, f.And) == positive else "or"
+                return f"({word} {' '.join(self._easily(p, positive, moment) for p in parts)})"
+            case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
+                return "false"
+            case f.Compare() | f.Occupies():
+                raise ValueError("abstract the formula first")
+            case _:
+                assert_never(formula)
+
+    def _name_time(self, site: Site, earliest: Moment) -> Moment:
+        name = self.names.setdefault(site, f"{self.prefixes[0]}{len(self.names) + 1}")
+        self.origins.setdefault(name, self._next_switch())
+        self._declare(name, f"(declare-const {name} Real)")
+        if self.wishful:
+            wish = f"w${name}"
+            known = " ".join(f"(= {name} {m.smt()})" for m in dict.fromkeys([earliest, *self.moments]))
+            self.session.tell(f"(declare-const {wish} Bool)(assert (=> {wish} (or {known})))")
+            self.wishes.append(wish)
+        self.moments[at(name)] = None
+        return at(name)
+
+    def _name_element(self, site: Site, domain: f.Domain) -> str:
+        name = self.names.setdefault(site, f"{self.prefixes[1]}{len(self.names) + 1}")
+        self.origins.setdefault(name, self._next_switch())
+        self.elements[name] = domain
+        return name
+
+    def _fact(self, domain: f.Domain, element: str) -> str:
+        if domain.kind == "lanes":
+            return "true"
+        fact = membership(domain, element)
+        if (domain, element) not in self.facts:
+            self.facts[domain, element] = None
+            self._declare(f"|{fact}|", f"(declare-const |{fact}| Bool)")
+            for axiom in true_of_roads(self.facts):
+                self._declare(f"(assert {axiom})", f"(assert {axiom})")
+        return f"|{fact}|"
+
+    # --- growing ---------------------------------------------------------------------------------
+
+    def instantiate(self, universal: Universal, when: Moment) -> None:
+        """Demand what ``universal`` says at ``when``, under a switch of its own."""
+        universal.done.append(when)
+        guards = " ".join([universal.switch, *universal.window.smt(when)])
+        self._add_clause((universal.site, str(when)), f"(=> (and {guards}) {universal.body(when)})")
+
+    def instantiate_road(self, universal: RoadUniversal, element: str) -> None:
+        """Demand what ``universal`` says of a lane or lanelet."""
+        universal.done.append(element)
+        guards = f"{universal.switch} {self._fact(universal.domain, element)}"
+        self._add_clause((universal.site, element), f"(=> (and {guards}) {universal.body(element)})")
+
+    def add_lemma(self, literals: Sequence[tuple[str, bool]], when: Moment) -> None:
+        """Use a clause that holds at every instant, at one moment."""
+        clause = " ".join(
+            self.atom(name, when) if positive else f"(not {self.atom(name, when)})"
+            for name, positive in literals
+        )
+        self._add_clause(Lemma(tuple(literals), (str(when),)), f"(or {clause})")
+
+    def _add_clause(self, stands_for: tuple[Site, str] | Lemma, clause: str) -> None:
+        switch = self._next_switch()
+        self.switches[switch] = stands_for
+        self.session.tell(f"(declare-const {switch} Bool)(assert (=> {switch} {clause}))")
+
+    def _next_switch(self) -> str:
+        """The switch of the clause that is being made."""
+        return f"i${len(self.switches) + 1}"
+
+
+def _has_quantifier(formula: Formula) -> bool:
+    match formula:
+        case f.Named():
+            return False
+        case f.Some() | f.Every():
+            return True
+        case _:
+            return any(_has_quantifier(child) for child in f.children(formula))

@@ -1,0 +1,70 @@
+"""Which inductions over time may help to prove a claim: those whose step the claim itself supposes."""
+
+from collections.abc import Iterator, Sequence
+
+from roadproof.engines.prove.prover import Result, prove
+from roadproof.errors import InputError
+from roadproof.library.motion import Assumed, Axiom, axiom_formula
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.restore import as_syntax, term_as_syntax
+from roadproof.logic.show import text
+from roadproof.logic.terms import Term
+from roadproof.runtime.budget import Effort
+
+MOST = 8
+UNITS = 4.0
+
+
+def prove_by_induction(
+    specification: Specification,
+    query: Query,
+    said: Sequence[str],
+    effort: Effort,
+    label: str = "",
+    scenario: int | None = None,
+) -> Result | None:
+    """A proof of ``query`` that may use inductions; None where the claim has no step or no proof is found.
+
+    Raises ``Late``, ``InputError``.
+    """
+    axioms = tuple(dict.fromkeys(inductions(specification, query)))[:MOST]
+    if not axioms:
+        return None
+    units = effort.of(min(UNITS, effort.units))
+    result = prove(specification, query, units, label, scenario, Assumed(tuple(said), axioms))
+    return result if result.holds else None
+
+
+def inductions(specification: Specification, query: Query) -> Iterator[Axiom]:
+    """An induction for each step ``p -> F[a, b] p`` and ``p -> G[0, d] p`` of the claim."""
+    for part in f.subformulas(query.formula):
+        if isinstance(part, f.Or):
+            for axiom in _of_step(part.parts):
+                try:
+                    axiom_formula(specification, query, axiom)
+                except InputError:
+                    continue
+                yield axiom
+
+
+def _of_step(parts: Sequence[Formula]) -> Iterator[Axiom]:
+    others = {f.negation(x) for x in parts}
+    for part in parts:
+        match part:
+            case f.Eventually(f.Interval(low, high), inside) if high is not None and inside in others:
+                yield Axiom("steps", (_text(inside), _number(low), _number(high)))
+            case f.Always(f.Interval(_, high), inside) if high is not None and inside in others:
+                yield Axiom("lasts", (_text(inside), _number(high)))
+            case _:
+                pass
+
+
+def _text(formula: Formula) -> str:
+    return text(as_syntax(formula))
+
+
+def _number(term: Term) -> str:
+    return text(term_as_syntax(term))

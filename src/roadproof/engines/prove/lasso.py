@@ -1,0 +1,142 @@
+"""Small traces against a claim that repeat themselves, or have a state of their own after an instant.
+
+They are tried over the truth values that the claim's predicates can have together, a few instants long;
+the prover's models cannot be of this kind. What refutes is made into a trace of numbers and judged apart.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice, product
+from typing import TypeAlias, TypeGuard
+
+from roadproof.engines.prove.countermodel import Trace, realise
+from roadproof.engines.prove.place import Values
+from roadproof.engines.prove.search import Model
+from roadproof.engines.prove.small_roads import open_quantifiers
+from roadproof.engines.prove.states import StateChecker
+from roadproof.errors import RoadproofError
+from roadproof.evidence.periodic import Loop, judge_periodic
+from roadproof.evidence.refutation import Countermodel, Instant, without_empty_windows
+from roadproof.library.query import Query
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.fragment import intervals_of
+from roadproof.logic.rewrite import bounds_of, with_values
+from roadproof.runtime.budget import Late, Meter
+from roadproof.semantics.exact import TruthSet
+from roadproof.semantics.exact.truth import from_switches
+
+MOST_ATOMS = 3
+INSTANTS = 3  # at most, before and in the loop
+CANDIDATES = 1500  # traces that are tried for one unit of time
+A_CANDIDATE = 1 / 2000  # units of work
+PLACED = 12  # of those that refute, for which a road and places are looked for
+Valuation: TypeAlias = tuple[bool, ...]
+Pair: TypeAlias = tuple[Valuation, Valuation]
+
+
+@dataclass(frozen=True)
+class _Shape:
+    """States at and after each instant, ``step`` seconds apart; from instant ``again`` on they repeat."""
+
+    states: tuple[Pair, ...]
+    again: int
+    step: Fraction
+
+    @property
+    def times(self) -> list[Fraction]:
+        return [k * self.step for k in range(len(self.states))]
+
+    @property
+    def loop(self) -> Loop:
+        start = self.again * self.step
+        return Loop(start, len(self.states) * self.step - start)
+
+    def truth(self, number: int) -> TruthSet:
+        """When one predicate is true, in the first round."""
+        pairs = zip(self.times, self.states, strict=True)
+        return from_switches((time, at[number], after[number]) for time, (at, after) in pairs)
+
+
+def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Meter) -> Countermodel | None:
+    """A trace on which the claim is judged false, or None where none was found, which says nothing.
+
+    ``goal``: a part of the claim, abstracted. None where it has more than three predicates, speaks of one
+    instant only, or quantifies over lanes. Raises ``Late``.
+    """
+    names = list(dict.fromkeys(x.name for x in f.subformulas(goal) if _is_atom(x, checker)))
+    if f.is_state(goal) or open_quantifiers(goal) or not 0 < len(names) <= MOST_ATOMS:
+        return None
+    possible = [
+        values
+        for values in product((True, False), repeat=len(names))
+        if checker.refute(dict(zip(names, values, strict=True)), meter) is None
+    ]
+    atoms = {x.name: x for x in f.subformulas(goal) if isinstance(x, f.Named) and x.name in names}
+    plain = {name: with_values(atom, checker.defaults) for name, atom in atoms.items()}
+    try:
+        asked = without_empty_windows(with_values(goal, checker.defaults))
+        placed = 0
+        for shape in _shapes(possible, _steps(asked)):
+            if meter.is_out() or placed == PLACED:
+                return None
+            meter.spend(A_CANDIDATE)
+            given: dict[Formula, TruthSet] = {plain[x]: shape.truth(k) for k, x in enumerate(names)}
+            if not judge_periodic(asked, given, shape.loop).at(Fraction(0)):
+                placed += 1
+                found = _realised(query, checker, names, shape)
+                if found is not None:
+                    return found
+    except RoadproofError as error:
+        if isinstance(error, Late):
+            raise
+    return None
+
+
+def _is_atom(part: Formula, checker: StateChecker) -> TypeGuard[f.Named]:
+    return isinstance(part, f.Named) and part.name in checker.atoms.named
+
+
+def _steps(asked: Formula) -> list[Fraction]:
+    """How far apart instants may be: a second, or what the intervals of the formula say."""
+    bounds = {x for window in intervals_of(asked) for x in bounds_of(window) if x}
+    return list(dict.fromkeys([Fraction(1), *sorted(bounds)[:2], *(x / 2 for x in sorted(bounds)[:1])]))
+
+
+def _shapes(possible: Sequence[Valuation], steps: Sequence[Fraction]) -> Iterator[_Shape]:
+    """First those that keep the state of an instant up to the next; the shorter, the earlier."""
+    for step in steps:
+        yield from islice(_of_step(possible, step), CANDIDATES)
+
+
+def _of_step(possible: Sequence[Valuation], step: Fraction) -> Iterator[_Shape]:
+    kept: list[Pair] = [(x, x) for x in possible]
+    both: list[Pair] = [(x, y) for x in possible for y in possible]
+    for pairs, longest in ((kept, INSTANTS), (both, INSTANTS - 1)):
+        for count in range(1, longest + 1):
+            for states in product(pairs, repeat=count):
+                for again in range(count):
+                    yield _Shape(states, again, step)
+
+
+def _realised(
+    query: Query, checker: StateChecker, names: Sequence[str], shape: _Shape
+) -> Countermodel | None:
+    """The shape in numbers, on a road, judged; None where that is not possible."""
+    moments = [x for pair in shape.states for x in pair]
+    wanted = [dict(zip(names, x, strict=True)) for x in moments]
+    halves = [k * shape.step / 2 for k in range(len(moments))]
+    signals = {time: checker.signals(x) for time, x in zip(halves, wanted, strict=True)}
+    lanes = {lane: f.Domain("lanes") for lane in query.lanes}
+    model = Model({}, dict(zip(halves, wanted, strict=True)), signals, lanes, {})
+
+    def traces(_: Sequence[Fraction], states: Sequence[Values]) -> Iterator[Trace]:
+        own = (x != y for x, y in shape.states)
+        found = zip(shape.times, states[::2], states[1::2], own, strict=True)
+        instants = (Instant(time, at, {}, after if differs else None) for time, at, after, differs in found)
+        at, after = shape.states[-1]
+        stays = at == after and shape.again == len(shape.states) - 1
+        yield tuple(instants), "before", None if stays else shape.loop
+
+    return realise(query, checker.atoms, model, checker.defaults, checker.bounds, traces)

@@ -1,0 +1,328 @@
+"""Which facts about motion may help to prove a claim: instances of the schemas, chosen from what it compares.
+
+They are only chosen here. What each says is made in ``spec.motion`` from its schema and arguments, by the
+prover as by whoever checks a certificate.
+"""
+
+import math
+from collections import deque
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+
+from roadproof.engines.prove.prover import Result, prove
+from roadproof.errors import InputError
+from roadproof.evidence.atoms import is_atom, up_to_variables
+from roadproof.library.motion import Assumed, Axiom, axiom_formula, limits_said, under_limits
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic import motion
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.fragment import intervals_of
+from roadproof.logic.restore import as_syntax, term_as_syntax
+from roadproof.logic.rewrite import signals_of, without_names
+from roadproof.logic.show import text
+from roadproof.logic.terms import SignalName, Term
+from roadproof.runtime.budget import Effort
+from roadproof.runtime.timing import now, since
+from roadproof.verdict import Verdict
+
+MOST = 120  # instances that are tried at once
+# Units of work without any, and then for each choice, in turns.
+QUICK = 0.5
+TURNS = (1.0, 4.0, 16.0, math.inf)
+Sides = tuple[Term, Term]
+Moving = tuple[tuple[t.Signal, Fraction], ...]
+
+
+def prove_of_motions(
+    specification: Specification,
+    query: Query,
+    said: Sequence[str],
+    effort: Effort,
+    label: str = "",
+    scenario: int | None = None,
+) -> Result:
+    """Decide whether ``query`` holds on all motions: first with few facts about them, then with more.
+
+    PROVED, VACUOUS or UNKNOWN: what refutes is looked for among drives. Raises ``Late``, ``InputError``.
+    """
+    begun, meter = now(), effort.meter()
+    none, *choices = stages(specification, under_limits(specification, query, said))
+    others = [x for x in choices if x] or [none]
+    result = None
+    for axioms, units in dict.fromkeys([(none, QUICK), *((x, y) for y in TURNS for x in others)]):
+        part = effort.of(min(units, max(1.0, meter.left())))
+        result = prove(specification, query, part, label, scenario, Assumed(tuple(said), axioms))
+        meter.spend(result.work)
+        if result.verdict is Verdict.PROVED and not axioms and limits_said(said):
+            bare = Assumed(tuple(said), (), limits_said(said))
+            plain = prove(specification, query, effort.of(QUICK), label, scenario, bare)
+            meter.spend(plain.work)
+            result = plain if plain.holds else result
+        if result.verdict is not Verdict.UNKNOWN or meter.is_out():
+            break
+    assert result is not None, "something is always tried"
+    return replace(result, seconds=since(begun), work=meter.spent)
+
+
+def stages(specification: Specification, query: Query) -> list[tuple[Axiom, ...]]:
+    """Choices of facts about motion, to be tried in this order; ``query`` with the limits it has.
+
+    First none; then of one kind each, since most proofs need no other, what is soon exhausted first: growth
+    that is integrated twice, instants at which two are level, growth in bounded time, what does not grow
+    stays, what is left has a first instant outside; then these together; last rates of which the claim says
+    nothing, and what predicates compare.
+    """
+    atoms = list(_atoms(query.formula))
+    simple = [x for x in atoms if _comparison(x) is not None]
+    sides = list(dict.fromkeys(_compared(simple)))
+    hidden = [x for x in dict.fromkeys(_compared(atoms)) if x not in sides]
+    spoken = {*signals_of([query.formula])}
+    left = [x for x in [*atoms, *_states(query.formula)] if _comparison(x) is None]
+    kept, met = _kept(sides, spoken), _met(sides)
+    grown, twice = _grown(query.formula, sides), _grown_twice(query.formula, sides)
+    kinds = [twice, met, grown, kept, _left(list(dict.fromkeys(left)))]
+    valid = [_valid(specification, query, list(x)) for x in kinds]
+    together = tuple(x for kind in valid for x in kind)
+    rates = [x for x in map(_rates, [*sides, *hidden]) if x is not None]
+    more = [*together, *_kept([*rates, *sides]), *_kept(hidden, spoken), *_met(hidden)]
+    deep = _valid(specification, query, [*more, *_grown(query.formula, hidden), *_kept(hidden)])
+    return [(), *valid, together[:MOST], deep]
+
+
+def _met(sides: Sequence[Sides]) -> Iterator[Axiom]:
+    for pair in sides:
+        yield Axiom("meets", _texts(*pair))
+
+
+def _atoms(formula: Formula) -> Iterator[Formula]:
+    """The predicates that a proof does not look into, as they are called; of alike ones the first."""
+    return _first_met(formula, is_atom)
+
+
+def _states(formula: Formula) -> Iterator[Formula]:
+    """The largest parts that are about one instant, without negations in front; of alike ones the first."""
+    return _first_met(formula, lambda part: f.is_state(part) and not isinstance(part, f.Not))
+
+
+def _first_met(formula: Formula, wanted: Callable[[Formula], bool]) -> Iterator[Formula]:
+    seen: set[Formula] = set()
+    waiting = deque([formula])
+    while waiting:
+        part = waiting.popleft()
+        found = wanted(part)
+        key = up_to_variables(part) if found else part
+        if key in seen:
+            continue
+        seen.add(key)
+        if found:
+            yield part
+        else:
+            waiting.extend(f.children(part))
+
+
+def _comparison(atom: Formula) -> f.Compare | None:
+    """What a predicate compares, where it compares just two terms."""
+    match without_names(atom):
+        case f.Compare() as made:
+            return made
+        case f.Not(f.Compare() as made):
+            return made
+        case _:
+            return None
+
+
+def _valid(specification: Specification, query: Query, axioms: Sequence[Axiom]) -> tuple[Axiom, ...]:
+    """Those that say something: others are of bound lanes, or of what may jump."""
+    kept: dict[Axiom, None] = {}
+    for axiom in axioms:
+        try:
+            axiom_formula(specification, query, axiom)
+        except InputError:
+            continue
+        kept[axiom] = None
+    return tuple(kept)[:MOST]
+
+
+def _texts(*terms: Term) -> tuple[str, ...]:
+    return tuple(text(term_as_syntax(term)) for term in terms)
+
+
+def _compared(atoms: Sequence[Formula]) -> Iterator[Sides]:
+    """Both sides of every comparison in ``atoms``, each way round."""
+    for part in (x for atom in atoms for x in f.subformulas(without_names(atom))):
+        if isinstance(part, f.Compare) and not (motion.is_rigid(part.left) and motion.is_rigid(part.right)):
+            smaller = part.op in ("<", "<=")
+            one, other = (part.left, part.right) if smaller else (part.right, part.left)
+            yield one, other
+            yield other, one
+
+
+def _signals(sides: Sides) -> set[SignalName]:
+    return {leaf.name for side in sides for leaf in t.leaves(side) if isinstance(leaf, t.Signal)}
+
+
+def _rates(sides: Sides) -> Sides | None:
+    try:
+        return motion.rates(*sides)
+    except ValueError:
+        return None
+
+
+def _kept(sides: Sequence[Sides], spoken: Collection[SignalName] | None = None) -> Iterator[Axiom]:
+    """What does not grow stays; where given, only for rates of ``spoken`` signals."""
+    for pair in sides:
+        rates = _rates(pair)
+        if rates is not None and (spoken is None or _signals(rates) <= {*spoken}):
+            yield Axiom("at-most", _texts(*pair))
+            yield Axiom("below", _texts(*pair))
+
+
+def _left(atoms: Sequence[Formula]) -> Iterator[Axiom]:
+    """What is left with a first instant outside: predicates, and their negations."""
+    for atom in atoms:
+        for inside in (atom, f.negation(atom)):
+            yield Axiom("leaves", (text(as_syntax(inside)),))
+
+
+# --- growth in bounded time ----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Affine:
+    """Σ coefficient · signal + a rigid rest."""
+
+    moving: tuple[tuple[t.Signal, Fraction], ...]
+    rest: tuple[Term, ...]
+
+
+def _affine(term: Term, factor: Fraction = Fraction(1)) -> _Affine | None:
+    """``factor · term`` where its signals have numbers as coefficients."""
+    if motion.is_rigid(term):
+        return _Affine((), (_scaled(term, factor),))
+    match term:
+        case t.Signal():
+            return _Affine(((term, factor),), ())
+        case t.Sum(summands):
+            return _total([_affine(x, factor) for x in summands])
+        case t.Product(factors):
+            numbers = [t.constant_value(x) for x in factors]
+            open_ = [x for x, value in zip(factors, numbers, strict=True) if value is None]
+            if len(open_) == 1:
+                for value in numbers:
+                    factor *= 1 if value is None else value
+                return _affine(open_[0], factor)
+        case _:
+            pass
+    return None
+
+
+def _total(parts: Sequence[_Affine | None]) -> _Affine | None:
+    moving: dict[t.Signal, Fraction] = {}
+    rest: list[Term] = []
+    for part in parts:
+        if part is None:
+            return None
+        rest += part.rest
+        for signal, factor in part.moving:
+            moving[signal] = moving.get(signal, Fraction(0)) + factor
+    kept = sorted(((x, k) for x, k in moving.items() if k), key=lambda x: (x[0].name, x[0].vehicle))
+    return _Affine(tuple(kept), tuple(rest))
+
+
+def _scaled(term: Term, factor: Fraction) -> Term:
+    match term:
+        case t.Number(value, dimension):
+            return t.number(value * factor, dimension)
+        case t.Product((t.Number(value, (0, 0)), other)):
+            return _scaled(other, value * factor)
+        case _:
+            pass
+    return term if factor == 1 else t.negate(term) if factor == -1 else t.Product((t.number(factor), term))
+
+
+def _grown(formula: Formula, sides: Sequence[Sides]) -> Iterator[Axiom]:
+    """Growth from each bound of a combination, at each bound of its rate, for each time of the claim."""
+    bounds = _bounds(sides)
+    times = _times(formula)
+    for moving, known in bounds.items():
+        faster = _rate_of(moving)
+        if faster is None:
+            continue
+        for start in known:
+            for speed in (x for x in bounds.get(faster, {}) if t.constant_value(x) != 0):
+                for duration in times:
+                    arguments = _texts(*_two_sides(moving, start), speed, duration)
+                    yield Axiom("within", arguments)
+                    yield Axiom("after", arguments)
+
+
+def _grown_twice(formula: Formula, sides: Sequence[Sides]) -> Iterator[Axiom]:
+    """The same from bounds of a combination and its rate, at each bound of the rate of that."""
+    bounds = _bounds(sides)
+    times = _times(formula)
+    for moving, known in bounds.items():
+        faster = _rate_of(moving)
+        second = None if faster is None else _rate_of(faster)
+        if faster is None or second is None:
+            continue
+        for start, speed in product(known, _bounds_of(faster, bounds)):
+            for growth, duration in product(_bounds_of(second, bounds), times):
+                arguments = _texts(*_two_sides(moving, start), speed, growth, duration)
+                yield Axiom("after-twice", arguments)
+                yield Axiom("within-twice", arguments)
+
+
+def _bounds(sides: Sequence[Sides]) -> dict[Moving, dict[Term, None]]:
+    """What each combination of signals is compared with, as bounds from above."""
+    bounds: dict[Moving, dict[Term, None]] = {}
+    for left, right in sides:
+        both = _total([_affine(left), _affine(right, Fraction(-1))])
+        if both is not None and both.moving:
+            bounds.setdefault(both.moving, {})[_sum([_scaled(x, Fraction(-1)) for x in both.rest])] = None
+    return bounds
+
+
+def _bounds_of(moving: Moving, bounds: Mapping[Moving, Collection[Term]]) -> list[Term]:
+    """Bounds of a combination; where it has none, sums of bounds of its signals."""
+    known = bounds.get(moving)
+    if known:
+        return list(known)
+    single = [
+        [_scaled(x, abs(k)) for x in bounds.get(((signal, Fraction(1 if k > 0 else -1)),), ())]
+        for signal, k in moving
+    ]
+    return [_sum(chosen) for chosen in product(*single)]
+
+
+def _rate_of(moving: Moving) -> Moving | None:
+    """The rate of a combination of signals; None where one of them has none."""
+    if not all(signal.name in motion.RATES for signal, _ in moving):
+        return None
+    return tuple((t.Signal(motion.RATES[x.name], x.vehicle), k) for x, k in moving)
+
+
+def _times(formula: Formula) -> list[Term]:
+    found = [x for interval in intervals_of(formula) for x in (interval.low, interval.high) if x is not None]
+    return [x for x in dict.fromkeys(found) if t.constant_value(x) != 0]
+
+
+def _sum(terms: Sequence[Term]) -> Term:
+    return motion.add(*terms) if terms else t.number(0)
+
+
+def _two_sides(moving: tuple[tuple[t.Signal, Fraction], ...], start: Term) -> Sides:
+    """Σ coefficient · signal <= start as two sides without minus signs, where that can be."""
+    left = [_scaled_signal(x, k) for x, k in moving if k > 0]
+    right = [_scaled_signal(x, -k) for x, k in moving if k < 0]
+    if left:
+        return motion.add(*left), motion.add(*right, start)
+    return _scaled(start, Fraction(-1)), motion.add(*right)
+
+
+def _scaled_signal(signal: t.Signal, factor: Fraction) -> Term:
+    return signal if factor == 1 else t.Product((t.number(factor), signal))

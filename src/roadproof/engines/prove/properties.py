@@ -1,0 +1,136 @@
+"""The list of template properties, and claims that users bring."""
+
+import hashlib
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+
+from roadproof.errors import UsageError
+from roadproof.library.motion import statement
+from roadproof.library.specification import read_specification, unknown
+from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
+
+OWN = "claim"  # the id of claims that users bring
+_RANGE = re.compile(r"\s*(\d+)\s*(?:\.\.\s*(\d+)\s*)?")
+_INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
+
+
+@dataclass(frozen=True)
+class Task:
+    """One claim in one set, with the verdict that is expected; ``scenario`` None: of no single one.
+
+    ``assuming``: what the claim is asked under, in words. ``of_all_values``: the verdict is expected for all
+    values of parameters together, and may be another at some.
+    """
+
+    id: str
+    part: str
+    title: str
+    scenario: int | None
+    set_name: str
+    claim: str
+    expected: ClaimVerdict
+    assuming: tuple[str, ...] = ()
+    of_all_values: bool = False
+
+    @property
+    def name(self) -> str:
+        """A name that no other claim has, fit for a file: ``P1-scenario-04-base``, ``claim-3f0a9c71``."""
+        if self.id == OWN:
+            return name_of_claim(self.claim, self.set_name, self.assuming)
+        middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
+        under = f"-at-{digest(statement(self.assuming, ''))}" if self.assuming else ""
+        return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}{under}"
+
+
+def name_of_claim(claim: str, set_name: str, assuming: Sequence[str] = ()) -> str:
+    """A name for a claim in a set, under what is assumed, fit for a file: ``claim-3f0a9c71-base``."""
+    return f"{OWN}-{digest(statement(assuming, ' '.join(claim.split())))}-{set_name}"
+
+
+def digest(asked: str) -> str:
+    """Eight hexadecimal digits that stand for a text."""
+    return hashlib.sha256(asked.encode()).hexdigest()[:8]
+
+
+def template_properties() -> list[Task]:
+    """P1 to P9 and the negative controls, in order."""
+    text = resources.files("roadproof.engines.prove").joinpath("properties.toml").read_text("utf-8")
+    tasks = [task for entry in tomllib.loads(text)["property"] for task in _tasks(entry)]
+    headings = list(dict.fromkeys((task.id, task.title, task.set_name) for task in tasks))
+    return sorted(tasks, key=lambda x: (headings.index((x.id, x.title, x.set_name)), x.scenario or 0))
+
+
+def find_label(claim: str, set_name: str) -> tuple[str, str, int | None] | None:
+    """Property, part and scenario of a claim in a set, where it is a template property."""
+    return _labels().get((" ".join(claim.split()), set_name))
+
+
+@cache
+def _labels() -> dict[tuple[str, str], tuple[str, str, int | None]]:
+    return {
+        (" ".join(x.claim.split()), x.set_name): (x.id, x.part, x.scenario) for x in template_properties()
+    }
+
+
+def _tasks(entry: dict[str, str | list[str]]) -> list[Task]:
+    scenarios: list[int | None] = list(_numbers(str(entry["scenarios"]))) if "scenarios" in entry else [None]
+    return [
+        Task(
+            str(entry["id"]),
+            str(entry.get("part", "")),
+            str(entry["title"]),
+            scenario,
+            set_name,
+            _at(str(entry["claim"]), scenario),
+            claim_verdict(str(entry.get("expected", Verdict.PROVED))),
+            of_all_values=entry.get("values") == "all",
+        )
+        for set_name in entry["sets"]
+        for scenario in scenarios
+    ]
+
+
+def _numbers(text: str) -> list[int]:
+    numbers: list[int] = []
+    for piece in text.split(","):
+        found = _RANGE.fullmatch(piece)
+        assert found is not None, f"bad range {piece!r} in properties.toml"
+        numbers += range(int(found[1]), int(found[2] or found[1]) + 1)
+    return numbers
+
+
+def _at(claim: str, scenario: int | None) -> str:
+    return _INDEX.sub(lambda found: str((scenario or 0) + int(found[1] or 0)), claim)
+
+
+def choose(
+    tasks: Sequence[Task], names: Sequence[str], set_name: str | None, numbers: Sequence[int] = ()
+) -> list[Task]:
+    """The tasks of the named properties (all where none is named) in a set (in all where None).
+
+    ``numbers``: only those about these scenarios. Raises ``UsageError`` for a property that does not exist.
+    """
+    known = {task.id for task in tasks}
+    for name in names:
+        if name not in known:
+            raise UsageError(unknown("property", name, known))
+    return [
+        task
+        for task in tasks
+        if (not names or task.id in names)
+        and set_name in (None, task.set_name)
+        and (not numbers or task.scenario in numbers)
+    ]
+
+
+def read_claims(path: Path) -> list[str]:
+    """The claims of a file: paragraphs, without ``#`` comments. Raises ``InputError``."""
+    text = read_specification(path).text.replace("\r\n", "\n")
+    kept = [line for line in text.split("\n") if not line.lstrip().startswith("#")]
+    lines = [line.partition("#")[0].rstrip() for line in kept]
+    return [claim.strip() for claim in re.split(r"\n{2,}", "\n".join(lines)) if claim.strip()]

@@ -1,0 +1,349 @@
+"""One claim, one verdict: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from roadproof.engines.prove.countermodel import realise, with_truths
+from roadproof.engines.prove.doubt import Doubt, Stop
+from roadproof.engines.prove.lasso import find_lasso
+from roadproof.engines.prove.search import GaveUp, InstanceSearch, Model, Proof
+from roadproof.engines.prove.small_roads import Roster, roster_for
+from roadproof.engines.prove.states import Learnt, StateChecker
+from roadproof.engines.solve.smt import ask
+from roadproof.errors import InputError
+from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.certificate import Certificate, certify, goal_of
+from roadproof.evidence.derivation import Lemma, Site, derive_query, met_sites, prefix_form
+from roadproof.evidence.refutation import Countermodel
+from roadproof.evidence.times import ZERO
+from roadproof.library.bind import default_values
+from roadproof.library.motion import (
+    NOTHING,
+    Assumed,
+    axiom_formula,
+    is_moving,
+    limit_formulas,
+    limits_said,
+    value_texts,
+    values_said,
+)
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification, is_within
+from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic.fixed_parameters import pins
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import with_values
+from roadproof.runtime.budget import Effort, Meter
+from roadproof.runtime.progress import begin
+from roadproof.runtime.timing import now, since
+from roadproof.verdict import ClaimVerdict, Verdict
+
+# Ways to look, in turns: (ask for few instants, units of work). The last is given what is left.
+TURNS: tuple[tuple[bool, float], ...] = (
+    (False, 0.3),
+    (True, 0.5),
+    (False, 3.0),
+    (True, 6.0),
+    (False, 20.0),
+    (True, math.inf),
+)
+ON_FEW_LANES = 1.0
+REPEATING = 1.0
+VACUITY = 0.5
+NO_TRACE = "the only countermodels found over points in time are no traces"
+CONTRADICTION = "what is assumed contradicts itself, so every claim follows"
+NO_PROOF = "no proof was found from what is known of motion"
+
+
+@dataclass(frozen=True)
+class Result:
+    """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
+
+    ``work``: the units spent on the search. There is a ``certificate`` with PROVED and VACUOUS, and with
+    nothing else. Of an UNKNOWN ``stop`` says where the search stopped, and ``doubt`` its cause.
+    """
+
+    verdict: ClaimVerdict
+    reason: str
+    seconds: float
+    work: float = 0.0
+    certificate: Certificate | None = None
+    countermodel: Countermodel | None = None
+    stop: Stop | None = None
+    doubt: Doubt | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the claim is proved, be it because its premise never holds."""
+        return self.verdict in (Verdict.PROVED, Verdict.VACUOUS)
+
+
+def prove(
+    specification: Specification,
+    query: Query,
+    effort: Effort | None = None,
+    label: str = "",
+    scenario: int | None = None,
+    assumed: Assumed = NOTHING,
+) -> Result:
+    """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
+
+    Parameters keep their declared bounds and are otherwise arbitrary, as are lengths and widths
+    above zero, roads, and signals as functions of time; a value that is ``assumed``, or that the claim's own
+    premise demands, is put in first. A proof counts only once its certificate, derived apart, has been
+    answered unsat. Where motion is ``assumed`` nothing is refuted: a trace that has it at finitely many
+    instants need be no motion. Raises ``Late`` where the clock cuts it off, ``InputError`` for what nobody
+    may assume.
+    """
+    begun = now()
+    meter = (effort or Effort()).meter()
+    here = values_said(specification, assumed.said)
+    demanded = _demanded(specification, query, here)
+    pinned = value_texts(specification, demanded)
+    values = {**here, **demanded}
+    states = _states(specification, values)
+    atoms = states.atoms
+    premise, claim = goal_of(specification, query, assumed, atoms, pinned)
+    attempt = _Attempt(query, states, meter, is_moving(assumed.said))
+
+    def result(
+        verdict: ClaimVerdict,
+        reason: str = "",
+        certificate: Certificate | None = None,
+        countermodel: Countermodel | None = None,
+    ) -> Result:
+        return Result(verdict, reason, since(begun), meter.spent, certificate, countermodel)
+
+    names: dict[Site, str] = {}
+    proofs: list[Proof] = []
+    for goal in conjuncts(claim):
+        found = attempt.decide(f.implication(premise, goal), names)
+        if isinstance(found, Countermodel):
+            return result(Verdict.REFUTED, "", None, with_truths(found, atoms))
+        if isinstance(found, GaveUp):
+            return replace(result(Verdict.UNKNOWN, found.reason), stop=found.stop)
+        proofs.append(found)
+    fewer = _needed(specification, query, assumed, values, proofs, names)
+    if fewer != assumed:
+        again = prove(specification, query, meter.effort(), label, scenario, fewer)
+        if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
+            again = replace(again, verdict=Verdict.VACUOUS, reason=CONTRADICTION)
+        if again.holds:
+            return replace(again, seconds=since(begun), work=meter.spent + again.work)
+    try:
+        certificate = _certificate(specification, query, assumed, pinned, proofs, names, label, scenario)
+    except InputError as error:
+        why = f"a proof was found, but no certificate can be made of it: {error}"
+        return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
+    settled = frozenset[str]().union(*(proof.settled for proof in proofs))
+    for title, script in certificate.queries:
+        if script in settled:
+            continue
+        answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
+        if answer != "unsat":
+            why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
+            if answer == "unknown":
+                return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
+            return result(Verdict.CROSSCHECK_FAILED, why)
+    if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
+        return result(Verdict.VACUOUS, CONTRADICTION, certificate)
+    condition = _premise(query, claim)
+    if condition is not None and attempt.never_holds(premise, condition):
+        return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
+    return result(Verdict.PROVED, "", certificate)
+
+
+class Hunch:
+    """Whether claims that are much alike have proofs, found quickly: no certificate is made of them.
+
+    What is learnt of states for one claim serves the next. Nobody may rest on the answer: it says for which
+    claim ``prove`` is worth the work.
+    """
+
+    def __init__(self, specification: Specification) -> None:
+        self.specification = specification
+        self.learnt: dict[tuple[str, ...], Learnt] = {}
+
+    def has_proof(self, query: Query, effort: Effort) -> tuple[bool, float]:
+        """Whether a proof of ``query`` is found, and the units of work that were spent. Raises ``Late``."""
+        meter = effort.meter()
+        values = _demanded(self.specification, query, {})
+        pinned = value_texts(self.specification, values)
+        states = _states(self.specification, values, self.learnt.setdefault(pinned, Learnt()))
+        premise, claim = goal_of(self.specification, query, NOTHING, states.atoms, pinned)
+        attempt = _Attempt(query, states, meter, False)
+        names: dict[Site, str] = {}
+        goals = (f.implication(premise, goal) for goal in conjuncts(claim))
+        return all(isinstance(attempt.decide(goal, names), Proof) for goal in goals), meter.spent
+
+
+def _states(
+    specification: Specification, values: Mapping[str, Fraction], learnt: Learnt | None = None
+) -> StateChecker:
+    """Which states there are where parameters have ``values``, for a claim of its own atoms."""
+    library = specification.library
+    return StateChecker(Atoms(), library.bounds, {**default_values(library), **values}, learnt)
+
+
+def _demanded(
+    specification: Specification, query: Query, here: Mapping[str, Fraction]
+) -> dict[str, Fraction]:
+    """The values that the claim's own premise demands, as far as parameters may have them."""
+    library = specification.library
+    found = pins(with_values(query.formula, here))
+    return {name: x for name, x in found.items() if is_within(library.bounds[name], x)}
+
+
+def conjuncts(formula: Formula) -> Iterator[Formula]:
+    """The parts of a conjunction, of its conjunctions, and so on."""
+    if isinstance(formula, f.And):
+        for part in formula.parts:
+            yield from conjuncts(part)
+    else:
+        yield formula
+
+
+def _premise(query: Query, formula: Formula) -> Formula | None:
+    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is ``false``."""
+    match query.claim.body:
+        case syntax.Binary("->", _, syntax.Literal_(value)) if value is False:
+            return f.negation(formula)
+    match formula:
+        case f.Or((f.Not(premise), _)):
+            return premise
+        case _:
+            return None
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    query: Query
+    states: StateChecker
+    meter: Meter
+    moving: bool
+
+    @property
+    def atoms(self) -> Atoms:
+        return self.states.atoms
+
+    @property
+    def bounds(self) -> Mapping[str, str]:
+        return self.states.bounds
+
+    def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
+        """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
+        last = GaveUp(self.meter.reason())
+        turns = TURNS[-1:] if f.is_state(goal) else TURNS
+        roster = None if self.moving else roster_for(goal, self.query.lanes)
+        for number, (wishful, units) in enumerate(turns, 1):
+            begin("prove", f"turn {number} of {len(turns)}")
+            if roster is not None and number == len(turns[:2]):
+                few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
+                if isinstance(few, Countermodel):
+                    return few
+            if number == len(turns[:3]) and not self.moving:
+                repeating = find_lasso(self.query, goal, self.states, self.meter.part(REPEATING))
+                if repeating is not None:
+                    return repeating
+            found = self._run(self._search(goal, names, wishful), self.meter.part(units))
+            if not isinstance(found, GaveUp):
+                return found
+            last = found
+            if self.meter.is_out():
+                break
+        return last
+
+    def _run(self, search: InstanceSearch, meter: Meter) -> Proof | Countermodel | GaveUp:
+        """What one search finds, a model of it made into a trace and judged."""
+        found = search.run(meter)
+        while not isinstance(found, Proof | GaveUp):
+            countermodel = None if self.moving else self._realised(found)
+            if countermodel is not None:
+                return countermodel
+            if not search.widen():
+                return GaveUp(NO_PROOF, Stop.FACTS) if self.moving else GaveUp(NO_TRACE, Stop.PLACE)
+            found = search.run(meter)
+        return found
+
+    def _realised(self, found: Model) -> Countermodel | None:
+        return realise(self.query, self.atoms, found, self.states.defaults, self.bounds)
+
+    def never_holds(self, premise: Formula, condition: Formula) -> bool:
+        """Whether it is proved quickly that ``condition`` is false, its query derived apart, too."""
+        names: dict[Site, str] = {}
+        goal = f.implication(premise, f.negation(condition))
+        proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
+        if not isinstance(proof, Proof):
+            return False
+        met = met_sites(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
+        query = derive_query(goal, self.atoms, *met, proof.lemmas, self.bounds, self.query.lanes)
+        return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
+
+    def _search(
+        self, goal: Formula, names: dict[Site, str], wishful: bool, roster: Roster | None = None
+    ) -> InstanceSearch:
+        return InstanceSearch(
+            goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful, roster, self.moving
+        )
+
+
+def _certificate(
+    specification: Specification,
+    query: Query,
+    assumed: Assumed,
+    pinned: tuple[str, ...],
+    proofs: list[Proof],
+    names: dict[Site, str],
+    label: str,
+    scenario: int | None,
+) -> Certificate:
+    """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit the claim."""
+    lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
+    for proof in proofs:
+        for lemma in proof.lemmas:
+            before = lemmas.get(lemma.literals, ())
+            lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
+    atoms = Atoms()
+    abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
+    met = met_sites(abstracted, atoms, _instances(proofs), names, specification.library.bounds, query.lanes)
+    made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
+    return certify(specification, query, *met, made, label, scenario, assumed, pinned)
+
+
+def _instances(proofs: Sequence[Proof]) -> dict[Site, tuple[str, ...]]:
+    """The instances of several proofs, each once."""
+    instances: dict[Site, tuple[str, ...]] = {}
+    for proof in proofs:
+        for site, texts in proof.instances.items():
+            instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
+    return instances
+
+
+def _needed(
+    specification: Specification,
+    query: Query,
+    assumed: Assumed,
+    values: Mapping[str, Fraction],
+    proofs: Sequence[Proof],
+    names: Mapping[Site, str],
+) -> Assumed:
+    """The same with those premises alone of which a proof has instances, and which the claim has not itself.
+
+    Each premise is a universal that holds at time 0.
+    """
+    instances = _instances(proofs)
+    atoms = Atoms()
+    claim = atoms.abstract(with_values(query.formula, values))
+    own, _ = met_sites(claim, atoms, instances, names, specification.library.bounds, query.lanes)
+
+    def is_used(formula: Formula) -> bool:
+        made = atoms.abstract(with_values(formula, values))
+        site = Site(prefix_form(made), True, str(ZERO))
+        return site in instances and site not in own
+
+    axioms = tuple(x for x in assumed.axioms if is_used(axiom_formula(specification, query, x)))
+    used = {x for x, made in limit_formulas(specification, query, assumed).items() if is_used(made)}
+    return Assumed(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))

@@ -1,0 +1,200 @@
+"""A search for drives of values, and its typed outcome."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from roadproof.engines.search.impossible import Impossibility, show_impossible
+from roadproof.engines.search.initial_candidates import is_read
+from roadproof.engines.search.limits import Limits
+from roadproof.engines.search.question import FoundDrive, Posed, SearchOptions, Setting, pose, usual_road
+from roadproof.engines.search.search import Attempt, find_witness
+from roadproof.evidence.answers import drives as kept
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged
+from roadproof.library.bind import default_values
+from roadproof.library.query import Query
+from roadproof.library.specification import Library, Specification
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import parameters_of
+from roadproof.runtime.budget import Late
+from roadproof.runtime.progress import about, begin
+from roadproof.runtime.timing import now, since
+from roadproof.verdict import DriveVerdict, Verdict
+from roadproof.world.drive import Drive
+
+# Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
+NEVER, NEVER_UNREAD = 10.0, 2.0
+
+
+@dataclass(frozen=True)
+class Search:
+    """For ``count`` clearly different drives on which ``query`` holds; ``scenario``: whose number it is."""
+
+    specification: Specification
+    query: Query
+    setting: Setting = field(default_factory=Setting)
+    search_options: SearchOptions = field(default_factory=SearchOptions)
+    count: int = 1
+    scenario: int | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The verdict on a search, with judged drives, a proof that there is none, or the limits it was for.
+
+    ``seconds`` by stage; ``sizes`` of the last problem that was solved.
+    """
+
+    scenario: int | None
+    set_name: str
+    query: Query
+    road: str
+    verdict: DriveVerdict
+    reason: str
+    drives: tuple[Judged, ...] = ()
+    natural: bool = False
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    impossibility: Impossibility | None = None
+    limits: Limits | None = None
+
+    def told(self, options: Sequence[str]) -> str:
+        """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
+        return self.reason if self.limits is None else self.limits.text(options)
+
+    @property
+    def kept(self) -> kept.Outcome:
+        """As the answer has it."""
+        shown = self.impossibility
+        return kept.Outcome(
+            scenario=self.scenario,
+            set=self.set_name,
+            formula=self.query.text,
+            road=self.road,
+            verdict=self.verdict,
+            view="dense" if self.limits is None else "grid",
+            reason=self.reason,
+            natural=self.natural,
+            drives=tuple(judged.as_data() for judged in self.drives),
+            limits=None if self.limits is None else self.limits.as_json(),
+            core=() if shown is None else shown.told,
+            certificate=None if shown is None else shown.plain,
+            seconds={stage: round(value, 4) for stage, value in self.seconds.items()},
+            sizes=dict(self.sizes),
+        )
+
+
+def answer(search: Search) -> Outcome:
+    """As ``ask``, but UNKNOWN with that reason where the clock cuts it off."""
+    begun = now()
+    try:
+        return ask(search)
+    except Late as late:
+        return undecided(search, str(late), since(begun))
+
+
+def undecided(search: Search, reason: str, seconds: float = 0.0) -> Outcome:
+    """What is said of a search that nothing is known of."""
+    road = search.setting.road or usual_road(search.query.formula)
+    told = (search.scenario, search.specification.set_name, search.query, road.name)
+    return Outcome(*told, Verdict.UNKNOWN, reason, seconds={"all": seconds})
+
+
+def reads_all(search: Search) -> bool:
+    """Whether the engine can read what is asked. Raises ``UsageError``, ``InputError``."""
+    question = pose(search.specification.library, search.query, search.setting)
+    return search.search_options.engine == "smt" or is_read(question)
+
+
+def ask(search: Search) -> Outcome:
+    """Search. Raises ``InputError``, ``UsageError``, ``MissingSolverError``, ``Late``."""
+    with about(_called(search)):
+        return _ask(search)
+
+
+def _called(search: Search) -> str:
+    number = search.scenario
+    what = search.query.text if number is None else f"scenario {number}"
+    return f"{what} {search.specification.set_name}"
+
+
+def _ask(search: Search) -> Outcome:
+    begun = now()
+    library = search.specification.library
+    question = pose(library, search.query, search.setting)
+    answers = list(_clearly_different(question, search))
+    first = answers[0]
+    judged = tuple(judge_found(search, question, a.found) for a in answers if a.found is not None)
+    impossibility = None
+    if first.found is None:
+        effort = search.search_options.effort
+        most = effort.of(max(1.0, min(NEVER if is_read(question) else NEVER_UNREAD, effort.units)))
+        begin("explain", "is there a proof that there is none")
+        impossibility = show_impossible(search.specification, search.query, most)
+    return Outcome(
+        search.scenario,
+        search.specification.set_name,
+        search.query,
+        question.road.name,
+        Verdict.IMPOSSIBLE if impossibility else first.verdict,
+        "" if impossibility else _reason(answers, search.count),
+        judged,
+        first.found is not None and first.found.assumptions.natural,
+        {**first.seconds, "all": since(begun)},
+        first.sizes,
+        impossibility,
+        None if impossibility else first.limits,
+    )
+
+
+def _clearly_different(question: Posed, search: Search) -> Iterator[Attempt]:
+    """The answers to one search after the other, each for a drive unlike those found before it.
+
+    Where the clock cuts a later one off, the drives that were found still stand.
+    """
+    drives: list[Drive] = []
+    while len(drives) < search.count:
+        try:
+            answer = find_witness(question, search.search_options, tuple(drives))
+        except Late as late:
+            if not drives:
+                raise
+            yield Attempt(Verdict.UNKNOWN, None, str(late))
+            return
+        yield answer
+        if answer.found is None:
+            return
+        drives.append(answer.found.drive)
+
+
+def _reason(answers: list[Attempt], count: int) -> str:
+    found = sum(a.found is not None for a in answers)
+    if 0 < found < count:
+        return f"{found} of {count} drives that differ clearly; no further one: {answers[-1].reason}"
+    return answers[0].reason
+
+
+def judge_found(search: Search, question: Posed, found: FoundDrive) -> Judged:
+    """A drive that was found as a drive file, judged once more from what it says."""
+    library = search.specification.library
+    file = DriveFile(
+        search.scenario,
+        search.specification.set_name,
+        search.query.text,
+        found.grid.horizon,
+        found.lanes,
+        telling_values(library, search.query.formula, question.values),
+        search.specification.options,
+        question.road,
+        found.drive,
+        found.assumptions.collisions,
+    )
+    return Judged(file, library, found.assumptions.natural)
+
+
+def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Values of the parameters that ``formula`` speaks of, and of those that the user has changed."""
+    declared = default_values(library)
+    spoken = parameters_of(formula)
+    return {n: v for n, v in values.items() if n in spoken or v != declared.get(n)}

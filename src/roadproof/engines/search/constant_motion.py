@@ -1,0 +1,80 @@
+"""A state that refutes a claim about one instant, as a drive: every vehicle goes on as it moves there."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from roadproof.engines.prove.states import TYPICAL_SIZE
+from roadproof.errors import RoadproofError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.refutation import NOWHERE, Countermodel
+from roadproof.library.bind import values_with
+from roadproof.library.compose import negation
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.logic.custom_names import kind_of
+from roadproof.logic.fixed_parameters import pins
+from roadproof.logic.formula import is_state
+from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.signals import FIXED, SIGNALS, STARTING
+
+_JERK = "j_lon"
+
+
+def steady_drive(
+    specification: Specification,
+    claim: Query,
+    found: Countermodel,
+    parameters: Mapping[str, Fraction] | None = None,
+) -> Judged | None:
+    """The first state of ``found`` with constant accelerations, judged to refute ``claim``.
+
+    None where the claim is about more than one instant, says its numbers or signals itself, needs jerk or
+    other values of ``parameters`` (where None: than the declared ones and those that its premise demands);
+    and where the judge rejects the drive.
+    """
+    if not is_state(claim.formula):
+        return None
+    values = found.instants[0].values
+    known = {
+        f"{name}({vehicle})" for vehicle in claim.vehicles for name in (*SIGNALS, *FIXED) if name != _JERK
+    }
+    jerks = {f"{_JERK}({vehicle})" for vehicle in claim.vehicles}
+    if any(name not in known | jerks for name in values) or any(values.get(name, 0) for name in jerks):
+        return None
+    library = specification.library
+    wanted = values_with(library, pins(claim.formula)) if parameters is None else parameters
+    if dict(found.parameters) != dict(wanted):
+        return None
+    refuted = negation(claim)
+    drive = Drive({vehicle: _steady(vehicle, values) for vehicle in claim.vehicles})
+    lanes = {lane: lane for lane in claim.lanes}
+    file = DriveFile(
+        None,
+        specification.set_name,
+        refuted.text,
+        Fraction(0),
+        lanes,
+        found.parameters,
+        specification.options,
+        found.road or NOWHERE,
+        drive,
+        overlaps_allowed=True,
+    )
+    try:
+        return Judged(file, library)
+    except RoadproofError:
+        return None
+
+
+def _steady(vehicle: str, values: Mapping[str, Fraction]) -> Motion:
+    """What its state does not say is 0, or of usual size."""
+
+    def of(name: str, usual: Fraction = Fraction(0)) -> Fraction:
+        return values.get(f"{name}({vehicle})", usual)
+
+    kind = values.get(f"kind({vehicle})")
+    length, width = of("length", TYPICAL_SIZE["length"]), of("width", TYPICAL_SIZE["width"])
+    begins = {name: of(name) for name in STARTING}
+    pieces = (Piece(None, of("a_lon"), of("a_lat")),)
+    return Motion(length, width, **begins, pieces=pieces, kind=None if kind is None else kind_of(kind))

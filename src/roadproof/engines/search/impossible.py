@@ -1,0 +1,124 @@
+"""No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from roadproof.drivers.restriction import left_open
+from roadproof.engines.prove.driver_claims import prove_of_scenarios
+from roadproof.engines.prove.prover import Hunch, Result, prove
+from roadproof.evidence.certificate import Certificate, certificate_data
+from roadproof.library.compose import negation, of_parts
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
+from roadproof.runtime.budget import Effort
+
+SHORTER = 1.5  # units of work for a proof with one part less
+
+
+@dataclass(frozen=True)
+class Impossibility:
+    """``certificate`` proves for all time that a formula never holds at 0; ``core`` are parts that clash.
+
+    ``minimal``: no part of the core can be left out and the rest still be proved to clash.
+    """
+
+    core: tuple[Formula, ...]
+    minimal: bool
+    certificate: Certificate
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The core as texts."""
+        return told_parts(self.core)
+
+    @property
+    def plain(self) -> dict[str, Any]:
+        """The certificate as plain data."""
+        return certificate_data(replace(self.certificate, tableau=None))  # which files alone have
+
+
+def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
+    """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``Late``."""
+    return explain(specification, query, prove_of_scenarios(specification, negation(query), effort), effort)
+
+
+def explain(
+    specification: Specification, query: Query, proof: Result, effort: Effort
+) -> Impossibility | None:
+    """As ``show_impossible``, where the ``proof`` that ``query`` never holds is known already.
+
+    Where a driver model says what begins, the core is that of what is left open, and proved to be one.
+    """
+    if not proof.holds or proof.certificate is None:
+        return None
+    left = effort.of(effort.units - proof.work)
+    outline = left_open(specification)
+    if outline is None:
+        core, minimal = _core(specification, query, left)
+        return Impossibility(core, minimal, proof.certificate)
+    shorter, minimal = _core(outline, read_claim(outline, query.text), left)
+    said, whole = {*told_parts(shorter)}, tuple(dict.fromkeys(parts(query.formula)))
+    core = tuple(part for part in whole if {*told_parts((part,))} <= said)
+    if not prove(specification, negation(of_parts(query, core)), effort.of(SHORTER)).holds:
+        core, minimal = whole, False
+    return Impossibility(core, minimal, proof.certificate)
+
+
+def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
+    """Parts of a formula as texts, definitions by name."""
+    return tuple(text(as_syntax(part)) for part in core)
+
+
+def _core(specification: Specification, query: Query, effort: Effort) -> tuple[tuple[Formula, ...], bool]:
+    """Leave out one part after the other where the rest still clashes.
+
+    Each step goes by a hunch, and what is left is proved; where that fails, each step is proved instead.
+    """
+    whole = tuple(dict.fromkeys(parts(query.formula)))
+    kept, minimal = _shortened(query, whole, effort, Hunch(specification).has_proof)
+
+    def is_proved(claim: Query, most: Effort) -> tuple[bool, float]:
+        found = prove(specification, claim, most)
+        return found.holds, found.work
+
+    if kept == whole or is_proved(negation(of_parts(query, kept)), effort.of(SHORTER))[0]:
+        return kept, minimal
+    return _shortened(query, whole, effort, is_proved)
+
+
+def _shortened(
+    query: Query,
+    kept: tuple[Formula, ...],
+    effort: Effort,
+    holds: Callable[[Query, Effort], tuple[bool, float]],
+) -> tuple[tuple[Formula, ...], bool]:
+    """The parts that are left, and whether each was tried; ``holds`` says also what the answer cost."""
+    for part in kept:
+        rest = tuple(p for p in kept if p != part)
+        if effort.units <= 0:
+            return kept, False
+        if not rest:
+            continue
+        clashes, work = holds(negation(of_parts(query, rest)), effort.of(min(effort.units, SHORTER)))
+        effort = effort.of(effort.units - work)
+        if clashes:
+            kept = rest
+    return kept, True
+
+
+def parts(formula: Formula) -> Iterator[Formula]:
+    """The parts of a conjunction, through the names of definitions, down to temporal operators."""
+    match formula:
+        case f.And(every):
+            for part in every:
+                yield from parts(part)
+        case f.Named(_, _, body) if isinstance(body, f.And | f.Named) and not f.is_state(body):
+            yield from parts(body)
+        case _:
+            yield formula

@@ -1,0 +1,90 @@
+"""Within what a NONE-WITHIN says that there is none: every restriction of the search, as data and as text.
+
+What is no restriction, because one drive stands for others (``encode.along``), is not named here.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from roadproof.engines.encode.unroll import Grid
+from roadproof.world.vehicle import Range
+
+# Options of ``roadproof witness`` and others that search, and of ``roadproof prove``, that widen limits.
+SEARCH_OPTIONS = ("--horizon", "--dt", "--road", "--vehicle", "--reach")
+PROVE_OPTIONS = ("--horizon", "--dt", "--road")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Of which drives it is said that none satisfies a formula.
+
+    Their accelerations are constant between the samples of ``grid`` and none after the last; the formula
+    is read at the samples, of which the last stands for all later time. At the samples boxes are on
+    ``road`` and, unless ``collisions``, apart. ``vehicles``: model by vehicle; ``lanes``: free lanes that
+    stand for one lane only; ``values``: parameters (SI); ``reach``: how far apart vehicles start (m);
+    ``starts``: where fronts are at time 0 (m), None where it makes no difference. ``own``: own signals,
+    which keep their values between samples, and their ranges. ``jerk``: whether the formula speaks of it.
+    """
+
+    road: str
+    grid: Grid
+    vehicles: Mapping[str, str]
+    lanes: Mapping[str, str]
+    values: Mapping[str, Fraction]
+    reach: Fraction
+    starts: Range | None
+    collisions: bool
+    shown: tuple[str, ...] = ()
+    own: Mapping[str, str] = field(default_factory=dict)
+    jerk: bool = False
+
+    def text(self, options: Sequence[str] = SEARCH_OPTIONS) -> str:
+        """One sentence that names every limit, and the ``options`` that widen them."""
+        dt, horizon = float(self.grid.dt), float(self.grid.horizon)
+        parts = [
+            f"no drive on road {self.road} with samples every {dt:g} s up to {horizon:g} s",
+            "the formula read at them and the last standing for all later time",
+            f"accelerations constant between them{', so that jerk is 0' if self.jerk else ''}",
+            f"boxes on the road{'' if self.collisions or len(self.vehicles) < 2 else ' and apart'} at them",
+            f"vehicles {_listed(self.vehicles)}",
+        ]
+        if self.lanes:
+            parts.append(f"lane {_listed(self.lanes)}")
+        if len(self.vehicles) > 1:
+            parts.append(f"starts at most {float(self.reach):g} m apart")
+        if self.starts is not None:
+            low, high = (f"{float(end):g} m" for end in self.starts)
+            parts.append(f"starts between s={low} and s={high}")
+        if self.values:
+            parts.append(f"parameters {_listed({k: f'{float(v):g}' for k, v in self.values.items()})}")
+        if self.own:
+            listed = ", ".join(f"{name} in {held}" for name, held in self.own.items())
+            parts.append(f"own signals constant between samples, {listed}")
+        shown = f" ({', '.join(self.shown)})" if self.shown else ""
+        hint = f"; widen with {', '.join(options)}" if options else ""
+        return f"{', '.join(parts)}{hint}{shown}"
+
+    def as_json(self) -> dict[str, Any]:
+        """The limits as plain data; rationals as text."""
+        return {
+            "road": self.road,
+            "dt": str(self.grid.dt),
+            "horizon": str(self.grid.horizon),
+            "read": "at samples, the last for all later time",
+            "accelerations": "constant between samples, none after the last"
+            + (", no jerk" if self.jerk else ""),
+            "boxes": "on the road at samples" + ("" if self.collisions else ", apart at samples"),
+            "vehicles": dict(self.vehicles),
+            "lanes": dict(self.lanes),
+            "parameters": {name: str(value) for name, value in self.values.items()},
+            "reach": str(self.reach),
+            "starts": None if self.starts is None else [str(end) for end in self.starts],
+            "shown": list(self.shown),
+            **({"signals": dict(self.own)} if self.own else {}),
+        }
+
+
+def _listed(entries: Mapping[str, str]) -> str:
+    return ", ".join(f"{name}={value}" for name, value in entries.items())

@@ -1,0 +1,202 @@
+"""What is asked for, how to look for it, and what was found: plain data."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import Literal, TypeAlias
+
+from roadproof.engines.encode.along import starting_range
+from roadproof.engines.encode.build import Assumptions
+from roadproof.engines.encode.custom_signals import own_columns
+from roadproof.engines.encode.unroll import Grid
+from roadproof.engines.search.default_vehicles import refuse_unknown, usual_model
+from roadproof.engines.search.grid import fitting_grid, make_grid
+from roadproof.engines.search.initial_conditions import Start
+from roadproof.engines.search.limits import Limits
+from roadproof.errors import UsageError
+from roadproof.library.bind import bind, values_with
+from roadproof.library.query import Query
+from roadproof.library.specification import Library
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.custom_names import told_range
+from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.rewrite import parameters_of, signals_of
+from roadproof.runtime.budget import Effort
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_road
+from roadproof.world.road import Road
+from roadproof.world.vehicle import Range, Vehicle, with_limits
+
+Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
+Engine: TypeAlias = Literal["milp", "smt"]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where, with whom and for how long drives are looked for; a formula makes a ``Posed`` of it.
+
+    ``road`` None is the usual road of the formula; ``lanes`` are free lanes that stand for one lane.
+    ``vehicles`` by name, "" for all others (where nothing is said a car, or of what kind the formula asks
+    for), and ``limits`` other limits than theirs, such as ``{"POV": {"a_lon.min": -2}}``
+    (``world.vehicle.with_limits``). ``values``: parameters with another value than the declared one (SI).
+    ``horizon``, ``dt``: seconds; ``dt`` None is the coarsest
+    that fits (``grid.fitting_grid``). ``reach``: how far apart
+    vehicles may start (m). ``collisions``: boxes may overlap. ``natural``: whether natural drives are tried
+    first.
+    """
+
+    road: Road | None = None
+    lanes: Mapping[str, str] = field(default_factory=dict)
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
+    limits: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    horizon: Fraction = Fraction(6)
+    dt: Fraction | None = None
+    reach: Fraction = Fraction(80)
+    collisions: bool = False
+    natural: bool = True
+
+
+@dataclass(frozen=True)
+class Posed:
+    """For which drive does ``query`` hold on ``road``?
+
+    ``lanes`` are the assignments of lanes to be tried, in order. With a ``start`` a search is for drives that
+    begin so only, and finds nothing out about others.
+    """
+
+    query: Query
+    road: Road
+    vehicles: Mapping[str, Vehicle]
+    values: Mapping[str, Fraction]
+    lanes: tuple[Mapping[str, str], ...]
+    grid: Grid
+    assumptions: Assumptions = field(default_factory=Assumptions)
+    start: Start | None = None
+
+    def asked(self, lanes: Mapping[str, str]) -> Formula:
+        """What is asked of an engine: without the parts in place of which the start is."""
+        formula = self.bound(lanes)
+        return formula if self.start is None else self.start.without(formula)
+
+    def bound(self, lanes: Mapping[str, str]) -> Formula:
+        """The formula under one assignment of lanes."""
+        return bind(self.query.formula, self.road, lanes, self.values)
+
+    @cached_property
+    def starts(self) -> Range | None:
+        """Where fronts may be at time 0; None where every place along the road is as good as another."""
+        formulas = [self.bound(lanes) for lanes in self.lanes]
+        return starting_range(formulas, self.road, self.vehicles, self.grid, self.assumptions.reach)
+
+    def limits(self, shown: Iterable[str] = ()) -> Limits:
+        """Within what a NONE-WITHIN says that there is none; ``shown``: how that was shown."""
+        options = {name: {lanes[name] for lanes in self.lanes} for name in self.query.lanes}
+        spoken = parameters_of(self.query.formula)
+        return Limits(
+            self.road.name,
+            self.grid,
+            {name: vehicle.name for name, vehicle in self.vehicles.items()},
+            {n: next(iter(found)) for n, found in options.items() if len(found) < len(self.road.lanes)},
+            {name: value for name, value in self.values.items() if name in spoken},
+            self.assumptions.reach,
+            self.starts,
+            self.assumptions.collisions,
+            tuple(sorted(set(shown))),
+            self._own_ranges(),
+            "j_lon" in signals_of([self.query.formula]),
+        )
+
+    def _own_ranges(self) -> dict[str, str]:
+        """Between which values own signals are looked for, whatever lanes are chosen."""
+        found: dict[t.Own, list[Range]] = {}
+        for lanes in self.lanes:
+            for own in own_columns(self.bound(lanes)):
+                found.setdefault(own.signal, []).append(own.range)
+        return {
+            signal.told: "false or true"
+            if signal.truth
+            else told_range(max(x for x, _ in ranges), min(x for _, x in ranges), signal.dimension)
+            for signal, ranges in found.items()
+        }
+
+
+@dataclass(frozen=True)
+class SearchOptions:
+    """How to search: engine, solver, objective, work for one drive, finer grids to try.
+
+    ``explain``: whether to show that there is none where none was found.
+    """
+
+    objective: Objective = "smooth"
+    engine: Engine = "milp"
+    solver: str = "highs"
+    effort: Effort = field(default_factory=Effort)
+    refinements: int = 2
+    explain: bool = True
+
+
+@dataclass(frozen=True)
+class FoundDrive:
+    """A judged drive, with the lanes it was judged under and the assumptions it keeps."""
+
+    drive: Drive
+    lanes: Mapping[str, str]
+    formula: Formula
+    grid: Grid
+    assumptions: Assumptions
+
+
+def pose(library: Library, query: Query, setting: Setting) -> Posed:
+    """The question with road, vehicles and grid in place. Raises ``UsageError``, ``InputError``."""
+    road = setting.road or usual_road(query.formula)
+    for name in (*setting.vehicles, *setting.limits):
+        if name and name not in query.vehicles:
+            known = ", ".join(query.vehicles)
+            raise UsageError(f"vehicle {name}: the formula speaks of {known or 'no vehicle'}")
+    if not query.vehicles:
+        raise UsageError("the formula speaks of no vehicle, so no drive can show anything about it")
+    models = {
+        name: setting.vehicles.get(name) or setting.vehicles.get("") or usual_model(query.formula, name)
+        for name in query.vehicles
+    }
+    for name, model in models.items():
+        refuse_unknown(query.formula, name, model)
+    vehicles = {name: with_limits(model, setting.limits.get(name, {})) for name, model in models.items()}
+    values = values_with(library, setting.values)
+    lanes = assignments(query, road, setting.lanes)
+    assumptions = Assumptions(reach=setting.reach, collisions=setting.collisions)
+    assumptions = assumptions if setting.natural else assumptions.plain()
+    if setting.dt is None:
+        grid = fitting_grid(setting.horizon, query.formula, values)
+    else:
+        grid = make_grid(setting.horizon, setting.dt)
+    return Posed(query, road, vehicles, values, lanes, grid, assumptions)
+
+
+def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[dict[str, str], ...]:
+    """Every way to give the free lanes of ``query`` lanes of ``road`` that agrees with ``chosen``.
+
+    Raises ``UsageError`` for a lane that the road does not have or the query does not speak of.
+    """
+    for name, lane in chosen.items():
+        if lane not in road.lanes:
+            raise UsageError(f"lane {name}={lane}: road '{road.name}' has the lanes {', '.join(road.lanes)}")
+        if name not in query.lanes:
+            known = ", ".join(query.lanes) or "no lane"
+            raise UsageError(f"lane {name}={lane}: the formula speaks of {known}")
+    options = [[chosen[name]] if name in chosen else list(road.lanes) for name in query.lanes]
+    return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
+
+
+def usual_road(formula: Formula) -> Road:
+    """The reference road that has the zones which ``formula`` speaks of: merge, depart, else main-2."""
+    zones = {
+        x.domain.of
+        for x in subformulas(formula)
+        if isinstance(x, f.Some | f.Every) and x.domain.kind == "zone"
+    }
+    return load_road("merge" if "merge" in zones else "depart" if "depart" in zones else "main-2")

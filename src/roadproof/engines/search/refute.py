@@ -1,0 +1,101 @@
+"""Drives against claims: a drive on a reference road on which a claim is false."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+from roadproof.engines.search.ask import Search, ask, reads_all
+from roadproof.engines.search.default_vehicles import usual_model
+from roadproof.engines.search.enumeration import Within, small_drive
+from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.evidence.judged import Judged
+from roadproof.library.compose import negation
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.logic.fixed_parameters import pins
+from roadproof.logic.formula import is_state
+from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.replay import first_breach, first_overlap
+from roadproof.world.vehicle import Vehicle
+
+# Units of work: for a drive within the limits of the usual models, where one beyond them is known, and
+# without them.
+DRIVE, KNOWN, WIDER = 5.0, 0.5, 2.0
+WITHIN: tuple[Within, ...] = ("model", "forward", "claim")
+ROUNDS = 3
+FASTEST, HARDEST = Fraction(80), Fraction(12)  # m/s and m/s^2
+
+
+def quick_drive(specification: Specification, claim: Query) -> Judged | None:
+    """A short drive on which ``claim`` is false, within the limits of the usual models, else without them.
+
+    Found without a solver, in some tenths of a second; None where none was found.
+    """
+    return _small(specification, claim, 1)
+
+
+def _small(specification: Specification, claim: Query, rounds: int) -> Judged | None:
+    for within in WITHIN:
+        found = small_drive(specification, claim, within, rounds)
+        if found is not None:
+            return found
+    return None
+
+
+def refuting_drive(
+    specification: Specification, claim: Query, effort: Effort, known: Judged | None = None
+) -> Judged | None:
+    """A judged drive on which ``claim`` is false at time 0, or None where none was found.
+
+    Within the limits of the usual models first, then without limits, where ``known`` is such a drive.
+    Looked for on the usual road, with parameters at the values that the claim's premise demands, and at the
+    declared ones else; not for a claim about one instant that no engine reads, of which a state says all.
+    Raises ``InputError`` and ``UsageError`` for claims that are not about drives, and ``Late``.
+    """
+    setting = Setting(values=pins(claim.formula))
+    units = min(DRIVE if known is None else KNOWN, effort.units)
+    within = _searched(specification, claim, setting, effort.of(units))
+    if within is not None or known is not None:
+        return within or known
+    small = _small(specification, claim, ROUNDS)
+    if small is not None:
+        return small
+    wide = {name: _without_limits(usual_model(negation(claim).formula, name)) for name in claim.vehicles}
+    anyhow = replace(setting, vehicles=wide, collisions=True, natural=False)
+    return _searched(specification, claim, anyhow, effort.of(min(WIDER, effort.units)))
+
+
+def _searched(specification: Specification, claim: Query, setting: Setting, effort: Effort) -> Judged | None:
+    search_options = SearchOptions("smooth", effort=effort, explain=False)
+    search = Search(specification, negation(claim), setting, search_options)
+    if is_state(claim.formula) and not reads_all(search):
+        return None
+    outcome = ask(search)
+    return outcome.drives[0] if outcome.drives else None
+
+
+def _without_limits(model: Vehicle) -> Vehicle:
+    """The same box, which may stand, drive fast and swerve; the search knows no reversing."""
+    return replace(
+        model,
+        name=f"{model.name} without limits",
+        v_lon=(Fraction(0), FASTEST),
+        cruise=(Fraction(0), FASTEST),
+        v_lat=(-HARDEST, HARDEST),
+        a_lon=(-HARDEST, HARDEST),
+        a_lat=(-HARDEST, HARDEST),
+        lateral_share=Fraction(10),
+    )
+
+
+def beyond_limits(drive: Judged) -> str:
+    """How a drive leaves the limits of the usual models, in words; '' where it keeps them.
+
+    Boxes that overlap within the horizon of the file count as well.
+    """
+    file = drive.file
+    models = {name: usual_model(drive.judgement.formula, name) for name in file.drive.vehicles}
+    breach = first_breach(file.drive, models, None)
+    if breach is not None:
+        return f"limits of the shipped {models[breach.vehicle].name}: {breach}"
+    overlap = first_overlap(file.drive, file.horizon)
+    return "" if overlap is None else f"usual drives: {overlap}"

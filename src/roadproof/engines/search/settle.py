@@ -1,0 +1,219 @@
+"""One claim settled: by a proof, a countermodel, a drive that refutes it, or within bounds.
+
+What searches for drives is imported when one is looked for: most claims are proved without.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+from roadproof.engines.prove.doubt import Stop
+from roadproof.engines.prove.induction import prove_by_induction
+from roadproof.engines.prove.motion import prove_of_motions
+from roadproof.engines.prove.prover import Result, prove
+from roadproof.engines.search.constant_motion import steady_drive
+from roadproof.engines.search.limits import Limits
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.judged import Judged
+from roadproof.library.motion import Assumed, is_moving, under_limits
+from roadproof.library.query import Query
+from roadproof.library.specification import Specification
+from roadproof.logic.fixed_parameters import pins
+from roadproof.logic.fragment import is_cubic_state
+from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.timing import now, since
+from roadproof.verdict import ClaimVerdict, Verdict
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.ask import Search
+
+# Units of work for a proof, before short drives are looked at, and before a solver looks for a drive.
+BRIEF, BEFORE = 0.25, 5.0
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A result; ``drive`` is a judged drive on which the claim is false.
+
+    ``bounded``: asked of drives on one road, up to a horizon; ``limits``: within what PROVED-BOUNDED holds.
+    """
+
+    result: Result
+    drive: Judged | None = None
+    limits: Limits | None = None
+    bounded: bool = False
+
+    @property
+    def verdict(self) -> ClaimVerdict:
+        """A drive refutes also where no countermodel over points in time was found."""
+        return Verdict.REFUTED if self.drive is not None else self.result.verdict
+
+    @property
+    def refuted_by(self) -> Literal["drive", "trace"] | None:
+        """Whether a vehicle can drive what refutes the claim; None where nothing does."""
+        if self.verdict is not Verdict.REFUTED:
+            return None
+        return "trace" if self.drive is None else "drive"
+
+    @property
+    def beyond(self) -> str:
+        """How the refuting drive leaves the limits of the usual models; '' where there is none, or it keeps
+        them, or was looked for within limits of the user's own.
+        """
+        return "" if self.drive is None or self.bounded else _beyond(self.drive)
+
+
+def settle(
+    specification: Specification,
+    query: Query,
+    effort: Effort,
+    label: str = "",
+    scenario: int | None = None,
+    seek_drive: bool = True,
+    said: Sequence[str] = (),
+) -> Settled:
+    """Prove or refute a claim; a refuted or undecided one also by a drive, where there is one.
+
+    ``said``: what is assumed, in words; of motions only a drive refutes. UNKNOWN where the clock cuts the
+    search off.
+    """
+    begun = now()
+    if seek_drive:
+        return _Settling(specification, query, effort, (label, scenario), tuple(said), begun).run()
+    try:
+        found = _proved(specification, query, effort, (label, scenario), tuple(said))
+    except Late as late:
+        return in_doubt(str(late), begun)
+    if is_moving(said) and not found.holds:
+        found = replace(found, reason=f"{found.reason}; no drive that refutes it was looked for")
+    return Settled(found)
+
+
+@dataclass(frozen=True)
+class _Settling:
+    """Proofs and drives in turns, each with more work than before."""
+
+    specification: Specification
+    query: Query
+    effort: Effort
+    called: tuple[str, int | None]
+    said: tuple[str, ...]
+    begun: float
+
+    @cached_property
+    def against(self) -> Query:
+        """What a drive refutes."""
+        return under_limits(self.specification, self.query, self.said)
+
+    def run(self) -> Settled:
+        try:
+            result = self._prove(BRIEF)
+        except Late as late:
+            return in_doubt(str(late), self.begun)
+        if result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
+            return Settled(result)
+        try:
+            return self._run(result)
+        except Late as late:
+            if result.verdict is Verdict.REFUTED:
+                return Settled(result)
+            return in_doubt(str(late), self.begun)
+
+    def _run(self, result: Result) -> Settled:
+        """A quick drive, a longer proof, a drive that takes a search, and the longest proof."""
+        quick = self._quick()
+        if quick is not None and not _beyond(quick):
+            return self._refuted(result, quick)
+        if quick is None and self._may_change(result, BRIEF):
+            result = self._prove(BEFORE)
+        if result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
+            return Settled(result)
+        drive = self._searched(quick)
+        if drive is not None:
+            return self._refuted(result, drive)
+        if self._may_change(result, BEFORE):
+            result = self._prove(self.effort.units)
+        if result.countermodel is not None:
+            drive = steady_drive(self.specification, self.against, result.countermodel)
+        if result.verdict is Verdict.UNKNOWN and is_moving(self.said):
+            result = replace(result, reason=f"{result.reason}; no drive was found that refutes it")
+        return Settled(replace(result, seconds=since(self.begun)), drive)
+
+    def _prove(self, units: float) -> Result:
+        effort = self.effort.of(min(units, self.effort.units))
+        return _proved(self.specification, self.query, effort, self.called, self.said)
+
+    def _may_change(self, result: Result, units: float) -> bool:
+        """Whether more work than ``units`` may bring another answer."""
+        return result.verdict is Verdict.UNKNOWN and units < self.effort.units
+
+    def _refuted(self, result: Result, drive: Judged) -> Settled:
+        return Settled(replace(result, reason="", seconds=since(self.begun)), drive)
+
+    def _quick(self) -> Judged | None:
+        """A short or steady drive on which the claim is false, found without a solver; None as below."""
+        from roadproof.engines.search.instant_claims import sampled_drive
+        from roadproof.engines.search.question import Setting
+        from roadproof.engines.search.refute import quick_drive
+
+        try:
+            found = quick_drive(self.specification, self.against)
+            if found is None and is_cubic_state(self.against.formula):
+                values = pins(self.against.formula)
+                return sampled_drive(self.specification, self.against, values, Setting())
+            return found
+        except (InputError, UsageError):
+            return None
+
+    def _searched(self, known: Judged | None) -> Judged | None:
+        """A drive on which the claim is false; ``known`` or None where none is found that is better."""
+        from roadproof.engines.search.refute import refuting_drive
+
+        try:
+            return refuting_drive(self.specification, self.against, self.effort, known)
+        except (InputError, UsageError):
+            return known
+
+
+def _beyond(drive: Judged) -> str:
+    from roadproof.engines.search.refute import beyond_limits
+
+    return beyond_limits(drive)
+
+
+def _proved(
+    specification: Specification,
+    query: Query,
+    effort: Effort,
+    called: tuple[str, int | None],
+    said: Sequence[str],
+) -> Result:
+    """What the prover says. Raises ``Late``."""
+    induced = prove_by_induction(specification, query, said, effort, *called)
+    if induced is not None:
+        return induced
+    if is_moving(said):
+        return prove_of_motions(specification, query, said, effort, *called)
+    return prove(specification, query, effort, *called, Assumed(tuple(said)))
+
+
+def settle_bounded(search: "Search") -> Settled:
+    """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
+    from roadproof.engines.search.bounded import check_bounded
+
+    begun = now()
+    try:
+        found = check_bounded(search)
+    except Late as late:
+        return replace(in_doubt(str(late), begun), bounded=True)
+    if found.verdict is Verdict.PROVED:
+        return settle(search.specification, search.query, search.search_options.effort)
+    result = Result(found.verdict, found.reason, since(begun))
+    return Settled(result, found.drive, found.limits, bounded=True)
+
+
+def in_doubt(reason: str, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settled:
+    """What is said of a claim that nothing is known of; ``begun``: since when it was asked."""
+    seconds = 0.0 if begun is None else since(begun)
+    return Settled(Result(Verdict.UNKNOWN, reason, seconds, stop=stop))

@@ -1,0 +1,131 @@
+"""Convex quadratic programs for Clarabel: what is left when every choice has been made.
+
+Inequalities are replaced by affine conditions on their inner side near a point at which they hold: tangents
+there, and secants on a narrow window around it.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+import numpy as np
+
+from roadproof.engines.encode.problem import ColumnInequality, Row
+from roadproof.engines.solve.bounds import Affine, Bound, Box, split_squares
+from roadproof.errors import MissingSolverError
+
+
+@dataclass(frozen=True)
+class Square:
+    """``weight · affine²``, to be made small."""
+
+    weight: float
+    affine: Affine
+
+
+def near(inequality: ColumnInequality, point: Sequence[float], box: Box) -> Bound:
+    """An affine condition under which ``inequality`` holds in ``box``; exact at ``point`` for convex ones."""
+    total, squares = split_squares(inequality)
+    for factor, form in squares:
+        low, high = form.range(box)
+        at = form.value(point)
+        if factor > 0:
+            bound = form.scaled(2 * at) + Affine((), -at * at)
+        else:
+            bound = form.scaled(low + high) + Affine((), -low * high)
+        total = total + bound.scaled(factor)
+    return Bound(total, float(inequality.margin))
+
+
+def narrow(box: Box, point: Sequence[float], widths: Sequence[float]) -> list[tuple[float, float]]:
+    """The part of ``box`` within ``widths`` of ``point`` in each column."""
+    return [
+        (max(low, min(x, high) - w), min(high, max(x, low) + w))
+        for (low, high), x, w in zip(box, point, widths, strict=True)
+    ]
+
+
+def minimise(
+    rows: Iterable[Row],
+    box: Box,
+    bounds: Iterable[Bound],
+    squares: Iterable[Square],
+    cost: Affine | None = None,
+) -> tuple[float, ...] | None:
+    """The point of least cost, or None where there is none. Raises ``MissingSolverError``.
+
+    Minimises Σ weight·affine² + cost within rows, box and bounds.
+    """
+    if find_spec("clarabel") is None:
+        raise MissingSolverError(
+            "solver=clarabel is not installed: install clarabel, or ask for another objective"
+        )
+    import clarabel
+    from scipy.sparse import coo_array, csc_matrix, diags_array
+
+    count = len(box)
+    equal, below = _Triplets(), _Triplets()
+    for row in rows:
+        terms = [(c, float(k)) for c, k in row.terms.items()]
+        if row.low is not None and row.low == row.high:
+            equal.add(terms, float(row.low))
+            continue
+        if row.low is not None:
+            below.add([(c, -k) for c, k in terms], -float(row.low))
+        if row.high is not None:
+            below.add(terms, float(row.high))
+    for column, (low, high) in enumerate(box):
+        if high - low < 1e-9:
+            equal.add([(column, 1.0)], low)
+        else:
+            below.add([(column, 1.0)], high)
+            below.add([(column, -1.0)], -low)
+    for bound in bounds:
+        below.add([(c, -k) for c, k in bound.affine.terms], bound.affine.constant - bound.margin)
+    kept = [s for s in squares if s.weight > 0]
+    forms = _Triplets()
+    for square in kept:
+        forms.add(square.affine.terms, square.affine.constant)
+    m = coo_array((forms.values, (forms.rows, forms.columns)), shape=(len(kept), count)).tocsc()
+    w = diags_array(np.array([s.weight for s in kept]))
+    quadratic = csc_matrix(2 * (m.T @ w @ m))
+    linear = 2 * (m.T @ (w @ np.array(forms.right))) if kept else np.zeros(count)
+    for column, factor in cost.terms if cost else ():
+        linear[column] += factor
+    both = equal.stacked(below, count)
+    cones = [clarabel.ZeroConeT(len(equal.right)), clarabel.NonnegativeConeT(len(below.right))]
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    settings.direct_solve_method = "qdldl"
+    right = np.array(equal.right + below.right)
+    solver = clarabel.DefaultSolver(quadratic, linear, csc_matrix(both), right, cones, settings)
+    result = solver.solve()
+    if str(result.status) not in ("Solved", "AlmostSolved"):
+        return None
+    return tuple(result.x)
+
+
+class _Triplets:
+    def __init__(self) -> None:
+        self.rows: list[int] = []
+        self.columns: list[int] = []
+        self.values: list[float] = []
+        self.right: list[float] = []
+
+    def add(self, terms: Iterable[tuple[int, float]], right: float) -> None:
+        for column, factor in terms:
+            self.rows.append(len(self.right))
+            self.columns.append(column)
+            self.values.append(factor)
+        self.right.append(right)
+
+    def stacked(self, other: "_Triplets", count: int):  # type: ignore[no-untyped-def]
+        from scipy.sparse import coo_array
+
+        shift = len(self.right)
+        rows = self.rows + [r + shift for r in other.rows]
+        shape = (shift + len(other.right), count)
+        return coo_array(
+            (self.values + other.values, (rows, self.columns + other.columns)), shape=shape
+        ).tocsc()

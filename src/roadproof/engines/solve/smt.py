@@ -1,0 +1,216 @@
+"""The one home of z3 (and of cvc5): sessions that speak SMT-LIB 2 text.
+
+Everything that is asked of an SMT solver passes through here as text, so that any query can be
+written to a file and asked again of another program.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+from typing import Literal, TypeAlias
+
+from roadproof.errors import MissingSolverError
+from roadproof.runtime.budget import Meter
+
+# What is counted in about a second; by z3 up to 4 million on linear queries, 0.3 on polynomial ones.
+UNIT = 1_000_000
+# Units of work for what z3 does not count: a context made and removed, a command read, a character of it.
+CONTEXT, COMMAND, CHARACTER = 4.5e-3, 1e-4, 2e-7
+UNIT_CVC5 = 200_000
+_MOST = 4_000_000_000  # both count in 32 bits
+_NEVER = 4294967295
+
+Satisfiability: TypeAlias = Literal["sat", "unsat", "unknown"]
+SExpression: TypeAlias = "str | list[SExpression]"
+
+
+class SolverError(RuntimeError):
+    """The solver refused what it was told: our fault, since we wrote it."""
+
+
+class Session:
+    """A z3 context that keeps declarations and assertions between calls."""
+
+    def __init__(self, unit: int = UNIT) -> None:
+        """``unit``: how much of what z3 counts is a unit of work."""
+        import z3
+
+        self._z3 = z3
+        self._unit = unit
+        self._counted = 0
+        self._unspent = CONTEXT
+        z3.Context.owner = False  # of one that Ctrl-C meets while it is made, which its end asks for
+        self._context = z3.Context()
+        self.tell("(set-option :produce-models true)(set-option :produce-unsat-cores true)")
+
+    def tell(self, commands: str) -> str:
+        """Run SMT-LIB commands and return what they print. Raises ``SolverError``.
+
+        Their cost is counted with the next answer.
+        """
+        self._unspent += COMMAND + CHARACTER * len(commands)
+        try:
+            answer: str = self._z3.Z3_eval_smtlib2_string(self._context.ref(), commands)
+        except self._z3.Z3Exception as error:
+            raise SolverError(f"z3 refused: {error}") from None
+        if "(error" in answer:
+            raise SolverError(f"z3 refused: {answer.strip()}")
+        return answer
+
+    def check(self, assuming: Sequence[str] = (), meter: Meter | None = None) -> Satisfiability:
+        """``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
+        query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
+        return self.answer(query, meter)
+
+    def check_plainly(self, meter: Meter, seed: int = 0) -> Satisfiability:
+        """``check-sat`` by z3's SMT core alone, without the strategies that z3 tries before it.
+
+        On polynomial arithmetic with many disjunctions those spend most of a minute in vain.
+        """
+        return self.answer(f"(check-sat-using (using-params smt :random_seed {seed}))", meter)
+
+    def answer(self, commands: str, meter: Meter | None) -> Satisfiability:
+        """The answer to commands that end in a check, within what ``meter`` has left.
+
+        ``unknown`` where the work is used up, or z3 gives up. Raises ``Late``.
+        """
+        if meter is None:
+            return _answer(self.tell(f"(set-option :rlimit 0)(set-option :timeout {_NEVER})\n{commands}"))
+        if meter.is_out():
+            return "unknown"
+        work, milliseconds = _limits(meter, self._unit)
+        limits = f"(set-option :rlimit {work})(set-option :timeout {milliseconds})"
+        said = self.tell(f"{limits}\n{commands}\n(get-info :rlimit)")
+        counted = int(said[said.rindex(":rlimit") + 7 :].strip(" )\n"))
+        meter.spend((counted - self._counted) / self._unit + self._unspent)
+        self._counted, self._unspent = counted, 0.0
+        answer = _answer(said)
+        if answer == "unknown":
+            meter.seconds_left()
+        return answer
+
+    def core(self) -> list[str]:
+        """The assumptions that the last ``unsat`` used."""
+        read = parse_sexpression(self.tell("(get-unsat-core)"))
+        return [x for x in read if isinstance(x, str)]
+
+    def values(self, expressions: Sequence[str]) -> list[Fraction | bool | None]:
+        """Values in the last model, in order; None for a number that is not rational."""
+        if not expressions:
+            return []
+        read = parse_sexpression(self.tell(f"(get-value ({' '.join(expressions)}))"))
+        return [read_value(pair[1]) for pair in read]
+
+
+def _limits(meter: Meter, unit: int) -> tuple[int, int]:
+    """What is left as a solver's count and as milliseconds, rounded up. Raises ``Late``."""
+    milliseconds = math.ceil(meter.seconds_left() * 1000)
+    return max(1, min(_MOST, math.ceil(min(meter.left(), _MOST) * unit))), min(_MOST, milliseconds)
+
+
+def _answer(text: str) -> Satisfiability:
+    words = text.split()
+    if "unsat" in words:
+        return "unsat"
+    return "sat" if "sat" in words else "unknown"
+
+
+def ask(script: str, solver: str = "z3", meter: Meter | None = None) -> Satisfiability:
+    """The answer of ``solver`` (z3 or cvc5) to a whole SMT-LIB script that ends in ``check-sat``.
+
+    Raises ``MissingSolverError`` where cvc5 is not installed, and ``Late``.
+    """
+    return Session().answer(script, meter) if solver == "z3" else _ask_cvc5(script, meter)
+
+
+def solve(script: str, symbols: Sequence[str], meter: Meter) -> Mapping[str, Fraction | bool] | None:
+    """Values of ``symbols`` in a model that z3 finds for a whole script, or None where it finds none.
+
+    Numbers that are not rational are left out. Raises ``Late``.
+    """
+    session = Session()
+    if session.answer(script, meter) != "sat":
+        return None
+    read = session.values(symbols)
+    return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
+
+
+def _ask_cvc5(script: str, meter: Meter | None) -> Satisfiability:
+    try:
+        import cvc5
+    except ImportError:
+        raise MissingSolverError("solver=cvc5 is not installed: install roadproof[cvc5], or ask z3") from None
+    solver = cvc5.Solver()
+    # Without it, cvc5 finds no end to one of the cases of the RSS guarantee, and with it it takes 0.03 s.
+    solver.setOption("decision", "justification")
+    if meter is not None:
+        if meter.is_out():
+            return "unknown"
+        work, milliseconds = _limits(meter, UNIT_CVC5)
+        solver.setOption("rlimit-per", str(work))
+        solver.setOption("tlimit-per", str(milliseconds))
+    symbols = cvc5.SymbolManager(solver)
+    parser = cvc5.InputParser(solver, symbols)
+    parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, script, "query")
+    printed: list[str] = []
+    while not (command := parser.nextCommand()).isNull():
+        printed.append(str(command.invoke(solver, symbols)))
+    if meter is not None:
+        used = solver.getStatistics().get("resource::resourceUnitsUsed").get("value", 0)
+        meter.spend(used / UNIT_CVC5)
+    answer = _answer(" ".join(printed))
+    if answer == "unknown" and meter is not None:
+        meter.seconds_left()
+    return answer
+
+
+def parse_sexpression(text: str) -> list[SExpression]:
+    """The first parenthesised expression of ``text``."""
+    stack: list[list[SExpression]] = [[]]
+    for token in _tokens(text):
+        if token == "(":
+            stack.append([])
+        elif token == ")":
+            done = stack.pop()
+            stack[-1].append(done)
+        else:
+            stack[-1].append(token)
+    first = stack[0][0] if stack[0] else []
+    return first if isinstance(first, list) else [first]
+
+
+def _tokens(text: str) -> Iterable[str]:
+    quoted = False
+    word = ""
+    for character in text:
+        if quoted:
+            word += character
+            quoted = character != "|"
+        elif character in "() \t\r\n":
+            if word:
+                yield word
+            word = ""
+            if character in "()":
+                yield character
+        else:
+            word += character
+            quoted = character == "|"
+    if word:
+        yield word
+
+
+def read_value(value: SExpression) -> Fraction | bool | None:
+    """A solver's value as a rational or truth value; None where it is an irrational number."""
+    match value:
+        case "true" | "false":
+            return value == "true"
+        case str():
+            return Fraction(value)
+        case ["-", inner]:
+            read = read_value(inner)
+            return None if read is None else -Fraction(read)
+        case ["/", upper, lower]:
+            top, bottom = read_value(upper), read_value(lower)
+            return None if top is None or bottom is None else Fraction(top) / Fraction(bottom)
+        case _:
+            return None

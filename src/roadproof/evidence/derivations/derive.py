@@ -1,0 +1,367 @@
+"""A derivation that a formula is true of a drive, read off the sets of instants at which its parts are true.
+
+The exact judge says when each part is true; here an instant is chosen for each `F`, a disjunct for each `or`,
+and rational instants at which the choice changes. Where it has to change exactly at an irrational instant,
+cases are made of the sign of a polynomial, which decides the comparisons that change; where that is not
+enough there is no derivation. Nothing rests on this: Coq checks what comes out.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TypeAlias, assert_never
+
+from roadproof.evidence.derivations.parts import (
+    NoDerivationError,
+    at_once,
+    between,
+    breaks,
+    contains,
+    covered,
+    image,
+    moments,
+    put_together,
+    run,
+    widened,
+)
+from roadproof.evidence.derivations.signs import (
+    Part,
+    Poly,
+    Shapes,
+    Signs,
+    compares,
+    occupies,
+    opposite,
+    said_of,
+    splits,
+)
+from roadproof.evidence.kernel.derivation import Step, case, element, sign, timed
+from roadproof.library.bind import occupies as occupies_formula
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import terms_of, vehicles_of, with_values, without_names
+from roadproof.semantics.exact.algebraic import Root
+from roadproof.semantics.exact.exact import judge, seconds
+from roadproof.semantics.exact.truth import (
+    ALWAYS,
+    NEVER,
+    Cut,
+    TruthSet,
+    always,
+    complement,
+    eventually,
+    intersection,
+    union,
+    until,
+)
+from roadproof.world.drive import Drive
+from roadproof.world.road import Road
+
+MOST_STEPS = 5_000
+DEEPEST = 16  # how often a part is halved until a sign is seen
+NOW = Part(Cut(Fraction(0), False), Cut(Fraction(0), True))
+# What a bound variable speaks of: the number of a lanelet, which stands for its lane, too.
+Scope: TypeAlias = Mapping[str, int]
+
+
+def derive(
+    formula: Formula, drive: Drive, road: Road, lanes: Mapping[str, str], values: Mapping[str, Fraction]
+) -> Step:
+    """Why ``formula`` is true of a drive at time 0.
+
+    Raises ``NoDerivationError``; also where the formula is false.
+    """
+    known = with_values(without_names(formula), values)
+    finding = _Finding(drive, road, lanes, Shapes(drive, values))
+    return finding.why(known, {}, True, NOW)
+
+
+@dataclass
+class _Finding:
+    drive: Drive
+    road: Road
+    lanes: Mapping[str, str]
+    shapes: Shapes
+    truths: dict[tuple[Formula, tuple[tuple[str, int], ...]], TruthSet] = field(default_factory=dict)
+    steps: int = 0
+
+    # --- when something is true ---------------------------------------------------------------------
+
+    def when(self, formula: Formula, scope: Scope, positive: bool = True) -> TruthSet:
+        key = formula, tuple(sorted(scope.items()))
+        if key not in self.truths:
+            self.truths[key] = self._when(formula, scope)
+        return self.truths[key] if positive else complement(self.truths[key])
+
+    def _when(self, formula: Formula, scope: Scope) -> TruthSet:
+        match formula:
+            case f.Truth(value):
+                return ALWAYS if value else NEVER
+            case f.Compare():
+                return judge(formula, self.drive).truth(formula)
+            case f.Occupies(vehicle, name):
+                inside = occupies_formula(vehicle, self.road.lanelets[self.number(name, scope)])
+                return judge(inside, self.drive).truth(inside)
+            case f.Some(variable, domain, body):
+                return union(
+                    [self.when(body, {**scope, variable: e}) for e in self.members(domain, scope)] or [NEVER]
+                )
+            case f.Every(variable, domain, body):
+                return intersection(
+                    [self.when(body, {**scope, variable: e}) for e in self.members(domain, scope)]
+                )
+            case f.Not(body):
+                return complement(self.when(body, scope))
+            case f.And(parts):
+                return intersection([self.when(x, scope) for x in parts])
+            case f.Or(parts):
+                return union([self.when(x, scope) for x in parts] or [NEVER])
+            case f.Eventually(interval, body):
+                return eventually(*seconds(interval), self.when(body, scope))
+            case f.Always(interval, body):
+                return always(*seconds(interval), self.when(body, scope))
+            case f.Until(left, interval, right):
+                return until(self.when(left, scope), *seconds(interval), self.when(right, scope))
+            case f.Named(_, _, body):
+                return self.when(body, scope)
+            case _:
+                assert_never(formula)
+
+    def number(self, name: str, scope: Scope) -> int:
+        """Which lanelet a name stands for; a lane by its first one."""
+        if name in scope:
+            return scope[name]
+        lane = self.lanes.get(name, name)
+        for number, lanelet in enumerate(self.road.lanelets):
+            if lanelet.lane == lane:
+                return number
+        raise NoDerivationError(f"the road has no lane for {name}")
+
+    def members(self, domain: f.Domain, scope: Scope) -> list[int]:
+        lanelets = list(enumerate(self.road.lanelets))
+        if domain.kind == "lanes":
+            return [k for k, _ in lanelets]
+        if domain.kind == "zone":
+            return [k for k, x in lanelets if x.zone == domain.of]
+        lane = self.road.lanelets[self.number(domain.of, scope)].lane
+        if domain.kind == "lanelets":
+            return [k for k, x in lanelets if x.lane == lane]
+        return [k for k, x in lanelets if x.lane in self.road.beside(lane)]
+
+    # --- why it is ----------------------------------------------------------------------------------
+
+    def why(self, formula: Formula, scope: Scope, positive: bool, part: Part) -> Step:
+        """Why ``formula`` is true (or false) at every instant of ``part``."""
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise NoDerivationError(f"it would have more than {MOST_STEPS} steps")
+        if not contains(self.when(formula, scope, positive), part):
+            raise NoDerivationError("the formula is not what it should be at some instant")
+        match formula:
+            case f.Truth():
+                return Step("Plain")
+            case f.Compare() | f.Occupies():
+                return self._sign(formula, scope, positive, part)
+            case f.Not(body):
+                return Step("Turn", (), (self.why(body, scope, not positive, part),))
+            case f.And(parts):
+                return self._joined(parts, scope, positive, part, f.And, both=positive)
+            case f.Or(parts):
+                return self._joined(parts, scope, positive, part, f.Or, both=not positive)
+            case f.Some(variable, domain, body):
+                return self._quantified(variable, domain, body, scope, positive, part, one=positive)
+            case f.Every(variable, domain, body):
+                return self._quantified(variable, domain, body, scope, positive, part, one=not positive)
+            case f.Eventually(interval, body):
+                return self._timed(body, scope, positive, part, seconds(interval), once=positive)
+            case f.Always(interval, body):
+                return self._timed(body, scope, positive, part, seconds(interval), once=not positive)
+            case f.Until(left, interval, right) if positive:
+                return self._until(left, right, scope, part, seconds(interval))
+            case f.Until(left, interval, right):
+                return self._not_until(left, right, scope, part, seconds(interval))
+            case f.Named(_, _, body):
+                return self.why(body, scope, positive, part)
+            case _:
+                assert_never(formula)
+
+    def _sign(self, formula: f.Compare | f.Occupies, scope: Scope, positive: bool, part: Part) -> Step:
+        if isinstance(formula, f.Occupies):
+            vehicles = {formula.vehicle}
+            lanelet = self.road.lanelets[self.number(formula.lanelet, scope)]
+
+            def is_seen(part: Part, signs: Signs) -> bool:
+                return occupies(self.shapes, formula.vehicle, lanelet, positive, part, signs)
+        else:
+            leaves = (leaf for side in terms_of(formula) for leaf in t.leaves(side))
+            vehicles = {x.vehicle for x in leaves if isinstance(x, t.Signal)}
+            op = formula.op if positive else opposite(formula.op)
+
+            def is_seen(part: Part, signs: Signs) -> bool:
+                return compares(self.shapes, formula.left, op, formula.right, part, signs)
+
+        knots = sorted({x for name in vehicles for x in self.shapes.knots(name) if part.has_inside(x)})
+        cuts: list[Fraction] = []
+        for place, piece in enumerate(part.cut(knots)):
+            cuts += knots[place - 1 : place] if place else []
+            cuts += _cuts(is_seen, piece, DEEPEST)
+        return sign(tuple(cuts))
+
+    def _joined(
+        self,
+        parts: Sequence[Formula],
+        scope: Scope,
+        positive: bool,
+        part: Part,
+        kind: type[f.And | f.Or],
+        both: bool,
+    ) -> Step:
+        """``p and q and r`` is ``p and (q and r)`` for Coq."""
+        if not parts:
+            return Step("Plain")
+        if len(parts) == 1:
+            return self.why(parts[0], scope, positive, part)
+        sides = parts[0], parts[1] if len(parts) == 2 else kind(tuple(parts[1:]))
+        if both:
+            return Step("Both", (), tuple(self.why(x, scope, positive, part) for x in sides))
+        found: list[tuple[Part, Step]] = []
+        for piece, place in covered(part, [self.when(x, scope, positive) for x in sides]):
+            if isinstance(place, Root):
+                found.append((piece, self._case(kind(tuple(parts)), scope, positive, piece, place)))
+                continue
+            step = self.why(sides[place], scope, positive, piece)
+            found.append((piece, Step("One", (str(place == 1).lower(),), (step,))))
+        return put_together(found)
+
+    def _quantified(
+        self,
+        variable: str,
+        domain: f.Domain,
+        body: Formula,
+        scope: Scope,
+        positive: bool,
+        part: Part,
+        one: bool,
+    ) -> Step:
+        members = self.members(domain, scope)
+        scopes = [{**scope, variable: e} for e in members]
+        if not one:
+            return Step("Each", (), tuple(self.why(body, x, positive, part) for x in scopes), many=True)
+        found: list[tuple[Part, Step]] = []
+        for piece, place in covered(part, [self.when(body, x, positive) for x in scopes]):
+            if isinstance(place, Root):
+                whole = (f.Some if positive else f.Every)(variable, domain, body)
+                found.append((piece, self._case(whole, scope, positive, piece, place)))
+                continue
+            found.append((piece, element(members[place], self.why(body, scopes[place], positive, piece))))
+        return put_together(found)
+
+    def _case(self, formula: Formula, scope: Scope, positive: bool, part: Part, change: Root) -> Step:
+        """Where a polynomial that has this root is above 0, and where it is not."""
+        polynomial = tuple(Fraction(x) for x in change.polynomial)
+        above, not_above = (self._assuming(formula, part, polynomial, x) for x in (True, False))
+        if formula in (above, not_above):
+            raise NoDerivationError("what holds changes exactly at an irrational instant")
+        return case(
+            polynomial,
+            self.why(above, scope, positive, part),
+            self.why(not_above, scope, positive, part),
+        )
+
+    def _assuming(self, formula: Formula, part: Part, polynomial: Poly, above: bool) -> Formula:
+        """``formula`` with what the sign of a polynomial says of its comparisons at the same instant."""
+        match formula:
+            case f.Compare():
+                vehicles = vehicles_of(formula)
+                if any(part.has_inside(x) for name in vehicles for x in self.shapes.knots(name)):
+                    return formula
+                said = said_of(self.shapes, formula, part, polynomial, above)
+                return formula if said is None else f.Truth(said)
+            case f.Not() | f.And() | f.Or() | f.Some() | f.Every():
+                inside = (self._assuming(x, part, polynomial, above) for x in f.children(formula))
+                return f.with_children(formula, tuple(inside))
+            case _:
+                return formula
+
+    def _timed(
+        self,
+        body: Formula,
+        scope: Scope,
+        positive: bool,
+        part: Part,
+        window: tuple[Fraction, Fraction | None],
+        once: bool,
+    ) -> Step:
+        if not once:
+            return Step("Whole", (), (self.why(body, scope, positive, widened(part, window)),))
+        found: list[tuple[Part, Step]] = []
+        when = self.when(body, scope, positive)
+        for piece, moment in moments(part, window, when, ALWAYS):
+            step = self.why(body, scope, positive, image(piece, moment))
+            found.append((piece, timed("Moment", moment, step)))
+        return put_together(found)
+
+    def _until(
+        self,
+        left: Formula,
+        right: Formula,
+        scope: Scope,
+        part: Part,
+        window: tuple[Fraction, Fraction | None],
+    ) -> Step:
+        found: list[tuple[Part, Step]] = []
+        for piece, moment in moments(part, window, self.when(right, scope), self.when(left, scope)):
+            before = Step("Plain")
+            if not at_once(piece, moment, window[0]):
+                before = self.why(left, scope, True, run(piece, moment, window[0], out=True))
+            after = self.why(right, scope, True, image(piece, moment))
+            found.append((piece, timed("Reach", moment, before, after)))
+        return put_together(found)
+
+    def _not_until(
+        self,
+        left: Formula,
+        right: Formula,
+        scope: Scope,
+        part: Part,
+        window: tuple[Fraction, Fraction | None],
+    ) -> Step:
+        never, failing = self.when(right, scope, False), self.when(left, scope, False)
+        found: list[tuple[Part, Step]] = []
+        for piece, moment in breaks(part, window, never, failing):
+            if moment is None:
+                step = Step("Whole", (), (self.why(right, scope, False, widened(piece, window)),))
+            else:
+                step = timed(
+                    "Break",
+                    moment,
+                    self.why(left, scope, False, image(piece, moment)),
+                    self.why(right, scope, False, run(piece, moment, window[0], out=False)),
+                )
+            found.append((piece, step))
+        return put_together(found)
+
+
+def _cuts(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int) -> list[Fraction]:
+    """Instants between which each sign is seen."""
+    signs = Signs()
+    if is_seen(part, signs):
+        return []
+    if not deeper:
+        raise NoDerivationError("a sign is not seen between rational instants, so one may be irrational")
+    inside = splits(signs.tested, part)
+    if inside:
+        cut = inside[len(inside) // 2]
+    elif part.stop is None:
+        cut = part.start + 2 ** (DEEPEST - deeper)
+    else:
+        third = (part.stop - part.start) / 3
+        cut = between(part.start + third, part.stop - third)
+    if not part.has_inside(cut):
+        raise NoDerivationError("a sign is not seen at a rational instant")
+    before, after = part.cut([cut])
+    return [*_cuts(is_seen, before, deeper - 1), cut, *_cuts(is_seen, after, deeper - 1)]
+
+
+# --- rational instants -----------------------------------------------------------------------------

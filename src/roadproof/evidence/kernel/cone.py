@@ -1,0 +1,240 @@
+"""What contradicts among polynomial constraints: products of them, with multipliers, that add up to 0 < 0.
+
+Products of a few constraints, squares, and equations times monomials are the columns of a linear program
+(Handelman; Positivstellensatz of low degree). It is solved in floats; which columns are used is taken from
+there, and their multipliers are computed exactly. Not trusted: Coq adds the products up again.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations, combinations_with_replacement, islice
+from math import gcd, lcm, prod
+from typing import Literal, TypeAlias
+
+from roadproof.evidence.kernel.polynomials import Monomial, Polynomial, constant, coq, times
+
+Kind: TypeAlias = Literal["above", "at least", "zero"]
+MOST_COLUMNS = 4000
+FEW_VARIABLES = 6  # with so many, squares of sums of products are tried too
+_SMALL = 1e-7
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """``polynomial`` is above 0, at least 0, or 0."""
+
+    kind: Kind
+    polynomial: Polynomial
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A product, ``strict`` where it is above 0, ``free`` where it is 0 and may be subtracted.
+
+    ``places``: of which constraints. ``written``: with a multiplier, for Coq; constraints as they are told.
+    """
+
+    polynomial: Polynomial
+    strict: bool
+    free: bool
+    places: tuple[int, ...]
+    written: Callable[[Fraction, Callable[[int], str]], str]
+
+
+# Constraints by their places, their product, and whether it is above 0.
+_Product: TypeAlias = tuple[tuple[int, ...], Polynomial, bool]
+_Parts: TypeAlias = tuple[tuple[_Column, Fraction], ...]
+
+
+@dataclass(frozen=True)
+class Sum:
+    """A sum of products that is absurd; ``scales`` make the coefficients of each constraint whole."""
+
+    parts: _Parts
+    scales: tuple[Fraction, ...]
+
+    def written(self) -> str:
+        """For Coq, in whole numbers, which it adds and multiplies much faster than others.
+
+        The last constraint is number 0 there.
+        """
+        multipliers = [q / prod(self.scales[place] for place in x.places) for x, q in self.parts]
+        whole = _whole(multipliers)
+        shown = [x.written(q * whole, self._given) for (x, _), q in zip(self.parts, multipliers, strict=True)]
+        found = shown[-1]
+        for part in reversed(shown[:-1]):
+            found = f"(sum_ {part} {found})"
+        return found
+
+    def _given(self, place: int) -> str:
+        told = f"(given_ {len(self.scales) - 1 - place})"
+        return told if self.scales[place] == 1 else f"(product_ {_number(self.scales[place])} {told})"
+
+
+def _whole(numbers: Iterable[Fraction]) -> Fraction:
+    """What makes them whole numbers without a common factor; 1 where there are none but 0."""
+    found = [q for q in numbers if q]
+    return Fraction(lcm(*(q.denominator for q in found)), gcd(*(q.numerator for q in found)) or 1)
+
+
+def _number(value: Fraction) -> str:
+    return f"(number_ {value.numerator} {value.denominator})"
+
+
+def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | None, int]:
+    """A sum of products of at most ``level`` constraints that is absurd, None where none is found; and the
+    number of products that were looked at, which is the work that it took.
+    """
+    columns = list(islice(_columns(constraints, level), MOST_COLUMNS + 1))
+    if len(columns) > MOST_COLUMNS:
+        return None, len(columns)
+    try:
+        parts = _solved(columns)
+    except OverflowError:  # a number that no float has
+        return None, len(columns)
+    scales = tuple(_whole(x.polynomial.parts.values()) for x in constraints)
+    return Sum(parts, scales) if parts is not None else None, len(columns)
+
+
+def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[_Column]:
+    yield _Column(constant(Fraction(1)), True, False, (), lambda q, _: _number(q))
+    signed = [(place, x) for place, x in enumerate(constraints) if x.kind != "zero"]
+    made: list[_Product] = [((), constant(Fraction(1)), True)]
+    for _ in range(level):
+        made = [
+            ((*places, place), polynomial * x.polynomial, strict and x.kind == "above")
+            for places, polynomial, strict in made
+            for place, x in signed
+            if not places or place >= places[-1]
+        ]
+        yield from map(_product, made)
+    variables = sorted({v for x in constraints for v in x.polynomial.variables})
+    for place, x in enumerate(constraints):
+        if x.kind == "zero":
+            for monomial in _monomials(variables, level if level > 1 else 0):
+                yield _equation(
+                    place,
+                    Polynomial({times(m, monomial): q for m, q in x.polynomial.parts.items()}),
+                    monomial,
+                )
+    if level > 1:
+        degree = 2 if level > 2 and len(variables) <= FEW_VARIABLES else 1
+        roots = [Polynomial({m: Fraction(1)}) for m in _monomials(variables, degree)]
+        yield from map(_square, roots)
+        for one, other in combinations(roots, 2):
+            yield _square(one - other)
+            yield _square(one + other)
+
+
+def _product(made: _Product) -> _Column:
+    places, polynomial, strict = made
+
+    def written(q: Fraction, given: Callable[[int], str]) -> str:
+        found = given(places[0])
+        for place in places[1:]:
+            found = f"(product_ {found} {given(place)})"
+        return f"(product_ {_number(q)} {found})"
+
+    return _Column(polynomial, strict, False, places, written)
+
+
+def _equation(place: int, product: Polynomial, factor: Monomial) -> _Column:
+    def written(q: Fraction, given: Callable[[int], str]) -> str:
+        return f"(times_ {coq(Polynomial({factor: q}))} {given(place)})"
+
+    return _Column(product, False, True, (place,), written)
+
+
+def _square(root: Polynomial) -> _Column:
+    def written(q: Fraction, given: Callable[[int], str]) -> str:
+        return f"(product_ {_number(q)} (square_ {coq(root)}))"
+
+    return _Column(root * root, False, False, (), written)
+
+
+def _monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
+    """Those of at most that degree."""
+    for size in range(degree + 1):
+        for chosen in combinations_with_replacement(variables, size):
+            yield tuple((x, chosen.count(x)) for x in sorted(set(chosen)))
+
+
+# --- multipliers ---------------------------------------------------------------------------------
+
+
+def _solved(columns: Sequence[_Column]) -> _Parts | None:
+    """Multipliers whose sum is 0, those of what is above 0 adding up to 1."""
+    from scipy.optimize import linprog
+    from scipy.sparse import csr_array
+
+    rows: dict[Monomial, int] = {}
+    entries: list[tuple[int, int, float]] = []
+    for place, x in enumerate(columns):
+        for monomial, factor in x.polynomial.parts.items():
+            entries.append((rows.setdefault(monomial, len(rows) + 1), place, float(factor)))
+        if x.strict:
+            entries.append((0, place, 1.0))
+    shape = (len(rows) + 1, len(columns))
+    matrix = csr_array(([e[2] for e in entries], ([e[0] for e in entries], [e[1] for e in entries])), shape)
+    found = linprog(
+        [0.0 if x.free else 1.0 for x in columns],
+        A_eq=matrix,
+        b_eq=[1.0] + [0.0] * len(rows),
+        bounds=[(None, None) if x.free else (0, None) for x in columns],
+        method="highs-ds",
+    )
+    if found.status != 0:
+        return None
+    used = [columns[place] for place, x in enumerate(found.x) if abs(x) > _SMALL]
+    return _exactly(used)
+
+
+def _exactly(used: Sequence[_Column]) -> _Parts | None:
+    """The multipliers of these columns in rationals; None where they are not what floats said."""
+    rows: dict[Monomial | None, dict[int, Fraction]] = {None: {}}
+    for place, x in enumerate(used):
+        for monomial, factor in x.polynomial.parts.items():
+            rows.setdefault(monomial, {})[place] = factor
+        if x.strict:
+            rows[None][place] = Fraction(1)
+    rows[None][len(used)] = Fraction(1)  # the right hand side
+    solved = _eliminated(list(rows.values()), len(used))
+    if solved is None:
+        return None
+    parts = [(x, solved.get(place, Fraction(0))) for place, x in enumerate(used)]
+    if any(q < 0 and not x.free for x, q in parts):
+        return None
+    return tuple((x, q) for x, q in parts if q)
+
+
+def _eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Fraction] | None:
+    """A solution of linear equations, None where there is none; ``last`` is the right hand side."""
+    pivots: dict[int, dict[int, Fraction]] = {}
+    for row in rows:
+        current = dict(row)
+        for place in sorted(pivots):
+            if place in current:
+                _subtract(current, pivots[place], current[place])
+        places = [x for x in current if x != last]
+        if not places:
+            if current.get(last):
+                return None
+            continue
+        pivot = min(places)
+        scale = current[pivot]
+        current = {x: q / scale for x, q in current.items()}
+        for other in pivots.values():
+            if pivot in other:
+                _subtract(other, current, other[pivot])
+        pivots[pivot] = current
+    return {place: row.get(last, Fraction(0)) for place, row in pivots.items()}
+
+
+def _subtract(row: dict[int, Fraction], other: Mapping[int, Fraction], factor: Fraction) -> None:
+    for x, q in other.items():
+        value = row.get(x, Fraction(0)) - factor * q
+        if value:
+            row[x] = value
+        else:
+            row.pop(x, None)

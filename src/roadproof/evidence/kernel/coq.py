@@ -1,0 +1,183 @@
+"""``coqc`` as a separate program: the theories compiled once, and files put to it.
+
+Nothing of the evidence that is checked is on Coq's path: it runs in a fresh folder, without settings of the
+user or of the environment, and sees its own library and the theories. Compiled theories are kept in a cache
+of the user, under a name made of their sources and of Coq's version; they count where only the user can write
+there and where they are what was compiled.
+"""
+
+import hashlib
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadproof.errors import MissingSolverError, RoadproofError
+from roadproof.runtime.cache import is_ours, private_folder
+from roadproof.runtime.package_data import shipped
+
+THEORIES = (
+    *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named"),
+    *("Drive", "Signs", "Shown", "Guarantee"),
+)
+APT = "apt-get install -y coq"
+PATIENCE = 1800.0  # seconds for one file; a backstop only
+SUMS = "sums.json"
+_KEPT = ("PATH", "HOME", "TMPDIR", "USER", "LOGNAME")
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What ``coqc`` answered to a file, which is accepted where ``code`` is 0; seconds of the processor."""
+
+    code: int
+    said: str
+    complained: str
+    seconds: float
+    megabytes: float = 0.0
+
+
+@dataclass(frozen=True)
+class Coq:
+    """A ``coqc`` and the folder of theories that it has compiled."""
+
+    coqc: str
+    version: str
+    theories: Path
+
+    def run(self, source: str) -> Ran:
+        """Put a file to Coq, in a folder of its own."""
+        with tempfile.TemporaryDirectory(prefix="roadproof-coq-") as folder:
+            file = Path(folder) / "evidence.v"
+            file.write_text(source, encoding="ascii")
+            return _run([self.coqc, *_options(self.theories), file.name], Path(folder))
+
+
+def find() -> tuple[str, str]:
+    """Path and version of ``coqc``. Raises ``MissingSolverError`` where there is none."""
+    coqc = shutil.which("coqc")
+    if coqc is None:
+        raise MissingSolverError(f"coqc is not on the path: install Coq 8.16 or later, such as by {APT}")
+    ran = _run([coqc, "--print-version"], Path.cwd())
+    found = re.match(r"(\d+)\.(\d+)\S*", ran.said)
+    if ran.code or found is None:
+        raise MissingSolverError(f"{coqc} does not say its version: install Coq again, such as by {APT}")
+    if (int(found[1]), int(found[2])) < (8, 16):
+        raise MissingSolverError(f"{coqc} is version {found[0]}; 8.16 or later is needed: {APT}")
+    return coqc, found[0]
+
+
+@contextmanager
+def ready() -> Iterator[Coq]:
+    """Coq with compiled theories.
+
+    Raises ``MissingSolverError``, and ``RoadproofError`` where they do not compile.
+    """
+    coqc, version = find()
+    sources = {name: shipped("proofs") / "kernel" / f"{name}.v" for name in THEORIES}
+    texts = {name: path.read_bytes() for name, path in sources.items()}
+    key = hashlib.sha256(
+        json.dumps([coqc, version, {n: _sum(x) for n, x in texts.items()}]).encode()
+    ).hexdigest()
+    home = private_folder("coq")
+    if home is None:
+        with tempfile.TemporaryDirectory(prefix="roadproof-theories-") as folder:
+            _compile(coqc, texts, Path(folder))
+            yield Coq(coqc, version, Path(folder))
+        return
+    place = home / key[:32]
+    if not _is_sound(place):
+        making = Path(tempfile.mkdtemp(prefix=".making-", dir=home))
+        try:
+            _compile(coqc, texts, making)
+            if place.exists():
+                shutil.rmtree(place, ignore_errors=True)
+            try:
+                os.rename(making, place)
+            except OSError:
+                if not _is_sound(place):  # another run was faster; otherwise it cannot be kept
+                    yield Coq(coqc, version, making)
+                    return
+        finally:
+            shutil.rmtree(making, ignore_errors=True)
+    yield Coq(coqc, version, place)
+
+
+def _compile(coqc: str, texts: Mapping[str, bytes], folder: Path) -> None:
+    for name, text in texts.items():
+        (folder / f"{name}.v").write_bytes(text)
+    for name in texts:
+        ran = _run([coqc, *_options(folder), f"{name}.v"], folder)
+        if ran.code:
+            raise RoadproofError(f"proofs/kernel/{name}.v is not accepted by coqc: {ran.complained[:400]}")
+    sums = {f"{name}.vo": _sum((folder / f"{name}.vo").read_bytes()) for name in texts}
+    (folder / SUMS).write_text(json.dumps(sums), encoding="ascii")
+
+
+def _options(theories: Path) -> list[str]:
+    return ["-q", "-noglob", "-Q", str(theories), "Roadproof"]
+
+
+def _run(command: list[str], folder: Path) -> Ran:
+    """Run in ``folder`` without what the environment says to Coq."""
+    begun = _processor_seconds()
+    environment = {name: os.environ[name] for name in _KEPT if name in os.environ} | {"LC_ALL": "C"}
+    try:
+        ran = subprocess.run(
+            command,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=PATIENCE,
+            check=False,
+            preexec_fn=_deep_stack,
+        )
+    except subprocess.TimeoutExpired:
+        return Ran(-1, "", f"no answer after {PATIENCE:g} s", _processor_seconds() - begun)
+    told = [x.decode("utf-8", "replace") for x in (ran.stdout, ran.stderr)]
+    held = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024  # of the largest child so far
+    return Ran(ran.returncode, told[0], told[1], _processor_seconds() - begun, held)
+
+
+def _processor_seconds() -> float:
+    """Of all programs that this process has run and waited for."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def _deep_stack() -> None:
+    """Large formulas are deep terms; Coq reads them by recursion."""
+    most = resource.getrlimit(resource.RLIMIT_STACK)[1]
+    wanted = 1 << 30
+    resource.setrlimit(
+        resource.RLIMIT_STACK, (wanted if most == resource.RLIM_INFINITY else min(wanted, most), most)
+    )
+
+
+# --- the cache -----------------------------------------------------------------------------------
+
+
+def _is_sound(folder: Path) -> bool:
+    """Whether all compiled theories are there, as they were compiled, and no others."""
+    if not is_ours(folder):
+        return False
+    try:
+        sums = json.loads((folder / SUMS).read_text("ascii"))
+        expected = {f"{name}.vo" for name in THEORIES}
+        if set(sums) != expected or {x.name for x in folder.glob("*.vo")} != expected:
+            return False
+        return all(_sum((folder / name).read_bytes()) == sum_ for name, sum_ in sums.items())
+    except (OSError, ValueError):
+        return False
+
+
+def _sum(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

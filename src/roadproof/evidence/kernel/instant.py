@@ -1,0 +1,277 @@
+"""The search for a reason of a fact about one instant, as proofs/kernel/Products.v checks it. Not trusted.
+
+The fact is taken to be false and taken apart; maxima and minima by cases, quotients as numbers of their own;
+then a contradiction of polynomial constraints is looked for (``cone.py``), at last with quotients taken to
+be at least 0, or below.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from roadproof.errors import InputError
+from roadproof.evidence.kernel.cone import Constraint, Sum, contradiction
+from roadproof.evidence.kernel.plain import atoms_of, binary, comparisons, extrema, plain
+from roadproof.evidence.kernel.polynomials import Polynomial, constant, coq, variable
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.terms import Term
+
+MOST_CASES = 400
+MOST_WORK = 100_000  # products that are looked at
+MOST_PARTS = 400  # of a polynomial
+MOST_CUTS = 2
+LEVELS = (1, 2, 3)
+
+
+class NoReasonError(Exception):
+    """No reason was found."""
+
+
+@dataclass(frozen=True)
+class Reason:
+    """``written``: the reason for Coq; ``atoms``: the terms that are variables of its polynomials."""
+
+    written: str
+    atoms: tuple[Term, ...]
+
+
+@dataclass(frozen=True)
+class _State:
+    """One case: facts by their places, constraints by theirs, terms that stand for polynomials."""
+
+    facts: tuple[tuple[bool, Formula], ...]
+    constraints: tuple[Constraint, ...]
+    table: Mapping[Term, Polynomial]
+    waiting: tuple[int, ...]  # facts that are to be read
+    choices: tuple[int, ...] = ()  # disjunctions
+    divided: frozenset[Term] = frozenset()
+    cuts: int = 0
+
+    def constrained(self, *more: Constraint) -> "_State":
+        return replace(self, constraints=(*self.constraints, *more))
+
+    def told(self, place: int, *facts: tuple[bool, Formula]) -> "_State":
+        """With facts in place of the one at ``place``."""
+        new = range(len(self.facts), len(self.facts) + len(facts))
+        left = tuple(x for x in self.waiting if x != place)
+        choices = tuple(x for x in self.choices if x != place)
+        return replace(self, facts=(*self.facts, *facts), waiting=(*new, *left), choices=choices)
+
+
+def reason(fact: Formula, strict: Mapping[str, bool], term: Callable[[Term], str]) -> Reason | None:
+    """A reason for a fact, None where none is found.
+
+    ``strict`` says of each bounded parameter whether it is above 0; ``term`` prints terms.
+    """
+    try:
+        search = _Search(binary(fact), strict, term)
+        return Reason(search.run(), tuple(search.atoms))
+    except (NoReasonError, InputError, RecursionError):
+        return None
+
+
+@dataclass
+class _Search:
+    fact: Formula
+    strict: Mapping[str, bool]
+    term: Callable[[Term], str]
+    atoms: dict[Term, int] = field(default_factory=dict)
+    left: int = MOST_CASES
+    work: int = MOST_WORK
+
+    def run(self) -> str:
+        for x in comparisons(self.fact):
+            for side in (x.left, x.right):
+                for atom in atoms_of(side):
+                    self.atoms.setdefault(atom, len(self.atoms) + 1)
+        table = {x: variable(number) for x, number in self.atoms.items()}
+        bounds = [
+            Constraint("above" if strict else "at least", table[p])
+            for name, strict in self.strict.items()
+            for p in self.atoms
+            if isinstance(p, t.Parameter) and p.name == name
+        ]
+        return self._prove(_State(((False, self.fact),), tuple(reversed(bounds)), table, (0,)))
+
+    def _prove(self, state: _State) -> str:
+        self.left -= 1
+        if self.left < 0:
+            raise NoReasonError
+        for x in state.table:
+            if isinstance(x, t.Size) and x not in state.divided:
+                new = Constraint("above", state.table[x])
+                sized = replace(state, divided=state.divided | {x}).constrained(new)
+                return f"(Sized {self._size(x)} {self._prove(sized)})"
+        for place in state.waiting:
+            found = self._read(state, place)
+            if found is not None:
+                return found
+        return (
+            self._closed(state, LEVELS[:1])
+            or self._quotient(state)
+            or self._extremum(state)
+            or self._divide(state)
+            or self._closed(state, LEVELS[1:])
+            or self._cut(state)
+        )
+
+    def _closed(self, state: _State, levels: Sequence[int]) -> str | None:
+        for level in levels:
+            found = self._contradiction(state.constraints, level)
+            if found is not None:
+                return f"(Absurd {found.written()})"
+        return None
+
+    def _contradiction(self, constraints: Sequence[Constraint], level: int) -> Sum | None:
+        found, work = contradiction(constraints, level)
+        self.work -= work
+        if found is None and self.work < 0:
+            raise NoReasonError
+        return found
+
+    # --- facts -------------------------------------------------------------------------------------
+
+    def _read(self, state: _State, place: int) -> str | None:
+        """What a fact gives; None where it has to wait until extrema are resolved."""
+        sign, formula = state.facts[place]
+        number = len(state.facts) - 1 - place
+        match formula:
+            case f.Truth(value):
+                if value != sign:
+                    return f"(Untrue {number})"
+                return self._prove(state.told(place))
+            case f.Not(body):
+                return f"(Both {number} {self._prove(state.told(place, (not sign, body)))})"
+            case f.And((one, two)) | f.Or((one, two)):
+                if isinstance(formula, f.And) == sign:
+                    inside = self._prove(state.told(place, (sign, one), (sign, two)))
+                    return f"(Both {number} {inside})"
+                left = tuple(x for x in state.waiting if x != place)
+                return self._prove(replace(state, waiting=left, choices=(*state.choices, place)))
+            case f.Compare(left, op, right):
+                if isinstance(left, t.Inverse) or isinstance(right, t.Inverse):
+                    without = plain(formula)
+                    return f"(Plain {number} {self._prove(state.told(place, (sign, without)))})"
+                one_side, other = self._polynomial(state, left), self._polynomial(state, right)
+                if one_side is None or other is None:
+                    return None
+                greater = other - one_side if (op in ("<", "<=")) == sign else one_side - other
+                strict = (op in ("<", ">")) == sign
+                new = Constraint("above" if strict else "at least", greater)
+                return f"(Reads {number} {self._prove(state.told(place).constrained(new))})"
+            case _:
+                for other_place, (other_sign, other_formula) in enumerate(state.facts):
+                    if other_formula == formula and other_sign != sign:
+                        true, false = (place, other_place) if sign else (other_place, place)
+                        last = len(state.facts) - 1
+                        return f"(Opposed {last - true} {last - false})"
+                return self._prove(state.told(place))
+
+    def _divide(self, state: _State) -> str | None:
+        if not state.choices:
+            return None
+        place = state.choices[0]
+        sign, formula = state.facts[place]
+        assert isinstance(formula, f.And | f.Or)
+        one, two = (self._prove(state.told(place, (sign, x))) for x in formula.parts)
+        return f"(Either {len(state.facts) - 1 - place} {one} {two})"
+
+    # --- terms -------------------------------------------------------------------------------------
+
+    def _polynomial(self, state: _State, term: Term) -> Polynomial | None:
+        """As ``polynomial`` of Products.v; None for a maximum or minimum that is not resolved."""
+        if term in state.table:
+            return state.table[term]
+        match term:
+            case t.Number(value, _):
+                return constant(value)
+            case t.Sum() | t.Product():
+                parts = [self._polynomial(state, x) for x in t.children(term)]
+                found = constant(Fraction(int(isinstance(term, t.Product))))
+                for x in parts:
+                    if x is None:
+                        return None
+                    found = _small(found + x if isinstance(term, t.Sum) else found * x)
+                return found
+            case t.Power(base, exponent):
+                inner = self._polynomial(state, base)
+                if inner is None:
+                    return None
+                found = constant(Fraction(1))
+                for _ in range(exponent):
+                    found = _small(found * inner)
+                return found
+            case t.Quotient(above, t.Number(value, _)) if value:
+                inner = self._polynomial(state, above)
+                return None if inner is None else inner * constant(1 / value)
+            case _:
+                return None
+
+    def _quotient(self, state: _State) -> str | None:
+        """A quotient whose divisor is above or below 0 as a number of its own."""
+        for x in state.table:
+            if not isinstance(x, t.Quotient) or x in state.divided:
+                continue
+            above, below = self._polynomial(state, x.numerator), self._polynomial(state, x.denominator)
+            if above is None or below is None:
+                continue
+            for up in (True, False):
+                other = constant(Fraction(0)) - below if up else below
+                asked = (*state.constraints, Constraint("at least", other))
+                shown = next((y for level in LEVELS[:2] if (y := self._contradiction(asked, level))), None)
+                if shown is not None:
+                    new = Constraint("zero", state.table[x] * below - above)
+                    inside = self._prove(replace(state, divided=state.divided | {x}).constrained(new))
+                    words = f"{self._term(x.numerator)} {self._term(x.denominator)} {str(up).lower()}"
+                    return f"(Over {words} {shown.written()} {inside})"
+        return None
+
+    def _extremum(self, state: _State) -> str | None:
+        """The two cases of a maximum or minimum of what is resolved already."""
+        for place in state.waiting:
+            _, formula = state.facts[place]
+            assert isinstance(formula, f.Compare)
+            for x in extrema((formula.left, formula.right)):
+                one, two = x.terms
+                p, q = self._polynomial(state, one), self._polynomial(state, two)
+                if x in state.table or p is None or q is None:
+                    continue
+                least, most = (p, q) if isinstance(x, t.Minimum) else (q, p)
+                first = replace(state, table={**state.table, x: least}).constrained(
+                    Constraint("at least", q - p)
+                )
+                other = replace(state, table={**state.table, x: most}).constrained(Constraint("above", p - q))
+                word = "Smallest" if isinstance(x, t.Minimum) else "Largest"
+                words = f"{word} {self._term(one)} {self._term(two)}"
+                return f"({words} {self._prove(first)} {self._prove(other)})"
+        return None
+
+    def _cut(self, state: _State) -> str:
+        """A quotient of which no sign is known, at least 0 or below; else no reason is found."""
+        if state.cuts >= MOST_CUTS:
+            raise NoReasonError
+        signs = {v for x in state.constraints for v in x.polynomial.variables if len(x.polynomial.parts) == 1}
+        for x, polynomial in state.table.items():
+            if isinstance(x, t.Quotient) and not polynomial.variables & signs:
+                below = constant(Fraction(0)) - polynomial
+                cut = replace(state, cuts=state.cuts + 1)
+                first = self._prove(cut.constrained(Constraint("at least", polynomial)))
+                other = self._prove(cut.constrained(Constraint("above", below)))
+                return f"(Sign {coq(polynomial)} {first} {other})"
+        raise NoReasonError
+
+    def _term(self, term: Term) -> str:
+        return f"({self.term(term)})%term"
+
+    def _size(self, size: t.Size) -> str:
+        shown = self.term(size)
+        return "Length" + shown[len("length") :] if size.name == "length" else "Width" + shown[len("width") :]
+
+
+def _small(polynomial: Polynomial) -> Polynomial:
+    """Raises ``NoReasonError`` for what is too large to be looked at."""
+    if len(polynomial.parts) > MOST_PARTS:
+        raise NoReasonError
+    return polynomial

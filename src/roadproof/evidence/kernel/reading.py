@@ -1,0 +1,171 @@
+"""What a fact gives at once: a branch that closes, a step with one child, or something to come back to."""
+
+from collections.abc import Sequence
+
+from roadproof.evidence.atoms import ZONES, is_rigid
+from roadproof.evidence.derivation import Site, prefix_form
+from roadproof.evidence.kernel.branch import (
+    At,
+    Belongs,
+    Branch,
+    Fact,
+    Means,
+    Move,
+    NotFoundError,
+    Proof,
+    Throughout,
+    Universal,
+    two,
+    used,
+)
+from roadproof.evidence.kernel.steps import Step
+from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
+from roadproof.logic import formula as f
+from roadproof.logic.rewrite import rename
+
+
+def read(means: Means, branch: Branch, number: int) -> Proof | Move | None:
+    """What to do about a fact that is new on a branch; None where it is only remembered."""
+    fact = branch.facts[number]
+    match fact:
+        case Belongs():
+            return _no_road(branch, number, fact)
+        case Throughout(site=site):
+            branch.universals.append(Universal("all", number, site, means.listed(site)))
+            return None
+        case At():
+            return _read(means, branch, number, fact)
+
+
+def _read(means: Means, branch: Branch, number: int, fact: At) -> Proof | Move | None:
+    sign, moment, formula = fact.sign, fact.moment, fact.formula
+    if isinstance(formula, f.Truth):
+        if formula.value != sign:
+            return Step("CloseTruth", (number,)), frozenset({number})
+        return None
+    closed = _close(means, branch, number, fact)
+    if closed is not None:
+        return closed
+    known = branch.known.setdefault(means.key(formula), [])
+    if any(s == sign and m == moment for s, m, _ in known):
+        return None
+    known.append((sign, moment, number))
+    return _expand(means, branch, number, fact)
+
+
+def _close(means: Means, branch: Branch, number: int, fact: At) -> Proof | None:
+    for sign, moment, other in branch.known.get(means.key(fact.formula), ()):
+        if sign == fact.sign:
+            continue
+        true, false = (number, other) if fact.sign else (other, number)
+        if f.is_state(fact.formula) and is_rigid(fact.formula):
+            return Step("Close", (true, false, (), ())), frozenset({true, false})
+        there, here = (fact.moment, moment) if fact.sign else (moment, fact.moment)
+        equal = means.equal(there, here)
+        if equal is not None:
+            return Step("Close", (true, false, *equal)), frozenset({true, false}) | used(*equal)
+    return None
+
+
+def _expand(means: Means, branch: Branch, number: int, fact: At) -> Move | None:
+    sign, moment, formula = fact.sign, fact.moment, fact.formula
+    match formula:
+        case f.Named(_, _, meaning):
+            times = compared_times(meaning, means.goal.parameters)
+            if times is not None and isinstance(meaning, f.Compare):
+                return _timing(number, sign, times)
+            return None
+        case f.Not(body):
+            return _one("Alpha", number, [At(not sign, moment, body)])
+        case f.And(parts) | f.Or(parts):
+            if isinstance(formula, f.And) == sign:
+                return _one("Alpha", number, [At(sign, moment, x) for x in two(formula)])
+            if parts:
+                branch.choices.append(number)
+            return None
+        case f.Eventually(interval, body) | f.Always(interval, body):
+            site = Site(prefix_form(formula), sign, str(moment))
+            if isinstance(formula, f.Eventually) == sign:
+                name = means.named(site, "u")
+                return _exists(branch, number, name, moment, interval, [At(sign, at(name), body)])
+            branch.universals.append(Universal("all", number, site, means.listed(site)))
+            return None
+        case f.Until(left, interval, right):
+            site = Site(prefix_form(formula), sign, str(moment))
+            if sign:
+                name = means.named(site, "u")
+                low = moment + moment_of(interval.low)
+                given: list[Fact] = [At(True, at(name), right), Throughout(low, at(name), left, site)]
+                return _exists(branch, number, name, moment, interval, given)
+            branch.universals.append(Universal("until", number, site, means.listed(site)))
+            return None
+        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+            site = Site(prefix_form(formula), sign, str(moment))
+            if isinstance(formula, f.Some) == sign:
+                name = means.named(site, "M")
+                branch.elements.add(name)
+                inside = means.goal.atoms.abstract(rename(body, variable, name))
+                met: list[Fact] = [Belongs(True, domain, name), At(sign, moment, inside)]
+                return Move("NewRoad", (number, name), (number,), [(met, [])])
+            branch.universals.append(Universal("road", number, site, means.listed(site, str)))
+            return None
+        case _:
+            raise NotFoundError(f"no rule is for {type(formula).__name__}")
+
+
+def _one(rule: str, number: int, facts: Sequence[Fact]) -> Move:
+    return Move(rule, (number,), (number,), [(facts, [])])
+
+
+def _timing(number: int, sign: bool, times: tuple[Moment, f.Comparison, Moment]) -> Move:
+    left, op, right = times
+    greater = right - left if op in ("<", "<=") else left - right
+    strict = op in ("<", ">")
+    constraint = (strict, greater) if sign else (not strict, ZERO - greater)
+    return Move("Timing", (number,), (number,), [([], [constraint])])
+
+
+def _exists(
+    branch: Branch, number: int, name: str, moment: Moment, interval: f.Interval, facts: Sequence[Fact]
+) -> Move:
+    branch.times.add(name)
+    window = [(False, at(name) - (moment + moment_of(interval.low)))]
+    if interval.high is not None:
+        window.append((False, moment + moment_of(interval.high) - at(name)))
+    return Move("New", (number,), (number,), [(facts, window)], name)
+
+
+# --- roads ---------------------------------------------------------------------------------------
+
+
+def _no_road(branch: Branch, number: int, fact: Belongs) -> Proof | None:
+    """What no road has closes a branch."""
+    kind, of, name = fact.domain.kind, fact.domain.of, fact.name
+    alone = (kind == "lanes" or (kind == "lanelets" and of == name)) if not fact.sign else False
+    if alone or (fact.sign and kind == "adjacent" and of == name):
+        return Step("CloseRoad", (number,)), frozenset({number})
+    outside = {}
+    for other, known in branch.facts.items():
+        if not isinstance(known, Belongs):
+            continue
+        if not known.sign and known.domain.kind == "zone" and known.name == name:
+            outside[known.domain.of] = other
+        for (i, one), (j, another) in (((number, fact), (other, known)), ((other, known), (number, fact))):
+            if _never_both(one, another):
+                return Step("CloseRoads", (i, j)), frozenset({i, j})
+    if set(outside) == set(ZONES):
+        three = tuple(outside[zone] for zone in ZONES)
+        return Step("CloseZones", three), frozenset(three)
+    return None
+
+
+def _never_both(one: Belongs, two: Belongs) -> bool:
+    """As ``no_roads`` of Tableau.v, in this order."""
+    if one.sign and not two.sign and one.name == two.name and one.domain == two.domain:
+        return True
+    kinds = (one.domain.kind, two.domain.kind)
+    if kinds == ("adjacent", "adjacent") and one.sign and not two.sign:
+        return one.domain.of == two.name and two.domain.of == one.name
+    if kinds == ("zone", "zone") and one.sign and two.sign:
+        return one.name == two.name and one.domain.of != two.domain.of
+    return False

@@ -1,1 +1,0 @@
-"""Drives for other programs."""

@@ -1,0 +1,160 @@
+"""What every answer can do: say its verdicts, show its evidence, be kept, be checked, be looked at."""
+
+from abc import ABC, abstractmethod
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from roadproof.errors import UsageError
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.row import Row
+from roadproof.runtime.files import write_whole
+from roadproof.verdict import ExitCode, Verdict
+
+if TYPE_CHECKING:
+    from roadproof.frontends.api.checking import Checked, Solver
+    from roadproof.recordings.formats.table import Frame
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture in two formats; a notebook shows it, ``save`` writes it."""
+
+    png: bytes = field(repr=False)
+    svg: bytes = field(repr=False)
+
+    def save(self, path: str | Path) -> Path:
+        """Write it as .png or .svg, by the name's ending. Raises ``UsageError``, ``InputError``."""
+        target = Path(path)
+        if target.suffix not in (".png", ".svg"):
+            raise UsageError(f"save({str(path)!r}): name a file that ends in .png or .svg")
+        write_whole(target, self.png if target.suffix == ".png" else self.svg)
+        return target
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+
+def picture(drawn: Mapping[str, bytes]) -> Picture:
+    """What ``report`` has drawn."""
+    return Picture(drawn["png"], drawn["svg"])
+
+
+class Answer(ABC):
+    """An answer to one question or to many. ``str`` gives it as the terminal prints it."""
+
+    @property
+    @abstractmethod
+    def verdicts(self) -> Mapping[str, Verdict]:
+        """The verdict on each thing that was asked, by its name."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict where one thing was asked. Raises ``UsageError`` where it were several."""
+        if len(self.verdicts) != 1:
+            raise UsageError(f"{len(self.verdicts)} things were asked: see verdicts, or ask for one")
+        return next(iter(self.verdicts.values()))
+
+    @property
+    @abstractmethod
+    def evidence(self) -> tuple[Evidence, ...]:
+        """Certificates, judged drives and judged traces, in order."""
+
+    @property
+    @abstractmethod
+    def exit_code(self) -> ExitCode:
+        """The exit code of the command line with this answer."""
+
+    @abstractmethod
+    def rows(self) -> list[Row]:
+        """A row for each thing that was asked."""
+
+    @abstractmethod
+    def as_data(self) -> dict[str, Any]:
+        """The answer as the plain data of ``--json``."""
+
+    @abstractmethod
+    def _write(self, folder: Path, pictures: bool) -> None:
+        """Write evidence and index into a folder."""
+
+    def _specs(self, folder: Path) -> list[Path]:
+        """The specification files in a folder with this answer that no index names."""
+        return []
+
+    @abstractmethod
+    def __str__(self) -> str: ...
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self._counts()}>"
+
+    def _counts(self) -> str:
+        """How many verdicts of each kind."""
+        return ", ".join(f"{n} {verdict}" for verdict, n in Counter(self.verdicts.values()).items())
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """Pictures with their names, drawn one by one; none where there is nothing to be drawn."""
+        yield from ()
+
+    def pictures(self) -> dict[str, Picture]:
+        """All pictures by name."""
+        return dict(self.each_picture())
+
+    def plot(self) -> Picture:
+        """The first picture. Raises ``UsageError`` where there is none."""
+        for _, drawn in self.each_picture():
+            return drawn
+        raise UsageError(f"there is no picture of {type(self).__name__}: print it, or look at to_frame()")
+
+    def save(self, folder: str | Path, pictures: bool = True) -> Path:
+        """Write the evidence, with ``pictures`` to be looked at, into a folder that ``check`` accepts.
+
+        Specification files of yours lie beside it; of ``compare``, which writes no index, ``check`` is told
+        of them by ``specs``. Nothing is written where there is no evidence. Raises
+        ``InputError`` where the folder cannot be written, ``UsageError`` where it holds the answers to
+        another question.
+        """
+        self._write(Path(folder), pictures)
+        return Path(folder)
+
+    def check(self, solver: "Solver" = "z3", jobs: int | None = 1) -> "Checked":
+        """Check the evidence again, as ``roadproof check`` does with a folder of it.
+
+        Raises ``UsageError`` where there is no evidence, as of NONE-WITHIN and UNKNOWN;
+        ``MissingSolverError``.
+        """
+        import tempfile
+
+        from roadproof.frontends.api.checking import check
+
+        with tempfile.TemporaryDirectory() as place:
+            folder = self.save(place, pictures=False)
+            if not any(folder.iterdir()):
+                raise UsageError(
+                    f"there is no evidence to be checked: {self._counts() or 'nothing was asked'}"
+                )
+            return check(folder, solver=solver, specs=self._specs(folder), jobs=jobs)
+
+    def to_frame(self) -> "Frame":
+        """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
+        from roadproof.recordings.formats.table import frame_of
+
+        return frame_of(self.rows())
+
+    def _repr_html_(self) -> str:
+        import html
+
+        rows = self.rows()
+        heading = "".join(f"<th>{html.escape(name)}</th>" for name in (rows[0] if rows else ()))
+        lines = ["".join(f"<td>{html.escape(_shown(x))}</td>" for x in row.values()) for row in rows[:_MOST]]
+        body = "".join(f"<tr>{line}</tr>" for line in lines)
+        more = f"<p>… {len(rows) - _MOST} more</p>" if len(rows) > _MOST else ""
+        return f"<p><b>{html.escape(self._counts())}</b></p><table><tr>{heading}</tr>{body}</table>{more}"
+
+
+_MOST = 60  # rows that a notebook shows
+
+
+def _shown(value: object) -> str:
+    return "" if value is None else f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,104 @@
+"""Studies that have no function of their own, asked as those that have: a verdict for each answer."""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol, TypeVar
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.study.frame import Study
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.errors import UsageError
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import Vehicles, basis_of
+from roadproof.frontends.api.studied import Studied
+from roadproof.library.scenarios import numbers_of
+from roadproof.runtime.executors import Jobs
+from roadproof.verdict import Verdict
+
+
+class Answered(Protocol):
+    """An answer with its evidence, if it has any; ``reason`` says why it is in doubt."""
+
+    @property
+    def verdict(self) -> Verdict: ...
+
+    @property
+    def reason(self) -> str: ...
+
+    @property
+    def certificate(self) -> Certificate | None: ...
+
+    @property
+    def drive(self) -> Judged | None: ...
+
+
+A = TypeVar("A", bound=Answered)
+
+
+class Listing(Study[Any, A], Protocol[A]):
+    """A study that knows the names of all answers; each is recorded as ``{"verdict": …}``."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        """The names in the order of the index, which is a list of what is recorded."""
+
+
+class Answers(Studied[Listing[A], A]):
+    """The answers to a study, each with a verdict."""
+
+    @property
+    def each(self) -> dict[str, A]:
+        """The answers by name, in order."""
+        return {name: self.found.answers[name] for name in self.study.names}
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {name: x.verdict for name, x in self.each.items()}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        return tuple(y for x in self.each.values() if (y := x.certificate or x.drive) is not None)
+
+    def rows(self) -> list[Row]:
+        return [
+            {"name": name, "verdict": str(x.verdict), "reason": x.reason} for name, x in self.each.items()
+        ]
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        question, verdicts = self.study.question, [records[name]["verdict"] for name in self.study.names]
+        said = {**question.heading, "view": "dense"}
+        return {**said, "seconds": round(self.seconds, 1), "verdicts": verdicts}
+
+    def __str__(self) -> str:
+        lines = [f"{x.verdict:<11} {name}{x.reason and f': {x.reason}'}" for name, x in self.each.items()]
+        return "\n".join([*lines, f"{len(lines)} answers in {self.seconds:.1f} s"])
+
+
+def ask(
+    about: Callable[[Basis, tuple[int, ...]], Listing[A]],
+    among: Among = None,
+    using: Definitions | None = None,
+    vehicles: Vehicles = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Answers[A]:
+    """The answers to a study that ``about`` makes of definitions and of the numbers of scenarios.
+
+    ``among``: scenarios such as "1,3-8" (all where None). ``effort``, a number of units, is for one drive;
+    ``out``: a folder in which answers are kept as they come; ``say`` is told of kept ones that do not count.
+    Raises ``InputError``, ``UsageError``.
+    """
+    home = using or load()
+    numbers = home.among(among) or numbers_of(home.specification)
+    study = about(basis_of(home, effort, timeout, vehicles), numbers)
+    if not study.names:
+        raise UsageError(f"--among {among} leaves nothing to ask: name other scenarios")
+    return Answers[A].asked(study, out, jobs, progress, say)

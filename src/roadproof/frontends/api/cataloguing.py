@@ -1,0 +1,289 @@
+"""What a catalogue of tests shows, what it misses, and drives for what is missing."""
+
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+from roadproof.analysis.catalogue.completing import Known, complete
+from roadproof.analysis.catalogue.courses import Courses, courses_of, of_drive
+from roadproof.analysis.catalogue.decisions import Decision
+from roadproof.analysis.catalogue.entries import Catalogue, Concrete
+from roadproof.analysis.catalogue.examination import Examination, examine
+from roadproof.analysis.catalogue.figures import SCENARIOS, Figure, kind_of
+from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
+from roadproof.analysis.catalogue.ranges import Span
+from roadproof.analysis.catalogue.request import NEAR, Look, Request
+from roadproof.analysis.catalogue.result import Result
+from roadproof.analysis.catalogue.showing import ConcreteAnswer
+from roadproof.analysis.catalogue.tested import Tested, all_facts
+from roadproof.analysis.coverage.claims import Covered
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.drivers.models import MODELS
+from roadproof.engines.search.question import Objective
+from roadproof.errors import UsageError
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.completing import Completed, write_completions
+from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.restricting import drivers_of, restricted
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import Vehicles, basis_of, one_of
+from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.report import catalogue as report
+from roadproof.frontends.report import catalogue_drivers as decisions
+from roadproof.frontends.report.catalogue_drives import Drawn, draw_tests
+from roadproof.library.scenarios import number_in, numbers_of
+from roadproof.runtime.executors import Jobs
+from roadproof.verdict import ExitCode, Verdict
+
+
+@dataclass(frozen=True, repr=False)
+class Catalogued(Studied[Meanings, Kept]):
+    """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
+
+    examination: Examination = field(kw_only=True)
+    pieces: ClassVar[str] = "questions about abstract tests"
+
+    @cached_property
+    def result(self) -> Result:
+        """All that is known."""
+        return Result(self.examination, self.found.answers)
+
+    @property
+    def concrete(self) -> tuple[ConcreteAnswer, ...]:
+        """What concrete tests show, in order."""
+        return self.examination.concrete
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """The tests."""
+        return self.examination.tests
+
+    @property
+    def tested(self) -> Tested:
+        """What is tested, what is missing, and what is to be said of tests."""
+        return self.result.tested
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """How much is tested: by spec set, kind and road sector."""
+        return self.result.figures
+
+    @property
+    def spans(self) -> tuple[Span, ...]:
+        """Where it was asked, how tests of each class begin, and how drives of it can."""
+        return self.result.spans
+
+    @property
+    def decisions(self) -> tuple[tuple[str, Decision], ...]:
+        """What becomes of each test, by id, under each driver model, in the order of tests."""
+        return self.result.decisions
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What is to be tested, and no test shows: scenarios, classes, with ``gaps`` classes of gaps."""
+        return self.result.missing
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """On files that are no tests, samples that contradict themselves, drives made with other values."""
+        return self.result.notes
+
+    @property
+    def tests(self) -> tuple[str, ...]:
+        """The tests by id, in order."""
+        return tuple(x.id for x in self.catalogue.entries)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        """COVERED for what a test shows, else GAPS: scenarios, classes, with ``gaps`` classes of gaps.
+
+        Classes of gaps that are proved empty are IMPOSSIBLE; UNKNOWN are those not known to be.
+        """
+        found = {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in self.tested.targets}
+        gaps = self.tested.gaps
+        if gaps.asked:
+            found |= {x.name: Verdict.COVERED if x.tested else Verdict.GAPS for x in gaps.targets}
+            found |= dict.fromkeys(gaps.open, Verdict.UNKNOWN)
+            found |= {x.name: Verdict.IMPOSSIBLE for x in gaps.empty}
+        return found
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        found = [y for x in all_facts(self.found.answers) for y in (x.certificate, x.drive)]
+        claims = gap_answers(self.found.answers).values() if self.tested.gaps.asked else ()
+        found += [x.certificate for x in claims if isinstance(x, Covered)]
+        for answer in self.result.gap_answers.values():
+            found += [] if answer is None else [answer.certificate, *(gap.drive for gap in answer.gaps)]
+        return tuple(x for x in found if x is not None)
+
+    @property
+    def exit_code(self) -> ExitCode:
+        found = self.tested
+        if found.contradictions:
+            return ExitCode.CROSSCHECK_FAILED
+        if found.doubts:
+            return ExitCode.UNKNOWN
+        return ExitCode.UNEXPECTED if found.missing or found.faults else ExitCode.AS_EXPECTED
+
+    @property
+    def in_force(self) -> tuple[str, ...]:
+        """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
+        return self.result.in_force
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.result.index(records, self.seconds)
+
+    def rows(self) -> list[Row]:
+        """A row for each scenario and class, and for each class of gaps that is shown or asked for."""
+        verdicts, gaps = self.verdicts, self.tested.gaps
+        return [
+            {
+                "target": x.name,
+                "words": x.words,
+                "sector": x.sector,
+                "verdict": str(verdicts.get(x.name, Verdict.COVERED)),
+                "tests": len(x.tested),
+                "tested_by": ", ".join(x.tested),
+                "possible_in": ", ".join(x.possible),
+            }
+            for x in (*self.tested.all_targets, *gaps.empty)
+        ]
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """Which test shows which scenario and gap, how many tests each class has; then all tests, small."""
+        yield "matrix", picture(report.draw_matrix(self.tests, self.tested, self.in_force))
+        for k, page in enumerate(draw_tests(self._drawn()), 1):
+            yield f"tests-{k}", picture(page)
+
+    def _drawn(self) -> list[Drawn]:
+        """The tests to be drawn, by the first scenario that each shows."""
+        targets = [x for x in self.tested.targets if kind_of(x.name) == SCENARIOS]
+        groups = {
+            test: f"{number_in(x.name)} {x.words}"
+            for x in reversed(targets)
+            for test in (*x.possible, *x.tested)
+        }
+        runs = {x.test: x.drive for x in all_facts(self.found.answers) if x.relation == "runs"}
+        courses: dict[str, Courses | None] = {}
+        for entry in self.catalogue.entries:
+            if isinstance(entry, Concrete):
+                courses[entry.id] = courses_of(entry)
+            elif (drive := runs.get(entry.id)) is not None:
+                courses[entry.id] = of_drive(drive.file)
+        drawn = [
+            Drawn(test, groups.get(test, "no scenario"), x) for test, x in courses.items() if x is not None
+        ]
+        order = [*dict.fromkeys(f"{number_in(x.name)} {x.words}" for x in targets), "no scenario"]
+        return sorted(drawn, key=lambda x: order.index(x.group))
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        """A table for a spreadsheet, a report for CI, and the picture."""
+        return report.tables(self.result) | drawn(self.pictures() if pictures else {})
+
+    def to_csv(self) -> str:
+        """A row a test, a column a scenario, class, gap: x shown or implied, o by some drives of the test."""
+        return report.as_csv(self.tests, self.tested, self.in_force)
+
+    def to_junit(self) -> str:
+        """Tests that fail where they are not what they claim, and what is to be tested, as JUnit's XML."""
+        return report.as_junit(self.tests, self.tested, self.in_force)
+
+    def __str__(self) -> str:
+        drivers = decisions.as_lines(self.decisions)
+        told = report.as_text(len(self.tests), self.tested, self.notes, self.figures, drivers)
+        ranges = report.range_lines(self.spans, self.study.basis.horizon)
+        return "\n".join([*ranges, told])
+
+    def complete(
+        self,
+        out: str | Path,
+        objective: Objective = "smooth",
+        spread: int = 1,
+        formats: str | Iterable[str] = (),
+        jobs: Jobs = None,
+        progress: Progress | None = None,
+        specs: Iterable[str | Path] = (),
+    ) -> Completed:
+        """Write a drive for all that no test shows into a folder, as tests with a ``catalogue.toml``.
+
+        ``objective``: what drives are to be like, as for ``witness``. ``spread``: until each class has so
+        many tests, or each scenario where there are no classes, further drives that begin far from all that
+        it has (``far.distance``). ``formats``: for which other tools they are written too, as by ``export``,
+        each with an entry; ``specs``: specification files that these need. Raises ``InputError``,
+        ``UsageError``.
+        """
+        one_of("objective", objective, Objective)
+        if spread < 1:
+            raise UsageError(f"spread={spread}: write how many tests each class is to have, 1 or more")
+        asked = self.study.asked
+        basis = replace(self.study.basis, objective=objective)
+        made = complete(basis, asked, self.missing, self._known(), spread, jobs, progress)
+        words = {x.name: x.words for x in (*self.tested.all_targets, *self.tested.gaps.empty)}
+        like = "" if objective == "smooth" else f", {objective}"
+        titles = {
+            x.name: words[x.target] + like + (", far from the others" if x.apart is not None else "")
+            for x in made
+        }
+        return write_completions(Path(out), made, titles, asked, formats, specs)
+
+    def _known(self) -> Known:
+        """What is known of targets before drives are looked for."""
+        begins = {x.name: [y.begins for y in self.concrete if x.name in y.names] for x in self.tested.targets}
+        copies = {x.entry.id for x in self.concrete if x.entry.copy_of in self.tests}
+        tests = {x.name: len({*x.tested} - copies) for x in self.tested.targets}
+        gaps = {name: x for name, x in self.result.gap_answers.items() if x is not None and x.gaps}
+        return Known(begins, tests, gaps)
+
+
+def catalogue(
+    *paths: str | Path,
+    among: Among = None,
+    using: Definitions | None = None,
+    classes: bool = True,
+    gaps: bool = False,
+    explore: bool = False,
+    roles: Look = "fixed",
+    lanes: Look = "fixed",
+    start: Look = "fixed",
+    near: float = NEAR,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
+    drivers: Iterable[str] | None = None,
+    vehicles: Vehicles = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Catalogued:
+    """Which scenarios and classes the tests in folders and files show, and which nobody tests.
+
+    The first spec set of ``using`` is asked about; of further ones there are figures. ``classes``: whether
+    scenarios are divided into classes (``classify``), which need whole rows of the table in ``among``;
+    ``gaps``: whether each class of gaps that there is (``coverage``) is to be tested too; ``explore``: also
+    how far drives of each class that is tested can go, and which part of that nobody tests. ``roles``,
+    ``lanes``, ``start``: whether those are looked at that a test fixes, or "any". ``near``: how far apart
+    tests that say the same may begin, in m and m/s. ``preventable``, ``unpreventable``: as for ``witness``;
+    gaps are then a question for ``coverage``. ``drivers``: the driver models that are asked what becomes of
+    the scenarios that tests show, all where None. ``out``: a folder for evidence on abstract tests, gaps
+    and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
+    """
+    begun = time.monotonic()
+    plain = using or load()
+    wanted = restricted(plain, preventable, unpreventable, among)
+    models = tuple(MODELS if drivers is None else drivers)
+    request = Request(
+        tuple(map(str, paths)), wanted.sets, classes, gaps, explore, roles, lanes, start, float(near), models
+    )
+    basis = basis_of(replace(wanted, sets=wanted.sets[:1]), effort, timeout, vehicles)
+    numbers = wanted.among(among) or numbers_of(wanted.specification)
+    asked = drivers_of(wanted, models)
+    made = examine(request, basis, numbers, plain.specification, asked, jobs, progress)
+    return Catalogued.asked(
+        made.study, out, jobs, progress, say, more=lambda: {"examination": made}, begun=begun
+    )

@@ -1,0 +1,208 @@
+"""Evidence checked again, without the programs that made it."""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Progress
+from roadproof.engines.prove.properties import find_label
+from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
+from roadproof.engines.solve.smt import ask
+from roadproof.evidence.answers import check as kept
+from roadproof.evidence.checking import Checker
+from roadproof.evidence.codec import write
+from roadproof.evidence.finding import Acceptance, Finding, Ruled, exit_code, summary
+from roadproof.evidence.folder import conclude, survey
+from roadproof.evidence.heading import heading
+from roadproof.evidence.kernel import coq
+from roadproof.frontends.api import kernel as kernels
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import one_of, work_of
+from roadproof.library.specification import Library, load_library
+from roadproof.library.words import called_by, legend
+from roadproof.runtime.budget import Effort
+from roadproof.verdict import ExitCode
+
+if TYPE_CHECKING:
+    from roadproof.recordings.formats.table import Frame
+
+Solver: TypeAlias = Literal["z3", "cvc5"]
+Kernel: TypeAlias = Literal["coq"]
+
+
+@dataclass(frozen=True, repr=False)
+class Checked:
+    """A finding for each claim, with the definitions of ``library``.
+
+    ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
+    evidence, and were read on top of it. ``kernel``: what Coq needed and stands on, where it was asked.
+    ``not_checked``: by folder, the fields of its index and the files in it that nothing is compared with.
+    ``strict``: whether answers without evidence make the exit code 20.
+    """
+
+    findings: tuple[Finding, ...]
+    solver: Solver | Kernel
+    library: Library
+    specs: tuple[Path, ...] = ()
+    kernel: kernels.Answered | None = None
+    not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    strict: bool = False
+
+    @property
+    def accepted(self) -> bool:
+        """Whether every claim is accepted."""
+        return all(x.outcome is Acceptance.ACCEPTED for x in self.findings)
+
+    @property
+    def counts(self) -> dict[Acceptance, int]:
+        """How many claims came out how."""
+        return dict(Counter(x.outcome for x in self.findings))
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code(self.findings, self.strict)
+
+    def as_data(self) -> dict[str, Any]:
+        """As the plain data of ``--json``."""
+        answer = kept.Answer(
+            **heading(kept.SCHEMA, self.library),
+            solver=self.solver,
+            kernel=None if self.kernel is None else self.kernel.kept,
+            findings=tuple(
+                kept.ClaimFinding(**vars(x), accepted=x.outcome is Acceptance.ACCEPTED) for x in self.findings
+            ),
+            not_checked=self.not_checked,
+        )
+        return write(answer)
+
+    def rows(self) -> list[Row]:
+        """A row for each claim."""
+        return [
+            {
+                "claim": " ".join(x.claim.split()),
+                "verdict": x.verdict,
+                "outcome": str(x.outcome),
+                "reason": x.reason,
+                "where": x.where,
+            }
+            for x in self.findings
+        ]
+
+    def to_frame(self) -> "Frame":
+        """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
+        from roadproof.recordings.formats.table import frame_of
+
+        return frame_of(self.rows())
+
+    def __repr__(self) -> str:
+        return f"<Checked: {', '.join(f'{n} {outcome}' for outcome, n in self.counts.items())}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
+
+    def __str__(self) -> str:
+        lines = [f"read with {path}" for path in self.specs]
+        lines += map(str, self.findings)
+        words = called_by(self.library.select(), (x.claim for x in self.findings))
+        lines += [f"  {line}" for line in legend(words)]
+        kernel = [] if self.kernel is None else [str(self.kernel)]
+        lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
+        return "\n".join([*lines, summary(self.findings, self.solver), *kernel])
+
+
+def check(
+    *paths: str | Path,
+    solver: Solver = "z3",
+    specs: Iterable[str | Path] = (),
+    effort: float = 60.0,
+    timeout: float | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    kernel: Kernel | None = None,
+    strict: bool = False,
+) -> Checked:
+    """Check certificates, drive files and folders of them, as ``roadproof check`` does.
+
+    ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
+    certificates are put to Coq instead, drives too, and both accepted by its word alone. ``strict``: the exit
+    code is 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN. Raises
+    ``InputError`` for a path that holds nothing, ``MissingSolverError``.
+    """
+    one_of("solver", solver, Solver)
+    if kernel is None:
+        ask("(set-logic QF_UF)(check-sat)", solver)  # a solver that is missing is said once, before any work
+    else:
+        one_of("kernel", kernel, Kernel)
+        coq.find()
+    named = tuple(Path(x) for x in specs)
+    library = load_library(named)
+    surveyed = survey([Path(x) for x in paths], named, find_label)
+    given = list(surveyed.files.items())
+    answered = None if kernel is None else kernels.put(_asked(given), jobs, progress)
+    names = kernels.names_of(path for path, _ in given)
+    said = {} if answered is None else answered.rulings
+    work = [
+        _Job(path, beside, kernels.ruled(said[names[path]]) if names[path] in said else None)
+        for path, beside in given
+    ]
+    judge = partial(_examine, solver, work_of(effort, timeout))
+    answers = pool.in_order(pool.work(judge, work, jobs, _doubt, progress, "files"))
+    found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
+    beside = tuple(path for told in surveyed.told for path in told.specs)
+    from roadproof.frontends.api.judging_again import compare  # what reads tests takes long to import
+
+    findings = [*conclude(surveyed, found)]
+    left: dict[str, tuple[str, ...]] = {}
+    for told in surveyed.told:
+        again = compare(told, jobs, progress)
+        findings += () if again is None else again.findings
+        compared = () if again is None else again.compared
+        if unchecked := tuple(x for x in told.not_checked if x not in compared):
+            left[str(told.folder)] = unchecked
+    return Checked(tuple(findings), kernel or solver, library, beside, answered, left, strict)
+
+
+def write_sources(
+    *paths: str | Path, folder: str | Path, specs: Iterable[str | Path] = (), jobs: int | None = None
+) -> dict[Path, str]:
+    """Write what would be put to Coq for each certificate; why there is no file for those without one.
+
+    Raises ``InputError`` for a path that holds nothing, and where it cannot be written.
+    """
+    given = list(survey([Path(x) for x in paths], tuple(Path(x) for x in specs), find_label).files.items())
+    reasons = kernels.write(_asked(given), Path(folder), jobs)
+    by_name = {name: path for path, name in kernels.names_of(path for path, _ in given).items()}
+    return {by_name[name]: reason for name, reason in reasons.items()}
+
+
+def _asked(given: Sequence[tuple[Path, tuple[Path, ...]]]) -> list[kernels.Asked]:
+    names = kernels.names_of(path for path, _ in given)
+    return [kernels.Asked(names[path], path, specs) for path, specs in given]
+
+
+@dataclass(frozen=True)
+class _Job:
+    """A file with the specification files that it is read with, and what Coq said of it."""
+
+    path: Path
+    specs: tuple[Path, ...]
+    ruled: Ruled | None
+
+
+def _doubt(job: _Job, reason: str) -> Finding:
+    """The finding on a file that nothing is known of."""
+    return Finding(str(job.path), "", Acceptance.UNDECIDED, reason)
+
+
+def _examine(solver: str, effort: Effort, job: _Job) -> Finding:
+    """Check one file by what its schema says that it is."""
+
+    def answer(script: str) -> SolverAnswer:
+        return ask(script, solver, effort.meter())
+
+    return Checker(load_library(job.specs), answer, find_label, job.ruled).check(job.path)

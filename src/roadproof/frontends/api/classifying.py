@@ -1,0 +1,178 @@
+"""Classes of scenarios that exclude each other, with a drive and shares for each."""
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+from roadproof.analysis.classify.classes import plan_of
+from roadproof.analysis.classify.divide import divide
+from roadproof.analysis.classify.drives import Example
+from roadproof.analysis.classify.former import make_room
+from roadproof.analysis.classify.shares import Shares, count_shares
+from roadproof.analysis.classify.study import Classification, Classified, Decision, classification_of
+from roadproof.analysis.classify.text import claims_text
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.restricting import restricted
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import Vehicles, basis_of
+from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.report import classify as report
+from roadproof.library.scenarios import numbers_of
+from roadproof.library.words import Called, called
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.sources import find_sources
+from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.runtime.executors import Jobs
+from roadproof.runtime.files import make_folder, write_whole
+from roadproof.verdict import ExitCode, Verdict, exit_code
+
+CLAIMS_FILE = "claims.txt"
+SECONDS, SEED = 600.0, 1
+
+
+@dataclass(frozen=True, repr=False)
+class Classifications(Studied[Classification, Example | Decision]):
+    """Classes with a drive for each, and proofs that they are a division; ``shares`` in recordings."""
+
+    shares: Shares | None = None
+    pieces: ClassVar[str] = "groups of drives and claims"
+
+    @cached_property
+    def classified(self) -> Classified:
+        """All answers together, in the order of the classes and of the claims."""
+        return self.study.classified(self.found.answers, self.shares)
+
+    @property
+    def text(self) -> str:
+        """The classes as a specification file."""
+        return self.study.text
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        found = self.classified
+        verdicts: dict[str, Verdict] = {x.one.name: x.verdict for x in found.examples}
+        verdicts |= {x.claim.name: x.verdict for x in found.decisions}
+        return verdicts | {x.about: Verdict.UNKNOWN for x in found.doubts}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        drives = (x.drive for x in self.classified.examples)
+        proofs = (x.certificate for x in self.classified.decisions)
+        return tuple(x for x in (*drives, *proofs) if x is not None)
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """A class without a drive is in doubt, and so are all where a part of the division is."""
+        found = self.classified
+        verdicts = [Verdict.UNKNOWN for _ in found.doubts]
+        verdicts += [Verdict.PROVED if x.verdict is Verdict.WITNESSED else x.verdict for x in found.examples]
+        verdicts += [Verdict.PROVED if x.holds else x.verdict for x in found.decisions]
+        code = exit_code((verdict, Verdict.PROVED) for verdict in verdicts)
+        broken = self.shares is not None and self.shares.broken
+        return max(code, ExitCode.CROSSCHECK_FAILED) if broken else code
+
+    def rows(self) -> list[Row]:
+        """A row for each class; situations where shares were counted."""
+        counts: Mapping[str, int] = {} if self.shares is None else self.shares.situations
+        return [
+            {
+                "class": x.one.name,
+                "scenarios": ", ".join(map(str, x.one.scenarios)),
+                "where": x.one.place,
+                "verdict": str(x.verdict),
+                "situations": counts.get(x.one.name),
+                "reason": x.reason,
+            }
+            for x in self.classified.examples
+        ]
+
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        return called(self.study.basis.specification)
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.study.index(self.classified, records, self.seconds)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """Which scenarios make up which class, and how often it occurs."""
+        title = f"Classes of scenarios of set {self.study.classes.plan.set_name}"
+        drawn = report.draw_classes(self.classified.examples, self.shares, title, self.words)
+        yield "classes", picture(drawn)
+
+    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+        write_whole(folder / CLAIMS_FILE, self.files(False)[CLAIMS_FILE])
+        super()._write_index(folder, records)
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        """The claims, for ``prove --claims``, and the picture."""
+        claims = {CLAIMS_FILE: claims_text(self.study.claims).encode()}
+        return claims | drawn(self.pictures() if pictures else {})
+
+    def __str__(self) -> str:
+        found = self.classified
+        table = [report.as_table(found.examples, self.shares, self.words), ""] if found.examples else []
+        return "\n".join([*table, *report.summary(found)])
+
+
+def classify(
+    among: Among = None,
+    using: Definitions | None = None,
+    on: str | Path | None = None,
+    shares: bool = True,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
+    vehicles: Vehicles = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Classifications:
+    """Divide scenarios into classes that exclude each other, and show a drive for each.
+
+    ``among``: whole rows of the table, such as "1-8" (all where None). ``shares``: whether it is counted how
+    often each class occurs, in the recordings of ``on`` or else in simulated traffic. ``preventable``,
+    ``unpreventable``: as for ``witness``. ``out``: a folder in
+    which answers are kept as they come. Raises ``InputError``, ``UsageError``.
+    """
+    begun = time.monotonic()
+    home = restricted(using or load(), preventable, unpreventable, among)
+    basis = basis_of(home, effort, timeout, vehicles)
+    plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        make_folder(folder)
+    source, recordings = _recordings(on)
+    division = divide(basis, plan, jobs, progress)
+    study = classification_of(basis, division)
+    if division.cut_off:
+        folder = None  # what earlier runs have found stays
+    if folder is not None:
+        make_room(folder, study.question)
+    counted = None
+    if shares and not division.cut_off:
+        about, values = study.basis.specification, study.basis.all_values()
+        counted = count_shares(study.classes, about, values, recordings, source=source)
+    more = {"shares": counted}
+    return Classifications.asked(study, folder, jobs, progress, say, more=lambda: more, begun=begun)
+
+
+def _recordings(on: str | Path | None) -> tuple[str, Iterator[Recording]]:
+    """What the shares are counted on, in words, and the recordings one by one."""
+    if on is None:
+        return f"a simulated recording of {SECONDS:g} s, seed {SEED}", _simulated()
+    sources = find_sources(Path(on))
+    return str(on), (source.read() for source in sources)
+
+
+def _simulated() -> Iterator[Recording]:
+    yield simulate(Traffic(seconds=SECONDS), SEED)

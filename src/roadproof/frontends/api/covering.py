@@ -1,0 +1,185 @@
+"""Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes."""
+
+import time
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import dataclass
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any, ClassVar
+
+from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.analysis.coverage.claims import sets_between
+from roadproof.analysis.coverage.classes import GapSurvey
+from roadproof.analysis.coverage.occurring import GapTraffic
+from roadproof.analysis.coverage.study import Coverage
+from roadproof.analysis.coverage.surveyed import Surveyed
+from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.drivers.restriction import check_drives
+from roadproof.errors import UsageError
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.restricting import restricted
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import RoadLike, Vehicles, as_road, basis_of
+from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.report import coverage as report
+from roadproof.library.words import Called, called
+from roadproof.runtime.executors import Jobs, hands_of
+from roadproof.runtime.files import hold_if_any
+from roadproof.verdict import ExitCode, Verdict
+
+ROADS, ELSEWHERE = ("main-2", "main-3"), ("main-3", "merge", "depart")
+COMPLETE = "complete"
+CODES = {
+    Verdict.COVERED: ExitCode.AS_EXPECTED,
+    Verdict.GAPS: ExitCode.UNEXPECTED,
+    Verdict.UNKNOWN: ExitCode.UNKNOWN,
+    Verdict.CROSSCHECK_FAILED: ExitCode.CROSSCHECK_FAILED,
+}
+
+
+@dataclass(frozen=True, repr=False)
+class Coverages(Studied[Coverage, Any]):
+    """What a spec set misses; ``traffic``: how often each class of gaps occurs in recordings, if asked."""
+
+    traffic: GapTraffic | None = None
+    pieces: ClassVar[str] = "parts of the survey"
+
+    @cached_property
+    def surveyed(self) -> Surveyed:
+        """Claims that there is no gap, the classes of gaps, and the definitions that are needed."""
+        return self.study.together(self.found.answers, self.traffic)
+
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        return called(self.study.survey.basis.specification)
+
+    @property
+    def verdict(self) -> Verdict:
+        """COVERED, GAPS, UNKNOWN, or CROSSCHECK-FAILED where traffic shows what is proved not to be."""
+        return self.surveyed.verdict
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        """Of each claim, each class of gaps, and each definition that may be needed."""
+        found: dict[str, Verdict] = {x.claim.text: x.verdict for x in self.surveyed.claims}
+        found |= {_name(x): x.verdict for x in self.surveyed.classes}
+        return found | {f"{x.definition} is needed": x.verdict for x in self.surveyed.needs}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        found: list[Evidence | None] = [x.certificate for x in self.surveyed.claims]
+        for one in self.surveyed.classes:
+            found += [one.certificate, *(gap.drive for gap in one.gaps)]
+        found += [x.drive for x in self.surveyed.needs]
+        return tuple(x for x in found if x is not None)
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return CODES[self.verdict]
+
+    def rows(self) -> list[Row]:
+        """A row for each class of gaps, and where there is none, for each claim that shows so."""
+        rows: list[Row] = [
+            {
+                "scenario": None if x.part is None else x.part.scenario,
+                "name": "" if x.part is None else self.words[x.part.scenario].name,
+                "component": "" if x.part is None else x.part.component,
+                "condition": "" if x.part is None else x.part.condition,
+                "verdict": str(x.verdict),
+                "drives": len(x.gaps),
+                "first_caught_by": ", ".join(dict.fromkeys(gap.first for gap in x.gaps)),
+                "reason": x.reason,
+            }
+            for x in self.surveyed.classes
+        ]
+        return rows or [
+            {"claim": x.claim.text, "verdict": str(x.verdict), "reason": x.reason}
+            for x in self.surveyed.claims
+        ]
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.study.index(self.surveyed, self.found.answers, records, self.seconds)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """A picture of each gap."""
+        library = self.study.survey.basis.library
+        gaps = ((x, gap) for x in self.surveyed.classes for gap in x.gaps)
+        return ((f"gap-{k}", picture(report.draw_gap(*one, library))) for k, one in enumerate(gaps, 1))
+
+    def draw_beside(self, jobs: Jobs = None, progress: Progress | None = None) -> None:
+        """A picture of each gap beside its file, where answers were kept in a folder."""
+        if self.folder is None:
+            return
+        library, kept = self.study.survey.basis.library, self.as_data()["gaps"]
+        shown = [(x, gap) for x in self.surveyed.classes for gap in x.gaps]
+        pairs = [(*one, Path(said["drive"])) for one, said in zip(shown, kept, strict=True)]
+        draw = partial(report.draw_beside, library)
+        with closing(pool.work(draw, pairs, jobs, None, progress, "pictures")) as done:
+            list(done)
+
+    def __str__(self) -> str:
+        name = self.study.survey.basis.specification.set_name
+        return report.as_text(self.surveyed, name, round(self.seconds, 1), self.words)
+
+
+def _name(answer: ClassAnswer) -> str:
+    part = answer.part
+    if part is None:
+        return "no single condition"
+    return part.component + (f": {part.condition}" if part.condition else "")
+
+
+def coverage(
+    using: Definitions | None = None,
+    wider: str | None = None,
+    roads: Iterable[RoadLike] = ROADS,
+    needed: bool = False,
+    on: str | Path | None = None,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
+    vehicles: Vehicles = None,
+    effort: float = 10.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+    tell: Say | None = None,
+) -> Coverages:
+    """Which disturbances between two vehicles the spec set of ``using`` misses, in classes.
+
+    ``wider``: the set that catches all (complete, where it extends the set); ``roads``: where drives are
+    looked for; ``needed``: of a set that covers, also a drive for each definition that it needs. ``on``:
+    recordings in which the classes are counted; ``tell`` is told how far that is. ``preventable``,
+    ``unpreventable``: the name of a driver model, for drives that begin with a manoeuvre whose collision it
+    prevents, or cannot prevent. ``out``: a folder in which
+    answers are kept as they come. Raises ``InputError``, ``UsageError``.
+    """
+    begun = time.monotonic()
+    home = restricted(using or load(), preventable, unpreventable, about="drives")
+    check_drives(home.specification.options)
+    basis = basis_of(home, effort, timeout, vehicles)
+    name = home.alone.set_name
+    if wider is not None:
+        home.specification.in_set(wider)
+    between = sets_between(home.library, name, wider or COMPLETE)
+    if wider is not None and not between:
+        raise UsageError(f"--wider {wider} does not extend --set {name}: name a set that extends it")
+    where = tuple(as_road(road) for road in dict.fromkeys(roads))
+    study = Coverage(GapSurvey(basis, between, where, tuple(map(as_road, ELSEWHERE))), needed)
+    recordings = None if on is None else recordings_in(Path(on))
+
+    def count() -> dict[str, GapTraffic]:
+        if recordings is None:
+            return {}
+        return {"traffic": count_in_traffic(basis, recordings, tell or (lambda line: None))}
+
+    folder = None if out is None else Path(out)
+    with hold_if_any(folder, shared=hands_of(jobs).shard is not None):
+        return Coverages.asked(study, folder, jobs, progress, say, more=count, begun=begun)

@@ -1,0 +1,156 @@
+"""What questions are asked of: definitions, readings and values of parameters."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import TypeAlias
+
+from roadproof.errors import InputError, UsageError
+from roadproof.frontends.api.phrases import Phrase, Term, call
+from roadproof.library.bind import values_with
+from roadproof.library.diagnose import checked_library
+from roadproof.library.elaborate import read_claim
+from roadproof.library.query import Query
+from roadproof.library.scenarios import read_numbers, read_query
+from roadproof.library.specification import Library, Source, Specification, unknown
+from roadproof.library.values import Number, exact
+from roadproof.library.words import Words, words_of
+
+# A scenario by number, a formula as text or built with operators, or one that was read before.
+What: TypeAlias = int | str | Phrase | Query
+Among: TypeAlias = int | str | Iterable[int] | None
+
+
+@dataclass(frozen=True, repr=False)
+class Definitions:
+    """Spec sets under one choice of readings, and values of parameters; made by ``load``.
+
+    ``specification`` is that of the first of ``sets``, in which names without @ are read; ``values`` has
+    the parameters that were given another value than the declared one (SI units). A definition is an
+    attribute: ``rp.load().danger(SV, POV)`` is a formula.
+    """
+
+    specification: Specification
+    sets: tuple[str, ...]
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+
+    @property
+    def library(self) -> Library:
+        return self.specification.library
+
+    def __getattr__(self, name: str) -> Callable[..., Phrase]:
+        if name.startswith("_") or name in Definitions.__dataclass_fields__:
+            raise AttributeError(name)
+        definitions, signals = self.specification.definitions, self.library.signals
+        if name not in definitions and name not in signals:
+            raise AttributeError(unknown("definition", name, (*definitions, *signals)))
+
+        def apply(*arguments: Term) -> Phrase:
+            return call(name, *arguments)
+
+        apply.__name__ = name
+        known = definitions.get(name)
+        apply.__doc__ = signals[name].doc if known is None else self.specification.describe(known)
+        return apply
+
+    def __repr__(self) -> str:
+        declared = self.library.options
+        readings = {k: v for k, v in self.specification.options.items() if v != declared[k].values[0]}
+        chosen = [f"{name}={value}" for name, value in {**readings, **self.values}.items()]
+        return f"<definitions {' '.join([', '.join(self.sets), *chosen])}>"
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.specification.definitions, *self.library.signals]
+
+    @property
+    def alone(self) -> Specification:
+        """The one set that is named. Raises ``UsageError`` where there are several."""
+        if len(self.sets) > 1:
+            raise UsageError(f"{', '.join(self.sets)}: this is asked of one spec set; name one")
+        return self.specification
+
+    def words(self, number: int) -> Words:
+        """A scenario in words. Raises ``InputError`` where there is none of that number."""
+        [known] = read_numbers(self.specification, str(number))
+        return words_of(self.specification, known)
+
+    def all_values(self) -> dict[str, Fraction]:
+        """The value of every parameter, in SI units."""
+        return values_with(self.library, self.values)
+
+    def read(self, what: What) -> Query:
+        """A formula as a value that can be asked about. Raises ``TextError`` with line, column and caret."""
+        return self.numbered(what)[1]
+
+    def numbered(self, what: What) -> tuple[int | None, Query]:
+        """As ``read``, with the number of the scenario where one was asked for by number."""
+        match what:
+            case Query():
+                return None, what
+            case Phrase():
+                return None, read_claim(self.specification, str(what))
+            case _ if isinstance(what, int | str) and not isinstance(what, bool):
+                return read_query(self.specification, str(what))
+            case _:
+                raise UsageError(
+                    f"{what!r} is no formula: give a number, a text, or one that is built with operators"
+                )
+
+    def among(self, numbers: Among) -> tuple[int, ...] | None:
+        """Scenarios by number: ``"1-8,12"``, 4, or a sequence; None for all. Raises ``InputError``."""
+        if numbers is None:
+            return None
+        if isinstance(numbers, str | int):
+            return read_numbers(self.specification, str(numbers))
+        return read_numbers(self.specification, ",".join(map(str, numbers)))
+
+
+def load(
+    *sets: str,
+    options: Mapping[str, str] | None = None,
+    params: Mapping[str, Number] | None = None,
+    specs: Iterable[str | Path] = (),
+) -> Definitions:
+    """The definitions of spec sets (base where none is named), as ``--set``, ``--option``, ``--param``,
+    ``--spec`` choose them.
+
+    ``params``: numbers in the unit of the declaration, or texts with a unit such as ``"600 ms"``.
+    ``specs``: specifications of yours on top of the library, each a path or, where it has several lines
+    or a ``:=``, the text itself. Raises ``InputError``, ``UsageError``.
+
+    >>> load("ext", params={"rho": 0.3}).values["rho"]
+    Fraction(3, 10)
+    """
+    chosen = sets or ("base",)
+    if len(set(chosen)) < len(chosen):
+        raise UsageError(f"load({', '.join(map(repr, chosen))}): name different spec sets")
+    library = checked_library(_source(k, spec) for k, spec in enumerate(specs, 1))
+    for name in chosen:
+        library.select(name, options)
+    given = values_of(library, params or {})
+    return Definitions(library.select(chosen[0], options), tuple(chosen), given)
+
+
+def _source(number: int, spec: str | Path) -> Path | Source:
+    if isinstance(spec, str) and ("\n" in spec or ":=" in spec):
+        return Source(f"mine-{number}.spec", spec)
+    return Path(spec)
+
+
+def values_of(library: Library, params: Mapping[str, Number], before: str = "") -> dict[str, Fraction]:
+    """Values of parameters in SI units; one without unit is in the unit of the declaration.
+
+    ``before`` stands before the name in a complaint. Raises ``InputError`` for unknown names, values that are
+    no rational, units of another dimension, and values out of the declared bound.
+    """
+    values: dict[str, Fraction] = {}
+    for name, value in params.items():
+        if name not in library.parameters:
+            raise InputError(f"{before}{name}={value}: {unknown('parameter', name, library.parameters)}")
+        values[name] = exact(f"{before}{name}", value, library.parameters[name].unit)
+    try:
+        values_with(library, values)
+    except InputError as error:
+        raise InputError(f"{before}{error}") from None
+    return values

@@ -1,0 +1,235 @@
+"""Drives for scenarios and formulas."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from itertools import product
+from pathlib import Path
+from typing import Any, ClassVar
+
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.frame import put_away
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.analysis.witnesses import Witnessing, evidence_files, stems
+from roadproof.engines.search.ask import Outcome, Search
+from roadproof.engines.search.question import Engine, Objective, SearchOptions
+from roadproof.errors import UsageError
+from roadproof.evidence.answers.drives import Answer
+from roadproof.evidence.codec import write
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.restricting import restricted
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import RoadLike, Vehicles, one_of, searches_of, setting, work_of
+from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.witness import as_line, files_of, kinds
+from roadproof.library.specification import Library
+from roadproof.library.values import Number
+from roadproof.library.words import words_of
+from roadproof.runtime.executors import Jobs
+from roadproof.runtime.files import make_folder, write_whole
+from roadproof.runtime.progress import Listener, listening
+from roadproof.verdict import ExitCode, Verdict, exit_code
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Writes samples, and ``pictures``, of drives into a folder, where they are not there yet."""
+
+    folder: Path
+    library: Library
+    pictures: bool
+
+    def __call__(self, name: str, outcome: Outcome) -> None:
+        make_folder(self.folder)
+        for stem, judged in zip(stems(name, outcome), outcome.drives, strict=True):
+            for file, content in files_of(judged, stem, self.library, self.pictures):
+                write_whole(self.folder / file, content)
+            for kind in set(kinds(True)) - set(kinds(self.pictures)):
+                (self.folder / f"{stem}.{kind}").unlink(missing_ok=True)  # that of a former drive
+
+    def lacks(self, name: str, outcome: Outcome) -> bool:
+        """Whether any is not there."""
+        every = product(stems(name, outcome), kinds(self.pictures))
+        return any(not (self.folder / f"{stem}.{kind}").exists() for stem, kind in every)
+
+
+@dataclass(frozen=True, repr=False)
+class Witnesses(Studied[Witnessing, Outcome]):
+    """Searches for drives, and what came out of each."""
+
+    pieces: ClassVar[str] = "questions"
+
+    @property
+    def library(self) -> Library:
+        return self.study.question.library
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What came out, in the order in which it was asked."""
+        return tuple(self.found.answers[name] for name in self.study.names)
+
+    @property
+    def drives(self) -> tuple[Judged, ...]:
+        """All drives that were found."""
+        return tuple(drive for outcome in self.outcomes for drive in outcome.drives)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {f"{x.query.text}@{x.set_name}": x.verdict for x in self.outcomes}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        proofs = (x.impossibility.certificate for x in self.outcomes if x.impossibility is not None)
+        return (*self.drives, *proofs)
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code((x.verdict, Verdict.WITNESSED) for x in self.outcomes)
+
+    def rows(self) -> list[Row]:
+        homes = (search.specification for search in self.study.named.values())
+        return [
+            {
+                "scenario": x.scenario,
+                "name": "" if x.scenario is None else words_of(home, x.scenario).name,
+                "set": x.set_name,
+                "formula": x.query.text,
+                "verdict": str(x.verdict),
+                "road": x.road,
+                "drives": len(x.drives),
+                "reason": x.reason or _core_of(x),
+                "seconds": x.seconds["all"],
+            }
+            for x, home in zip(self.outcomes, homes, strict=True)
+        ]
+
+    def as_data(self) -> dict[str, Any]:
+        beginning = self.study.question.beginning
+        return write(Answer(**beginning, verdicts=tuple(x.kept for x in self.outcomes)))
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.as_data()
+
+    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+        """There is none: drive files and proofs stand for themselves."""
+
+    def _write(self, folder: Path, pictures: bool) -> None:
+        make_folder(folder)
+        if not self.evidence:
+            return
+        if folder != self.folder:
+            put_away(self.study, {name: self.found.answers[name] for name in self.study.named}, folder)
+        for name in self.study.named:
+            Beside(folder, self.library, pictures)(name, self.found.answers[name])
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        drawn = (draw_drive(x.file, self.library) for x in self.drives)
+        return ((f"drive-{k}", picture(x)) for k, x in enumerate(drawn, 1))
+
+    def __str__(self) -> str:
+        answers, searches = self.found.answers, self.study.named
+        lines = [as_line(answers[name], search.specification) for name, search in searches.items()]
+        return "\n".join([*lines, *([self.summary] if len(lines) > 1 else [])])
+
+    @property
+    def summary(self) -> str:
+        """How many were found, in words."""
+        found = sum(x.verdict is Verdict.WITNESSED for x in self.outcomes)
+        return f"{found} of {len(self.outcomes)} witnessed in {self.seconds:.1f} s"
+
+
+def _core_of(outcome: Outcome) -> str:
+    """The parts that clash where there is no drive at all; empty otherwise."""
+    return "" if outcome.impossibility is None else f"core: {'; '.join(outcome.impossibility.told)}"
+
+
+def witness(
+    *what: What,
+    using: Definitions | None = None,
+    road: RoadLike | None = None,
+    lanes: Mapping[str, str] | None = None,
+    vehicles: Vehicles = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+    reach: Number = 80,
+    collisions: bool = False,
+    objective: Objective = "smooth",
+    engine: Engine = "milp",
+    solver: str = "highs",
+    count: int = 1,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    pictures: bool = True,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+    stage: Listener | None = None,
+) -> Witnesses:
+    """Find a drive for each of some scenarios or formulas, in each spec set; without any, for all scenarios.
+
+    Where, with whom and for how long: see ``setting``. ``count`` clearly different drives are looked for.
+    ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``preventable``,
+    ``unpreventable``: the name of a driver model, for scenarios that begin with a manoeuvre whose collision
+    it prevents, or cannot prevent (``preventing.restriction``). ``effort``: units
+    of work for a search, each about a second of a solver; ``timeout``: seconds after which the clock ends it.
+    ``out``: a folder in which drives are kept as they come, with samples and ``pictures``. ``stage`` is told
+    of each stage that begins (``stages.Stage``), and ends all by raising.
+    Raises ``TextError``, ``InputError``, ``UsageError``, ``MissingSolverError``.
+
+    >>> witness(4, jobs=1).verdict
+    <Verdict.WITNESSED: 'WITNESSED'>
+    """
+    one_of("engine", engine, Engine)
+    one_of("objective", objective, Objective)
+    if count < 1:
+        raise UsageError(f"count={count}: write a whole number greater than 0")
+    home = restricted(using or load(), preventable, unpreventable, what=what)
+    place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
+    search_options = SearchOptions(objective, engine, solver, work_of(effort, timeout))
+    searches = list(searches_of(home, what, place, search_options, count))
+    with listening(stage):
+        return witness_all(searches, out, pictures, jobs, progress, say)
+
+
+def witness_all(
+    searches: Sequence[Search],
+    out: str | Path | None = None,
+    pictures: bool = True,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+    each: Callable[[str, Outcome], None] | None = None,
+) -> Witnesses:
+    """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
+    if not searches:
+        raise UsageError("there is no scenario in the spec set: name formulas")
+    if pool.are_forked(searches, jobs):
+        from roadproof.engines.solve.milp import prepare
+
+        prepare()  # what every worker needs is imported once, before they are forked
+    beside = None if out is None else Beside(Path(out), searches[0].specification.library, pictures)
+    study = Witnessing(tuple(searches), beside)
+    found = Witnesses.asked(study, out, jobs, progress, say, each)
+    if beside is not None:
+        left = [(name, x) for name in study.named if beside.lacks(name, x := found.found.answers[name])]
+        with closing(pool.work(partial(_finish, beside), left, jobs, None, progress, "drives")) as done:
+            list(done)
+    return found
+
+
+def _finish(beside: Beside, of: tuple[str, Outcome]) -> None:
+    beside(*of)
+
+
+def files_written(name: str, outcome: Outcome, pictures: bool) -> list[str]:
+    """The names of the files that an outcome has in a folder."""
+    every = (f"{stem}.{kind}" for stem in stems(name, outcome) for kind in ("json", *kinds(pictures)))
+    return list(every) if outcome.drives else evidence_files(name, outcome)

@@ -1,0 +1,109 @@
+"""Drives that are given, not looked for: motions out of pieces, judged as all others are."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
+
+from roadproof.errors import UsageError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.settings import RoadLike, as_road, positive
+from roadproof.library.bind import values_with
+from roadproof.library.values import Number, exact
+from roadproof.world.drive import Drive, Motion
+from roadproof.world.pieces import pieces_of
+from roadproof.world.signals import KINDS, Kind
+
+_ALONG, _ACROSS = ("s", "m/s^2", "m/s^3"), ("s", "m/s^2")
+
+
+def motion(
+    s: Number,
+    d: Number,
+    v_lon: Number,
+    v_lat: Number = 0,
+    along: Iterable[Sequence[Number]] = (),
+    across: Iterable[Sequence[Number]] = (),
+    length: Number = Fraction(9, 2),
+    width: Number = Fraction(9, 5),
+    kind: Kind | None = None,
+) -> Motion:
+    """How a vehicle moves: where its front-left corner is at time 0 (m) and how fast (m/s), and what follows.
+
+    ``along``: durations (s), each with the acceleration at its start (m/s^2) and the jerk (m/s^3), one after
+    the other; ``across``: durations with an acceleration. After them there is none. Numbers are exact, and
+    floats the decimals that Python shows. Raises ``InputError``, ``UsageError``.
+
+    >>> motion(0, 2.6, 30, along=[(1, 0, -4), (2, -4, 0)]).pieces[1].a_lon
+    Fraction(-4, 1)
+    """
+    if kind is not None and kind not in KINDS:
+        raise UsageError(f"kind={kind!r}: write {', '.join(KINDS)}, or leave it out")
+    try:
+        pieces = pieces_of(
+            [(a, b, c) for a, b, c in _read("along", along, _ALONG)],
+            [(a, b) for a, b in _read("across", across, _ACROSS)],
+        )
+        return Motion(
+            exact("length", length, "m"),
+            exact("width", width, "m"),
+            exact("s", s, "m"),
+            exact("d", d, "m"),
+            exact("v_lon", v_lon, "m/s"),
+            exact("v_lat", v_lat, "m/s"),
+            pieces,
+            kind,
+        )
+    except ValueError as error:
+        raise UsageError(f"motion: {error}") from None
+
+
+def _read(name: str, entries: Iterable[Sequence[Number]], units: Sequence[str]) -> list[list[Fraction]]:
+    found = []
+    for entry in entries:
+        if isinstance(entry, str) or len(entry) != len(units):
+            raise UsageError(
+                f"{name}: {entry!r} is no entry: each has {len(units)} numbers, {', '.join(units)}"
+            )
+        found.append([exact(name, value, unit) for value, unit in zip(entry, units, strict=True)])
+    return found
+
+
+def drive(
+    what: What,
+    vehicles: Mapping[str, Motion],
+    using: Definitions | None = None,
+    road: RoadLike | None = None,
+    lanes: Mapping[str, str] | None = None,
+    horizon: Number = 6,
+    collisions: bool = False,
+) -> Judged:
+    """A drive out of ``vehicles`` by name (``motion``), on which ``what`` holds; the judge says so.
+
+    ``road``: that of the formula where None; ``lanes``: free lanes, each any lane of the road on which it
+    holds where it is left out; ``horizon``: up to when boxes have to be apart (s), unless ``collisions``.
+    Limits of vehicles are not asked for (``judge.replay.first_breach`` is). Raises ``InputError`` with the
+    judge's reason where it does not hold, ``UsageError``, ``TextError``.
+    """
+    from roadproof.engines.search.ask import telling_values
+    from roadproof.engines.search.question import assignments, usual_road
+
+    home = using or load()
+    scenario, query = home.numbered(what)
+    place = usual_road(query.formula) if road is None else as_road(road)
+    end = positive("horizon", horizon, "s")
+    told = telling_values(home.library, query.formula, values_with(home.library, home.values))
+    try:
+        moving = Drive(vehicles)
+    except ValueError as error:
+        raise UsageError(f"drive: {error}") from None
+    refused: RejectedError | None = None
+    for chosen in assignments(query, place, dict(lanes or {})):
+        here = home.specification
+        said = (query.text, end, chosen, told, here.options, place, moving, collisions)
+        try:
+            return Judged(DriveFile(scenario, here.set_name, *said), home.library)
+        except RejectedError as error:
+            refused = refused or error
+    assert refused is not None  # every road has a lane
+    raise refused

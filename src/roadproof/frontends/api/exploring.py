@@ -1,0 +1,182 @@
+"""For which values there is a drive, where that changes, and how far a measure can go."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from roadproof.analysis.explore.answer import Explorable, Explored, PointFinding, say_nothing
+from roadproof.analysis.explore.asking import ask_for
+from roadproof.analysis.explore.measure import Sense
+from roadproof.analysis.explore.study import Exploration
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.errors import UsageError
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.phrases import Term
+from roadproof.frontends.api.restricting import restricted
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import RoadLike, Vehicles, searches_of, setting, work_of
+from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.report import explore as report
+from roadproof.library.scenarios import are_numbers
+from roadproof.library.values import Number
+from roadproof.runtime.executors import Jobs
+from roadproof.verdict import ExitCode, Verdict, exit_code
+
+
+class Explorations(Studied[Exploration, Explored]):
+    """What was explored, a formula after the other."""
+
+    pieces = "formulas"
+
+    @property
+    def explored(self) -> dict[str, Explored]:
+        """What was found, by the name of the formula."""
+        return {name: self.found.answers[name] for name in self.study.named}
+
+    def _findings(self) -> Iterator[tuple[str, str, PointFinding]]:
+        for name, explored in self.explored.items():
+            yield from ((name, "value", x) for x in explored.findings)
+            for boundary in explored.boundaries:
+                yield name, "boundary, held", boundary.held
+                yield name, "boundary, missed", boundary.missed
+            for extreme in explored.extremes:
+                sides = {"best": extreme.best, "missed": extreme.missed}
+                sense = f"{extreme.measure.sense} {extreme.measure.text}"
+                yield from ((name, f"{sense}, {side}", x) for side, x in sides.items() if x is not None)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {f"{name}, {kind} {_at(x)}": x.verdict for name, kind, x in self._findings()}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        return tuple(y for _, _, x in self._findings() if (y := x.certificate or x.drive) is not None)
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code((x, x) for each in self.explored.values() for x in each.verdicts)
+
+    def rows(self) -> list[Row]:
+        """A row for each value, and for both sides of each boundary and extreme; values in SI units."""
+        rows: list[Row] = []
+        for name, kind, x in self._findings():
+            knobs = [knob.name for knob in self.study.named[name].knobs]
+            at: Row = {f"at {k}": float(value) for k, value in enumerate(x.at, 1)}
+            if kind in ("value", "boundary, held", "boundary, missed"):
+                at = {knob: float(value) for knob, value in zip(knobs, x.at, strict=True)}
+            rows.append({"formula": name, "kind": kind, **at, "verdict": str(x.verdict), "reason": x.reason})
+        names = dict.fromkeys(column for row in rows for column in row)
+        return [{column: row.get(column) for column in names} for row in rows]
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.study.index(records, self.seconds)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """A strip or a map of each formula that was varied."""
+        for name, asked in self.study.named.items():
+            if self.explored[name].findings:
+                yield name, picture(report.draw_exploration(asked, self.explored[name]))
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        """Pictures of all, and of the drives at boundaries and extremes."""
+        named = self.study.named.items() if pictures else ()
+        return {
+            file: content
+            for name, asked in named
+            for file, content in report.draw_all(name, asked, self.explored[name])
+        }
+
+    def __str__(self) -> str:
+        return "\n".join(
+            report.as_text(asked, self.explored[name]) for name, asked in self.study.named.items()
+        )
+
+
+def _at(finding: PointFinding) -> str:
+    return ", ".join(report.show(value) for value in finding.at)
+
+
+def explore(
+    *what: What,
+    vary: Mapping[str, tuple[Number, Number]] | None = None,
+    least: Term | None = None,
+    greatest: Term | None = None,
+    when: What | None = None,
+    using: Definitions | None = None,
+    steps: int | None = None,
+    precision: Number | None = None,
+    road: RoadLike | None = None,
+    lanes: Mapping[str, str] | None = None,
+    vehicles: Vehicles = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+    reach: Number = 80,
+    collisions: bool = False,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
+    effort: float = 6.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Explorations:
+    """For which values of parameters or limits there is a drive, and how far a measure can go.
+
+    ``vary``: least and greatest value by name, ``{"minDanger": (0, 3)}`` or ``{"POV.a_lon.min": (-6, -1)}``,
+    one or two. ``least``, ``greatest``: a term, at time 0 or ``when`` a formula holds. ``steps``: values of
+    each; ``precision``: width of a bracket, SI units. The rest as for ``witness``. Raises as that does.
+    """
+    home = restricted(using or load(), preventable, unpreventable, what=what)
+    for name in {*(vary or {})} & {*home.values}:
+        raise UsageError(f"{name} is given a value and varied: leave one out")
+    place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
+    search_options = SearchOptions(effort=work_of(effort, timeout))
+    ranges = [(name, *ends) for name, ends in (vary or {}).items()]
+    measures: dict[Sense, Term | None] = {"least": least, "greatest": greatest}
+    asked = explorables(home, what, place, search_options, ranges, measures, when, steps, precision)
+    return explore_all(asked, out, jobs, progress, say)
+
+
+def explorables(
+    home: Definitions,
+    what: Sequence[What],
+    place: Setting,
+    search_options: SearchOptions,
+    ranges: Sequence[tuple[str, Number, Number]],
+    measures: Mapping[Sense, Term | None],
+    when: What | None = None,
+    steps: int | None = None,
+    precision: Number | None = None,
+) -> Iterator[Explorable]:
+    """What is asked of each formula in each spec set; arguments as for ``explore``. Raises as that does."""
+    wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None]
+    for search in searches_of(home, what, place, search_options):
+        here = replace(home, specification=search.specification)
+        if when is None or (isinstance(when, str) and not are_numbers(when)):
+            moment = when or ""
+        else:
+            moment = here.read(when).text
+        yield ask_for(search, ranges, steps, precision, wanted, moment)
+
+
+def explore_all(
+    asked: Iterable[Explorable],
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+    tell: Say | None = None,
+) -> Explorations:
+    """As ``explore``, with what is asked as values; ``tell`` is told how far a formula is."""
+    study = Exploration(tuple(asked), jobs, tell or say_nothing)
+    if pool.are_forked(range(1000), jobs):
+        from roadproof.engines.solve.milp import prepare
+
+        prepare()  # what every worker needs is imported once, before they are forked
+    return Explorations.asked(study, out, jobs, progress, say)

@@ -1,0 +1,173 @@
+"""Drives for other people's tools."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
+from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.evidence.strict import read_json
+from roadproof.frontends.api.row import Row
+from roadproof.library.specification import Library, load_library, unknown
+from roadproof.recordings.export.registry import FORMATS
+from roadproof.recordings.export.subject import Subject, subject_of
+from roadproof.recordings.formats.table import Frame, frame_of
+from roadproof.runtime.files import hold_folder, write_whole
+
+# A drive, a drive file, or the path of one or of a folder of them.
+DriveLike: TypeAlias = Judged | DriveFile | str | Path
+
+
+@dataclass(frozen=True)
+class ExportedDrive:
+    """The ``files`` of one drive in one format; ``ids``: its vehicles where they have numbers for names."""
+
+    name: str
+    format: str
+    files: tuple[Path, ...]
+    ids: Mapping[str, int]
+
+
+@dataclass(frozen=True)
+class Exported:
+    """Drives that were written into ``folder``."""
+
+    folder: Path
+    drives: tuple[ExportedDrive, ...]
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All files."""
+        return tuple(path for drive in self.drives for path in drive.files)
+
+    def rows(self) -> list[Row]:
+        """A row for each drive and format."""
+        return [
+            {
+                "drive": x.name,
+                "format": x.format,
+                "files": " ".join(str(path.relative_to(self.folder)) for path in x.files),
+                "vehicles": " ".join(f"{name}={number}" for name, number in x.ids.items()),
+            }
+            for x in self.drives
+        ]
+
+    def to_frame(self) -> Frame:
+        """The rows as a frame of polars."""
+        return frame_of(self.rows())
+
+    def __str__(self) -> str:
+        formats = list(dict.fromkeys(x.format for x in self.drives))
+        count = len(self.drives) // len(formats)
+        number = f"{count} drive{'s' if count > 1 else ''}"
+        return f"{number} as {', '.join(formats)}: {len(self.files)} files in {self.folder}"
+
+
+def export(
+    drives: DriveLike | Iterable[DriveLike],
+    to: str | Iterable[str],
+    out: str | Path,
+    rate: int = 25,
+    specs: Iterable[str | Path] = (),
+) -> Exported:
+    """Write drives for other tools: openscenario, opendrive, commonroad, highd, csv.
+
+    Every drive is judged first. ``to``: a format or several, which go into folders of their own then;
+    ``rate``: samples a second where a format has samples; ``specs``: specification files that the drives were
+    made with. In highD's format the drives are the recordings 01, 02 and so on. Raises ``InputError`` for
+    drives that do not stand and roads that a format cannot say, ``UsageError``.
+    """
+    formats = formats_in(to)
+    library = load_library(Path(x) for x in specs)
+    given = [drives] if isinstance(drives, str | Path | Judged | DriveFile) else drives
+    files = _named(_judged(given, library))
+    subjects = [subject_of(name, k, file, rate) for k, (name, file) in enumerate(files.items(), 1)]
+    if not subjects:
+        raise UsageError("no drive to export: name drive files, such as those of roadproof witness")
+    folder = Path(out)
+    made = {(subject.name, name): FORMATS[name](subject) for subject in subjects for name in formats}
+    with hold_folder(folder):
+        written = tuple(
+            _write(folder / name if len(formats) > 1 else folder, subject, name, made[subject.name, name])
+            for subject in subjects
+            for name in formats
+        )
+    return Exported(folder, written)
+
+
+def _write(folder: Path, subject: Subject, name: str, files: Mapping[str, bytes]) -> ExportedDrive:
+    for file, content in files.items():
+        write_whole(folder / file, content)
+    return ExportedDrive(subject.name, name, tuple(folder / x for x in files), subject.ids)
+
+
+def can_export(drive: str | Path, to: str, specs: Iterable[str | Path] = ()) -> None:
+    """Nothing; raises ``InputError`` where a format cannot say a drive."""
+    [(name, file, _)] = _judged([drive], load_library(Path(x) for x in specs))
+    FORMATS[to](subject_of(name, 1, file, 25))
+
+
+def formats_in(to: str | Iterable[str]) -> list[str]:
+    """Formats by name, each once, from names with commas. Raises ``UsageError``."""
+    texts = to.split(",") if isinstance(to, str) else [x for text in to for x in text.split(",")]
+    names = list(dict.fromkeys(text.strip() for text in texts))
+    for name in names:
+        if name not in FORMATS:
+            raise UsageError(unknown("format", name, FORMATS))
+    if not names:
+        raise UsageError(f"to: name a format: {', '.join(FORMATS)}")
+    return names
+
+
+def _judged(drives: Iterable[DriveLike], library: Library) -> Iterator[tuple[str, DriveFile, Path | None]]:
+    """Each drive, with a name and the path that it was read from. Raises ``InputError``."""
+    for drive in drives:
+        if isinstance(drive, str | Path):
+            for path in _paths(Path(drive)):
+                yield path.stem, _stands(load_drive(path), str(path), library), path
+        elif isinstance(drive, Judged):
+            yield _usual_name(drive.file), drive.file, None
+        else:
+            yield _usual_name(drive), _stands(drive, "drive", library), None
+
+
+def _stands(file: DriveFile, where: str, library: Library) -> DriveFile:
+    try:
+        return Judged(file, library).file
+    except RejectedError as error:
+        raise InputError(f"{where}: the drive is not exported, since it does not stand: {error}") from None
+
+
+def _paths(path: Path) -> list[Path]:
+    """The drive files of a folder, among other evidence; a file as it is."""
+    if not path.is_dir():
+        return [path]
+    found = [x for x in sorted(path.glob("*.json")) if _schema(x) in SCHEMAS_READ]
+    if not found:
+        known = " or ".join(SCHEMAS_READ)
+        raise InputError(f"{path}: the folder holds no drive files (*.json of schema {known})")
+    return found
+
+
+def _schema(path: Path) -> object:
+    content = read_json(path)
+    return content.get("schema") if isinstance(content, dict) else None
+
+
+def _usual_name(file: DriveFile) -> str:
+    return "drive" if file.scenario is None else f"scenario-{file.scenario:02d}-{file.set_name}"
+
+
+def _named(drives: Iterable[tuple[str, DriveFile, Path | None]]) -> dict[str, DriveFile]:
+    """The drives by name; values whose names are the same are counted. Raises ``UsageError`` for files."""
+    found: dict[str, DriveFile] = {}
+    for name, file, path in drives:
+        if name in found and path is not None:
+            raise UsageError(f"{path}: there is another drive called {name}; export one of them elsewhere")
+        count = 1
+        while (told := name if count == 1 else f"{name}-{count}") in found:
+            count += 1
+        found[told] = file
+    return found

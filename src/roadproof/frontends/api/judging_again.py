@@ -1,0 +1,282 @@
+"""The answer of a catalogue compared with its tests: each is judged again, and every figure derived again."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, get_args
+
+from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.examination import Examination, examine
+from roadproof.analysis.catalogue.fact import Fact, read_fact
+from roadproof.analysis.catalogue.meaning import GAPS, AboutGaps, Kept, Meanings
+from roadproof.analysis.catalogue.request import Request, read_request
+from roadproof.analysis.catalogue.result import Result
+from roadproof.analysis.catalogue.showing import Freedom, all_shown_by
+from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
+from roadproof.analysis.coverage.answers import ClassAnswer, names_of
+from roadproof.analysis.coverage.claims import Covered
+from roadproof.analysis.coverage.pieces import name_of
+from roadproof.analysis.explore.measure import Sense
+from roadproof.analysis.study.evidence_store import Shelf, inside
+from roadproof.analysis.study.pool import Progress
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers import coverage
+from roadproof.evidence.answers.catalogue import SCHEMA
+from roadproof.evidence.codec import read
+from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.folder import INDEX, Told
+from roadproof.evidence.strict import Fields, read_json
+from roadproof.frontends.api.definitions import Definitions
+from roadproof.frontends.api.restricting import drivers_of
+from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.report.catalogue import tables
+from roadproof.library.scenarios import name_of as scenario_name
+from roadproof.library.specification import Library
+from roadproof.runtime.executors import Jobs
+
+_DERIVED = (
+    "targets",
+    "not_tested",
+    "figures",
+    "decisions",
+    "ranges",
+    "faults",
+    "doubts",
+    "alike",
+    "contradictions",
+    "notes",
+)
+_ASKED = ("scenarios", "options", "parameters", "specs")
+_EFFORT = 60.0  # units of work, as catalogue asks by default
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """``findings`` on the tests and on what is derived from them; ``compared``: what was compared with what
+    is derived, of the files beside the index and of the fields that other answers do not have compared.
+    """
+
+    findings: tuple[Finding, ...]
+    compared: tuple[str, ...] = ()
+
+
+def compare(told: Told, jobs: Jobs = None, progress: Progress | None = None) -> Comparison | None:
+    """What judging the tests again shows of a folder; None where its index is not that of a catalogue."""
+    index, library = told.index, told.library
+    if index is None or library is None or index.text("schema") != SCHEMA:
+        return None
+    where = str(told.folder / INDEX)
+    try:
+        request = read_request(index.get("request"), f"{where}, request")
+        home = _definitions(index, library, request)
+        numbers = tuple(Fields({"n": x}, f"{where}, scenarios").whole("n") for x in index.items("scenarios"))
+        basis = basis_of(replace(home, sets=home.sets[:1]), _EFFORT, None)
+        drivers = drivers_of(home, request.drivers)
+        made = examine(request, basis, numbers, home.specification, drivers, jobs, progress)
+        facts = tuple(_facts(index, told.folder, made.study))
+        gaps = dict(_gaps(index, made.study))
+    except RoadproofError as error:
+        reason = f"its tests cannot be judged again: {error}; check where the catalogue was asked for"
+        return Comparison((Finding(where, "index", Acceptance.UNDECIDED, reason),))
+    known: dict[str, Kept] = {"facts": facts, **gaps}
+    again = Result(made, known)
+    now = inside(again.index({}, 0.0), told.folder)
+    findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
+    compared = ["parameters"]
+    for name, content in tables(again).items():
+        path = told.folder / name
+        compared.append(name)
+        if path.is_file() and path.read_bytes() != content:
+            findings.append(_rejected(str(path), "it is not the table of these tests"))
+    return Comparison(tuple(findings), tuple(compared))
+
+
+def _definitions(index: Fields, library: Library, request: Request) -> Definitions:
+    """What the answer was asked with. Raises ``InputError``."""
+    if request.sets[:1] != (index.text("set"),):
+        raise InputError(f"{index.where}: set={index.text('set')}, but request.sets={request.sets}")
+    specification = library.select(request.sets[0], index.named_texts("options"))
+    said = index.mapping("parameters")
+    values = {name: Fields(said, f"{index.where}, parameters").rational(name) for name in said}
+    return Definitions(specification, request.sets, values)
+
+
+def _facts(index: Fields, folder: Path, study: Meanings) -> Iterator[Fact]:
+    """The facts of an index with their drives; certificates are checked as files. Raises ``InputError``."""
+    shelf, home = Shelf(None, study.question), study.basis.specification
+    for number, content in enumerate(index.items("facts"), 1):
+        said = dict(Fields(content, f"{index.where}, fact {number}").content)
+        if isinstance(said.get("drive"), str):
+            said["drive"] = read_json(folder / said["drive"])
+        try:
+            yield read_fact({**said, "certificate": None}, home, shelf)
+        except (KeyError, TypeError) as error:
+            raise InputError(f"{index.where}, fact {number}: {error!r} is missing") from None
+
+
+def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
+    """What an index says of gaps; its evidence is checked as files. Raises ``InputError``."""
+    if study.survey is None or study.gaps is None:
+        return
+    found = Fields(index.mapping("gaps"), f"{index.where}, gaps")
+    claims = {x.query.text: x for x in study.survey.claims}
+    if len(found.items("claims")) != len(claims):
+        raise InputError(f"{found.where}: with gaps asked for there are {len(claims)} claims")
+    for number, content in enumerate(found.items("claims"), 1):
+        where = f"{found.where}, claim {number}"
+        said = read(coverage.Claim, content, where)
+        if said.claim not in claims:
+            raise InputError(f"{where}: coverage does not rest on this claim")
+        claim = claims[said.claim]
+        answer = Covered(claim.query, said.verdict, None, said.reason)
+        yield GAPS + name_of(claim), AboutGaps(answer)
+    parts = (
+        {}
+        if not found.items("classes")
+        else {tuple(names_of(x).values()): x for x in study.gaps.parts.values()}
+    )
+    for number, content in enumerate(found.items("classes"), 1):
+        where = f"{found.where}, class {number}"
+        one = read(coverage.KeptClass, content, where)
+        key = tuple(getattr(one, name) for name in names_of(None))
+        if key not in parts:
+            raise InputError(f"{where}: there is no such class of gaps, or it is said twice")
+        answers = (ClassAnswer(parts.pop(key), one.verdict, reason=one.reason),)
+        yield f"{GAPS}class-{number}", AboutGaps(answers)
+
+
+# --- tests ---------------------------------------------------------------------------------------
+
+
+def _tests(index: Fields, data: Mapping[str, Any], where: str) -> Iterator[Finding]:
+    """A finding for each test that is in the index or among the tests now."""
+    said = {str(x.get("id")): x for x in index.items("tests") if isinstance(x, dict)}
+    now = {str(x["id"]): x for x in data["tests"]}
+    if len(said) < len(index.items("tests")):
+        yield _rejected(where, "two tests of it have one id, or one is no object")
+    for name, test in now.items():
+        yield _of_test(name, said.get(name), test, where)
+    for name in said:
+        if name not in now:
+            yield _rejected(where, "there is no such test now: the answer is stale; ask again", name)
+
+
+def _of_test(name: str, said: Mapping[str, Any] | None, now: Mapping[str, Any], where: str) -> Finding:
+    if said is None:
+        return _rejected(where, "the answer does not know this test: it is stale; ask again", name)
+    if "file" in now and said.get("sha256") != now["sha256"]:
+        gone = "is not there any more" if not now["sha256"] else "has changed since it was judged"
+        return _rejected(where, f"{now['file']} {gone}: the answer is stale; ask again", name)
+    wrong = [key for key in dict.fromkeys((*said, *now)) if said.get(key) != now.get(key)]
+    if wrong:
+        return _rejected(where, f"{', '.join(wrong)}: not what judging it again gives", name)
+    if "file" not in now:
+        return Finding(where, "index", Acceptance.ACCEPTED, "", "READ", f"test {name}", now["formula"])
+    shown = ", ".join(dict.fromkeys(x["what"] for x in now["shown"])) or "no scenario"
+    how = (
+        "read again" if now["fault"] else "judged again in dense time" if now["dense"] else "monitored again"
+    )
+    told = f"cannot be read: {now['fault']}" if now["fault"] else f"shows {shown}"
+    checked = (how, "its file is unchanged")
+    return Finding(where, "test", Acceptance.ACCEPTED, "", "JUDGED", f"test {name}", told, checked)
+
+
+# --- what is derived -----------------------------------------------------------------------------
+
+
+def _about_facts(made: Examination, facts: Sequence[Fact], where: str) -> Iterator[Finding]:
+    """What is wrong with facts though their evidence is accepted, and which are missing."""
+    entries = {x.id: x for x in made.tests.entries if isinstance(x, Abstract)}
+    for fact in facts:
+        reason = _wrong(fact, entries, made)
+        if reason:
+            yield _rejected(where, reason, f"{fact.test} {fact.relation} {fact.other}".strip())
+    ends = {(x.other, x.term) for x in facts if x.term}
+    for reach in made.study.reaches:
+        if (reach.target, reach.term) not in ends:
+            yield _rejected(where, f"nothing is said of how far {reach.term} can go", reach.target)
+    for name, entry in entries.items():
+        those = [x for x in facts if x.test == name]
+        alone = [x for x in those if not x.other]
+        if len(alone) != 1:
+            yield _rejected(where, "it does not say, or says twice, whether the test can be run", name)
+        elif alone[0].relation == "runs":
+            known = {x.other for x in those}
+            missing = [x for x in made.study.asked.scenarios_of(entry.query.vehicles) if x not in known]
+            if missing:
+                yield _rejected(where, f"nothing is said of {', '.join(missing)}", name)
+
+
+def _wrong(fact: Fact, entries: Mapping[str, Abstract], made: Examination) -> str:
+    """Why a fact is not about its test, or its drive does not show what it says; empty where it does."""
+    asked = made.study.asked
+    if fact.test:
+        entry = entries.get(fact.test)
+        if entry is None:
+            return "there is no such test with a formula"
+        expected = entry.query
+    else:
+        expected = asked.query_of(fact.other)
+    if not fact.test and fact.relation in ("reaches", "open"):
+        known = {(x.target, x.term) for x in made.study.reaches}
+        if (fact.other, fact.term) not in known or fact.sense not in get_args(Sense):
+            return "that was not asked: which number is least or greatest"
+    elif fact.term or fact.sense or fact.at is not None:
+        return "it names a number, though no range was asked for"
+    if fact.premise.formula != expected.formula:
+        return f"its premise is not the formula of {fact.test or fact.other}"
+    if fact.test and fact.other not in entries:
+        reason = _wrong_target(fact, made)
+        if reason:
+            return reason
+    if fact.drive is None or fact.relation == "reaches":
+        return "it names what drives show, and has none" if fact.also else ""
+    shown = {x.what for x in all_shown_by(fact.drive.file, asked, Freedom())}
+    return "" if shown == {*fact.also} else f"its drive shows {', '.join(sorted(shown)) or 'nothing'}"
+
+
+def _wrong_target(fact: Fact, made: Examination) -> str:
+    """Why a fact of a test speaks of nothing that was asked, or its drive is on the other side of a model."""
+    asked, target = made.study.asked, fact.other
+    scenarios = {*map(scenario_name, asked.numbers)}
+    side = read_side_name(target)
+    if side is None:
+        beside = {f"{x}@{y.specification.set_name}" for x in scenarios for y in made.study.beside}
+        is_asked = target in ("", *scenarios, *beside, *asked.named.values())
+        return "" if is_asked else f"{target}: that was not asked"
+    scenario, wanted, model = side
+    drivers = made.study.drivers
+    if drivers is None or model not in drivers.models or scenario not in scenarios:
+        return f"{target}: that was not asked"
+    if fact.conclusion is not None and fact.conclusion.formula != asked.query_of(scenario).formula:
+        return f"its conclusion is not {scenario}"
+    if fact.drive is None:
+        return ""
+    found = decisions_of([fact.drive], [scenario], asked, drivers)
+    if any((x.driver, x.side) == (model, wanted) for x in found):
+        return ""
+    return f"its drive is not {wanted} for {model}"
+
+
+def _whole(index: Fields, now: Mapping[str, Any], where: str) -> Iterator[Finding]:
+    """Whether all that follows from tests and facts is as it is derived now; one finding where it is."""
+    said = index.content
+    wrong = [key for key in (*_ASKED, *_DERIVED) if said.get(key) != now[key]]
+    found = Fields(index.mapping("gaps"), f"{where}, gaps").content
+    evidence = ("claims", "classes")  # what the reader of the index checks with their files
+    wrong += [
+        f"gaps.{key}"
+        for key in dict.fromkeys((*found, *now["gaps"]))
+        if key not in evidence and found.get(key) != now["gaps"].get(key)
+    ]
+    for key in wrong:
+        yield _rejected(where, f"{key}: not what follows from the tests; ask again")
+    if not wrong:
+        kinds = (x for x in now["figures"] if not x["sector"])
+        told = ", ".join(f"{x['kind']} {x['tested']} of {x['total']} (set {x['set_name']})" for x in kinds)
+        checked = ("derived again from tests and facts",)
+        yield Finding(where, "test", Acceptance.ACCEPTED, "", "DERIVED", "what is tested", told, checked)
+
+
+def _rejected(where: str, reason: str, label: str = "") -> Finding:
+    return Finding(where, "index", Acceptance.REJECTED, reason, label=label)

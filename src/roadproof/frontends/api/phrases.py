@@ -1,0 +1,273 @@
+"""Formulas built with operators; each is a text of the language in the end.
+
+>>> from roadproof.frontends.api.phrases import F, POV, SV, call
+>>> print(F(call("danger", SV, POV), within=(0, "3 s")) & ~(SV.v_lon > "30 km/h"))
+F[0, 3 s] danger(SV, POV) and not v_lon(SV) > 30 km/h
+"""
+
+import inspect
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from roadproof.errors import InputError, UsageError
+from roadproof.library.scenarios import LANE, PAIR, TRIPLE
+from roadproof.library.values import Number, exact
+from roadproof.logic import syntax
+from roadproof.logic.show import text
+from roadproof.logic.syntax import Binding, Claim, Expression
+from roadproof.world.signals import SIGNALS, SIZES
+from roadproof.world.units import UNITS
+
+_BARE = ""
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_HELD = "held_place"  # what is quantified over, before it has its name
+_NO_TERM = "is no term: give a number, '30 km/h', a name such as SV, or a formula"
+
+
+@dataclass(frozen=True, eq=False)
+class Phrase:
+    """A term or a formula of the language.
+
+    ``&`` is and, ``|`` or, ``~`` not, ``>>`` implies; terms have ``+ - * / **``, ``abs`` and
+    ``< <= > >= == !=``. Numbers are exact: an int, a float (the decimal that Python shows), a ``Fraction``,
+    a ``Decimal``, or a text with a unit such as ``"30 km/h"``. ``given`` are the names in it that have to be
+    declared. A vehicle has its signals as attributes: ``SV.v_lon``. There is no truth value: write ``&`` for
+    ``and``, and no chains such as ``a < b < c``. Raises ``UsageError``.
+    """
+
+    expression: Expression
+    given: tuple[Binding, ...] = ()
+
+    def __str__(self) -> str:
+        return text(Claim(self.given, self.expression))
+
+    def __repr__(self) -> str:
+        return f"<formula {self}>"
+
+    def __hash__(self) -> int:
+        return hash(str(self))
+
+    def __bool__(self) -> bool:
+        raise UsageError(
+            f"{self} has no truth value: write & | ~ for and, or, not, and no chains such as a < b < c"
+        )
+
+    def __getattr__(self, name: str) -> "Phrase":
+        if name in (*SIGNALS, *SIZES) and isinstance(self.expression, syntax.Name):
+            return call(name, self)
+        raise AttributeError(f"{name}: a vehicle has {', '.join((*SIGNALS, *SIZES))}")
+
+    def __and__(self, other: "Term") -> "Phrase":
+        return _chain("and", self, other)
+
+    def __or__(self, other: "Term") -> "Phrase":
+        return _chain("or", self, other)
+
+    def __invert__(self) -> "Phrase":
+        return Phrase(syntax.Prefix("not", self.expression), self.given)
+
+    def __neg__(self) -> "Phrase":
+        return Phrase(syntax.Prefix("-", self.expression), self.given)
+
+    def __rshift__(self, other: "Term") -> "Phrase":
+        return _binary("->", self, other)
+
+    def __lt__(self, other: "Term") -> "Phrase":
+        return _binary("<", self, other)
+
+    def __le__(self, other: "Term") -> "Phrase":
+        return _binary("<=", self, other)
+
+    def __gt__(self, other: "Term") -> "Phrase":
+        return _binary(">", self, other)
+
+    def __ge__(self, other: "Term") -> "Phrase":
+        return _binary(">=", self, other)
+
+    def __eq__(self, other: Any) -> "Phrase":  # type: ignore[override]
+        return _binary("=", self, other)
+
+    def __ne__(self, other: Any) -> "Phrase":  # type: ignore[override]
+        return _binary("!=", self, other)
+
+    def __add__(self, other: "Term") -> "Phrase":
+        return _binary("+", self, other)
+
+    def __radd__(self, other: "Term") -> "Phrase":
+        return _binary("+", other, self)
+
+    def __sub__(self, other: "Term") -> "Phrase":
+        return _binary("-", self, other)
+
+    def __rsub__(self, other: "Term") -> "Phrase":
+        return _binary("-", other, self)
+
+    def __mul__(self, other: "Term") -> "Phrase":
+        return _binary("*", self, other)
+
+    def __rmul__(self, other: "Term") -> "Phrase":
+        return _binary("*", other, self)
+
+    def __truediv__(self, other: "Term") -> "Phrase":
+        return _binary("/", self, other)
+
+    def __rtruediv__(self, other: "Term") -> "Phrase":
+        return _binary("/", other, self)
+
+    def __pow__(self, exponent: int) -> "Phrase":
+        return _binary("^", self, exponent)
+
+    def __abs__(self) -> "Phrase":
+        return call("abs", self)
+
+    def equivalent_to(self, other: "Term") -> "Phrase":
+        """``self <-> other``."""
+        return _binary("<->", self, other)
+
+
+Term: TypeAlias = Phrase | Number | bool
+
+
+def vehicle(name: str) -> Phrase:
+    """A vehicle of that name, declared: ``given A: vehicle``."""
+    return Phrase(syntax.Name(name), (Binding(name, "vehicle"),))
+
+
+def lane(name: str) -> Phrase:
+    """A lane of that name, declared: ``given K: lane``."""
+    return Phrase(syntax.Name(name), (Binding(name, "lane"),))
+
+
+def parameter(name: str) -> Phrase:
+    """A parameter of the library, such as ``minDanger``."""
+    return Phrase(syntax.Name(name))
+
+
+def call(name: str, *arguments: Term) -> Phrase:
+    """An application of a definition, a signal or a function: ``danger(SV, POV)``, ``abs(x)``."""
+    parts = [_lift(x) for x in arguments]
+    return Phrase(syntax.Call(name, tuple(x.expression for x in parts)), _given(parts))
+
+
+def F(body: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:
+    """Eventually; ``within`` seconds (low, high), the end None for no end."""
+    return _temporal("F", None, body, within)
+
+
+def G(body: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:
+    """Always, as ``F``."""
+    return _temporal("G", None, body, within)
+
+
+def U(left: Term, right: Term, within: tuple[Number, Number | None] | None = None) -> Phrase:
+    """``left`` until ``right``, as ``F``."""
+    return _temporal("U", left, right, within)
+
+
+def some(domain: Phrase, body: Callable[[Phrase], Phrase], name: str = "") -> Phrase:
+    """``some K in domain: body(K)``, where ``domain`` is ``lanes``, ``lanelets(L)``, ``zone("main")``, …
+
+    K is called ``name``, or as ``body`` calls it, and otherwise where ``body`` speaks of something else by
+    that name. Raises ``UsageError``.
+
+    >>> print(some(lanes, lambda K: call("laneKeep", SV, K)))
+    some K in lanes: laneKeep(SV, K)
+    """
+    return _quantified("some", domain, body, name)
+
+
+def every(domain: Phrase, body: Callable[[Phrase], Phrase], name: str = "") -> Phrase:
+    """``every K in domain: body(K)``, as ``some``."""
+    return _quantified("every", domain, body, name)
+
+
+def lanelets(of: Phrase) -> Phrase:
+    """The lanelets of a lane, for ``some`` and ``every``."""
+    return call("lanelets", of)
+
+
+def zone(name: str) -> Phrase:
+    """The lanelets of a zone: main, merge or depart."""
+    return Phrase(syntax.Call("zone", (syntax.Name(name),)))
+
+
+def adjacent_lanes(of: Phrase) -> Phrase:
+    """The lanes beside a lane."""
+    return call("adjacentLanes", of)
+
+
+SV, POV, POV1, POV2, L, lanes = (Phrase(syntax.Name(name)) for name in (*PAIR, *TRIPLE[1:], LANE, "lanes"))
+
+
+def _lift(value: Term) -> Phrase:
+    match value:
+        case Phrase():
+            return value
+        case bool():
+            return Phrase(syntax.Literal_(value))
+        case str():
+            return _number(*_with_unit(value))
+        case int() | float() | Fraction() | Decimal():
+            return _number(exact("number", value, "unitless"))
+        case _:
+            raise UsageError(f"{value!r} {_NO_TERM}")
+
+
+def _number(value: Fraction, unit: str = _BARE) -> Phrase:
+    """A literal, which has no sign of its own in the language."""
+    literal = syntax.Literal_(abs(value), unit)
+    return Phrase(syntax.Prefix("-", literal) if value < 0 else literal)
+
+
+def _with_unit(value: str) -> tuple[Fraction, str]:
+    """``"30 km/h"`` as the number and its unit. Raises ``UsageError``."""
+    unit = next((x for x in sorted(UNITS, key=len, reverse=True) if value.strip().endswith(x)), _BARE)
+    try:
+        return exact("number", value.strip().removesuffix(unit), "unitless"), unit
+    except InputError:
+        raise UsageError(f"{value!r} {_NO_TERM}") from None
+
+
+def _given(parts: "list[Phrase]") -> tuple[Binding, ...]:
+    return tuple({binding.name: binding for part in parts for binding in part.given}.values())
+
+
+def _binary(op: syntax.BinaryOperator, left: Term, right: Term) -> Phrase:
+    parts = [_lift(left), _lift(right)]
+    return Phrase(syntax.Binary(op, parts[0].expression, parts[1].expression), _given(parts))
+
+
+def _chain(op: Any, left: Term, right: Term) -> Phrase:
+    parts = [_lift(left), _lift(right)]
+    flat: list[Expression] = []
+    for part in parts:
+        same = isinstance(part.expression, syntax.Chain) and part.expression.op == op
+        flat += part.expression.parts if same else (part.expression,)  # type: ignore[union-attr]
+    return Phrase(syntax.Chain(op, tuple(flat)), _given(parts))
+
+
+def _temporal(
+    op: syntax.TemporalOperator, left: Term | None, right: Term, within: tuple[Number, Number | None] | None
+) -> Phrase:
+    parts = [_lift(x) for x in (left, right) if x is not None]
+    bounds = None
+    if within is not None:
+        low, high = within
+        bounds = syntax.Bounds(_lift(low).expression, None if high is None else _lift(high).expression)
+    first = None if left is None else parts[0].expression
+    return Phrase(syntax.Temporal(op, bounds, first, parts[-1].expression), _given(parts))
+
+
+def _quantified(kind: Any, domain: Phrase, body: Callable[[Phrase], Phrase], name: str) -> Phrase:
+    over = domain.expression
+    if not isinstance(over, syntax.Name | syntax.Call):
+        raise UsageError(f"{domain} is no domain: give lanes, lanelets(L), zone('main'), adjacent_lanes(L)")
+    words = {*_WORD.findall(str(_lift(body(Phrase(syntax.Name(_HELD))))))}
+    wanted = name or next(iter(inspect.signature(body).parameters), "K")
+    free = next(x for x in (wanted, *(f"{wanted}{k}" for k in range(2, len(words) + 3))) if x not in words)
+    inside = _lift(body(Phrase(syntax.Name(free))))
+    return Phrase(syntax.Quantified(kind, free, over, inside.expression), _given([domain, inside]))

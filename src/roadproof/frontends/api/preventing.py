@@ -1,0 +1,184 @@
+"""Which initial values of a manoeuvre a driver can prevent a collision from."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from roadproof.analysis.preventable.study import Answer as Found
+from roadproof.analysis.preventable.study import Plate, Preventable, Proved
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.drivers.gradual import RATE, check_gradual
+from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre
+from roadproof.drivers.models import DRIVERS, manoeuvre_of, models_for, require
+from roadproof.errors import UsageError
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.report import preventable as report
+from roadproof.frontends.report.drive import draw_drive
+from roadproof.library.specification import unknown
+from roadproof.library.values import Number, exact
+from roadproof.runtime.executors import Jobs
+from roadproof.verdict import Verdict
+
+_MOST_LINES = 2000
+_MOST_PLATES = 200
+
+
+class Plates(Studied[Preventable, Found]):
+    """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas."""
+
+    pieces = "plates and lemmas"
+
+    @cached_property
+    def plates(self) -> list[Plate]:
+        """The plates, in order."""
+        found = [self.found.answers[name] for name in self.study.plates]
+        return [x for x in found if isinstance(x, Plate)]
+
+    @cached_property
+    def lemmas(self) -> list[Proved]:
+        """The lemmas that the formulas are the boundary, in order."""
+        found = [self.found.answers[name] for name in self.study.lemmas]
+        return [x for x in found if isinstance(x, Proved)]
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {x.name: x.verdict for x in self.plates} | {
+            f"lemma-{x.lemma.name}": x.verdict for x in self.lemmas
+        }
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        drives = [y.drive for x in self.plates for y in x.shown if y.drive is not None]
+        return (*drives, *(x.certificate for x in self.lemmas if x.certificate is not None))
+
+    def rows(self) -> list[Row]:
+        """A row for each span in which a collision is unpreventable, in SI units."""
+        manoeuvre = self.study.manoeuvre
+        return [
+            {
+                "model": plate.model,
+                **{name: float(value) for name, value in plate.fixed.items()},
+                manoeuvre.across: float(line.at),
+                f"{manoeuvre.line}_from": a.near,
+                f"{manoeuvre.line}_to": b.near,
+            }
+            for plate in self.plates
+            for line in plate.lines
+            for a, b in line.spans
+        ]
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.study.index(records, self.seconds)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """The sheet, then the drives."""
+        yield "plates", picture(report.draw_sheet(self.study, self.plates))
+        for plate in self.plates:
+            for x in plate.shown:
+                if x.drive is not None:
+                    yield (
+                        f"{plate.name}-{x.side}",
+                        picture(draw_drive(x.drive.file, self.study.basis.library)),
+                    )
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        table = {"plates.csv": report.as_csv(self.study, self.plates).encode()}
+        sheet = {"plates": picture(report.draw_sheet(self.study, self.plates))} if pictures else {}
+        return table | drawn(sheet)
+
+    def __str__(self) -> str:
+        count = f"{len(self.plates)} plates, {len(self.lemmas)} lemmas in {self.seconds:.1f} s"
+        return f"{report.as_text(self.study, self.plates, self.lemmas)}\n{count}"
+
+
+def preventable(
+    manoeuvre: str | int,
+    models: Sequence[str] = (),
+    at: Mapping[str, Number | Sequence[Number]] | None = None,
+    along: tuple[Number, Number] | None = None,
+    across: tuple[Number, Number] | None = None,
+    lines: int = 100,
+    lemmas: bool = True,
+    using: Definitions | None = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Plates:
+    """Where a collision is unpreventable for driver models, over planes of initial values.
+
+    ``manoeuvre``: "cut-in", "cut-out" or "deceleration"; or a scenario in which it happens (1, 2 or 4; 5, 6
+    or 8, where SV changes lanes), of which drives are then shown where there are such. ``models``: names,
+    all that say something of it where there are none. ``at``: initial values by name, several for several
+    plates (SI units or with a unit); ``along``, ``across``: ranges of the two that vary; ``lines`` of each.
+    ``using``: definitions with those of ``driver.spec`` (``load(specs=["driver"])``). Raises ``InputError``,
+    ``UsageError``.
+    """
+    home = using or load(specs=[DRIVERS])
+    basis = basis_of(home, effort, timeout, None)
+    require(home.specification, basis.all_values())
+    name, scenario = manoeuvre_of(str(manoeuvre))
+    kind = MANOEUVRES[name]
+    if not 2 <= lines <= _MOST_LINES:
+        raise UsageError(f"lines={lines}: a plate has between 2 and {_MOST_LINES}")
+    given = {name: _values(kind, name, x) for name, x in (at or {}).items()}
+    sheet = {name: given.pop(name, values) for name, values in kind.sheet.items()}
+    sheet |= {name: values for name, values in given.items() if len(values) > 1}
+    fixed = {name: values[0] for name, values in given.items() if len(values) == 1}
+    study = Preventable(
+        basis,
+        kind,
+        models_for(kind.name, tuple(models)),
+        fixed,
+        sheet,
+        _range(kind, kind.line, along) or kind.along,
+        _range(kind, kind.across, across) or kind.range,
+        lines,
+        lemmas,
+        scenario,
+    )
+    count = len(study.plates)
+    if count > _MOST_PLATES:
+        raise UsageError(f"{count} plates: ask for {_MOST_PLATES} at most, with fewer values or models")
+    for piece in study.plates.values():
+        values = kind.values(piece.fixed)
+        if RATE in values:
+            check_gradual(piece.model.name, values, study.reading)
+    return Plates.asked(study, out, jobs, progress, say)
+
+
+def _values(kind: Manoeuvre, name: str, given: Number | Sequence[Number]) -> tuple[Fraction, ...]:
+    """Initial values, SI. Raises ``UsageError``, ``InputError``."""
+    if name not in kind.quantities:
+        raise UsageError(f"{name}: {unknown('initial value of a ' + kind.name, name, kind.quantities)}")
+    if name in (kind.line, kind.across):
+        raise UsageError(f"{name} varies over the plane: give its range, or leave it out")
+    quantity = kind.quantities[name]
+    several = [given] if isinstance(given, str) or not isinstance(given, Sequence) else given
+    values = tuple(dict.fromkeys(exact(name, x, quantity.unit) for x in several))
+    for value in values:
+        quantity.check(value)
+    return values
+
+
+def _range(
+    kind: Manoeuvre, name: str, given: tuple[Number, Number] | None
+) -> tuple[Fraction, Fraction] | None:
+    """A range, SI. Raises ``UsageError``, ``InputError``."""
+    if given is None:
+        return None
+    quantity = kind.quantities[name]
+    low, high = (exact(name, x, quantity.unit) for x in given)
+    quantity.check(low)
+    if low >= high:
+        raise UsageError(f"{name}={given[0]}:{given[1]}: the range ends where it begins, or before")
+    return low, high

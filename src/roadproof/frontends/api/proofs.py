@@ -1,0 +1,382 @@
+"""Claims: proved or refuted."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Self, TypeAlias
+
+from roadproof.analysis.claims import Answered, Claims, name_of
+from roadproof.analysis.proof_folder import claim_in, former_claims, write_claims
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
+from roadproof.errors import UsageError
+from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays
+from roadproof.evidence.codec import write
+from roadproof.evidence.heading import heading
+from roadproof.evidence.kernel import coq
+from roadproof.evidence.kernel.accept import Ruling
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api import kernel as kernels
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import RoadLike, Vehicles, models_of, one_of, setting, work_of
+from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.report import claims as claims_text
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import MOTION, Under, at_values, is_moving, limits_of, split
+from roadproof.library.scenarios import are_numbers, read_numbers
+from roadproof.library.specification import Specification
+from roadproof.library.values import Number
+from roadproof.runtime.executors import Jobs, hands_of
+from roadproof.runtime.files import hold_if_any
+from roadproof.runtime.progress import Listener, listening
+from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code
+from roadproof.world.vehicle import Vehicle
+
+_Engine: TypeAlias = Literal["dense", "smt", "milp"]
+_Expected: TypeAlias = Literal["PROVED", "REFUTED"]
+_PROPERTY = re.compile(r"[A-Z]\d+")
+
+
+@dataclass(frozen=True, repr=False)
+class Proofs(Studied[Claims, Answered]):
+    """Claims, settled. ``kernel``: what Coq says of those that are proved, by claim, where it was asked."""
+
+    kernel: kernels.Answered | None = None
+    pieces: ClassVar[str] = "claims"
+
+    @classmethod
+    def asked(
+        cls,
+        study: Claims,
+        out: str | Path | None = None,
+        jobs: Jobs = None,
+        progress: Progress | None = None,
+        say: Say | None = None,
+        each: Callable[[str, Answered], None] | None = None,
+        more: Callable[[], Mapping[str, Any]] = dict,
+        begun: float | None = None,
+    ) -> Self:
+        """As of all studies; a folder of claims grows, and only one run at a time may write into it."""
+        folder = None if out is None else Path(out)
+        with hold_if_any(folder):
+            if folder is not None:
+                former_claims(folder, study)
+            return super().asked(study, folder, jobs, progress, say, each, more, begun)
+
+    @property
+    def answers(self) -> tuple[Answered, ...]:
+        """In the order in which they were asked."""
+        return tuple(replace(self.found.answers[name_of(x)], task=x) for x in self.study.tasks)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {x.task.name: x.verdict for x in self.answers}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        found = (
+            (x.settled.result.certificate, x.settled.drive, x.settled.result.countermodel)
+            for x in self.answers
+        )
+        return tuple(next(y for y in each if y is not None) for each in found if any(each))
+
+    @property
+    def exit_code(self) -> ExitCode:
+        found = exit_code((x.verdict, x.expected) for x in self.answers)
+        return found if self.kernel is None else max(found, self.kernel.exit_code)
+
+    def put_to_kernel(self, jobs: Jobs = None, progress: Progress | None = None) -> Self:
+        """The same, with what Coq says of each proof. Raises ``MissingSolverError`` without a coqc."""
+        proved = [(x, x.settled.result.certificate) for x in self.answers]
+        library = self.study.library
+        asked = {name_of(x.task): y for x, y in proved if y is not None}
+        names = {f"claim_{number}": name for number, name in enumerate(asked, 1)}
+        found = kernels.put(
+            [kernels.Asked(x, asked[y], library) for x, y in names.items()],
+            hands_of(jobs).processes,
+            progress,
+        )
+        rulings = {names[x]: ruling for x, ruling in found.rulings.items()}
+        return replace(self, kernel=replace(found, rulings=rulings))
+
+    def kernel_text(self) -> str:
+        """What Coq says of each proof in a line, and what it stands on."""
+        if self.kernel is None:
+            return ""
+        lines: list[str] = []
+        for x in self.answers:
+            ruling = self.kernel.rulings.get(name_of(x.task))
+            if ruling is not None:
+                claim = " ".join(x.task.claim.split())
+                lines.append(f"kernel: {ruling.told}  {claim}" + f": {ruling.reason}" * bool(ruling.reason))
+        return "\n".join([*lines, str(self.kernel)])
+
+    def rows(self) -> list[Row]:
+        return [
+            {
+                "claim": " ".join(x.task.claim.split()),
+                "assuming": ", ".join(x.task.assuming),
+                "premises": _premises(x),
+                "set": x.task.set_name,
+                "verdict": str(x.verdict),
+                "refuted_by": x.settled.refuted_by,
+                "expected": str(x.expected),
+                "reason": x.settled.result.reason,
+                "seconds": x.settled.result.seconds,
+            }
+            for x in self.answers
+        ]
+
+    def as_data(self) -> dict[str, Any]:
+        files = {name: claim_in(x).evidence for name, x in self.found.records.items()}
+        named = {name: file for name, file in files.items() if isinstance(file, str)}
+        says = {} if self.kernel is None else self.kernel.rulings
+        answer = Answer(
+            **heading(ANSWER_SCHEMA, self.study.library),
+            verdicts=tuple(
+                x.as_settled(named.get(name), _said(says[name]) if name in says else None)
+                for x in self.answers
+                for name in [name_of(x.task)]
+            ),
+            kernel=None if self.kernel is None else self.kernel.kept,
+        )
+        return write(answer)
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        claims = tuple(claim_in(x) for x in records.values())
+        return write(Index(**self.study.question.heading, claims=claims))
+
+    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+        write_claims(folder, self.study, records)
+
+    def _write(self, folder: Path, pictures: bool) -> None:
+        with hold_if_any(folder):
+            former_claims(folder, self.study)
+            super()._write(folder, pictures)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """The drives that refute a claim."""
+        from roadproof.frontends.report.drive import draw_drive
+
+        drives = {x.task.name: x.settled.drive for x in self.answers}
+        library = self.study.library
+        return ((n, picture(draw_drive(x.file, library))) for n, x in drives.items() if x is not None)
+
+    def __str__(self) -> str:
+        if self.study.are_own:
+            return "\n".join(claims_text.details(x, self.study) for x in self.answers)
+        table = claims_text.table(self.answers, self.study.library.select())
+        return f"{table}\n{len(self.answers)} claims in {self.seconds:.1f} s"
+
+
+def prove(
+    *what: What,
+    using: Definitions | None = None,
+    expect: _Expected = "PROVED",
+    assume: Literal["motion"] | None = None,
+    vehicles: Vehicles = None,
+    declared: bool = False,
+    engine: _Engine = "dense",
+    road: RoadLike | None = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    drive: bool = True,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+    kernel: Literal["coq"] | None = None,
+    stage: Listener | None = None,
+) -> Proofs:
+    """Prove or refute claims for all time, on all roads, for all parameter values within their bounds.
+
+    Values that ``using`` was loaded with are put in, and where ``declared`` the declared ones of all other
+    parameters; the answer then holds at these values, and says so.
+
+    A claim is a formula, a property of the list such as "P1", or scenarios such as 4 or "1-8", of which all
+    that the list says is settled; without one all of the list is. With ``engine`` "smt" or "milp" a claim is
+    about drives on one ``road`` up to a ``horizon`` (s), and PROVED-BOUNDED says within which limits.
+    ``assume`` "motion": your own claims are about vehicles that move, with continuous places and speeds,
+    ``vehicles`` within the limits of a model for all, or of models by name.
+    ``expect``: the verdict that is expected of your own claims; ``drive``: whether one is looked for that
+    refutes. ``effort``: units of work for a claim, each about a second of a solver; ``timeout``: seconds
+    after which the clock ends it. ``out``: a folder in which answers are kept as they come. ``using``: one
+    spec set. ``kernel`` "coq": each proof is put to Coq, too. ``stage`` is told of each stage that begins
+    (``stages.Stage``), and ends all by raising.
+    Raises ``TextError``, ``UsageError``, ``InputError``.
+
+    >>> prove("danger(SV,POV) -> danger(SV,POV)", jobs=1).verdict
+    <Verdict.PROVED: 'PROVED'>
+    """
+    one_of("engine", engine, _Engine)
+    one_of("expect", expect, _Expected)
+    home = using or load()
+    said = assuming(
+        assume,
+        vehicles if engine == "dense" else None,
+        values_put_in(home, declared) if engine == "dense" else {},
+    )
+    asked = claims_of(home, what, using.alone.set_name if using else None, claim_verdict(expect), said)
+    asked = replace(asked, effort=work_of(effort, timeout), seek_drive=drive)
+    if engine != "dense":
+        if not asked.are_own:
+            raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
+        asked = within_limits(asked, home, engine, road, horizon, dt, vehicles)
+    if kernel is not None:
+        ask_kernel(kernel, engine)
+    with listening(stage):
+        found = Proofs.asked(asked, out, jobs, progress, say)
+    return found if kernel is None else found.put_to_kernel(jobs, progress)
+
+
+def _said(ruling: Ruling) -> KernelSays:
+    return KernelSays(says=str(ruling), reason=ruling.reason, premises=ruling.premises.count)
+
+
+def _premises(answer: Answered) -> str:
+    """The limits and facts about motion that a proof uses; empty where there is no proof or it uses none."""
+    certificate = answer.settled.result.certificate
+    return "" if certificate is None else "; ".join(certificate.assumed.premises)
+
+
+def ask_kernel(kernel: str, engine: str) -> None:
+    """Whether proofs can be put to a kernel. Raises ``UsageError``, ``MissingSolverError``."""
+    one_of("kernel", kernel, Literal["coq"])
+    if engine != "dense":
+        raise UsageError(
+            f"engine={engine!r} makes no certificates that could be put to Coq: ask without kernel"
+        )
+    coq.find()
+
+
+@dataclass(frozen=True)
+class Assuming:
+    """What claims are asked under: whether vehicles move, within the limits of models by name, and values of
+    parameters (SI).
+    """
+
+    motion: bool = False
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+
+    def of(self, home: Definitions, claim: Under) -> Under:
+        """``claim`` under this as well. Raises ``InputError``, ``UsageError``."""
+        query = claim.query
+        for name in self.vehicles:
+            if name and name not in query.vehicles:
+                known = ", ".join(query.vehicles) or "no vehicle"
+                raise UsageError(f"vehicle {name}: the claim speaks of {known}")
+        models = {x: self.vehicles.get(x, self.vehicles.get("")) for x in query.vehicles}
+        limits = [x for name, y in models.items() if y is not None for x in limits_of(query, name, y)]
+        said = claim.said if is_moving(claim.said) else ((MOTION,) * self.motion + claim.said)
+        return at_values(home.specification, Under(query, (*said, *limits)), self.values)
+
+    def of_list(self, specification: Specification, task: Task) -> Task:
+        """A claim of the list at these values, too."""
+        if not self.values:
+            return task
+        claim = Under(read_claim(specification, task.claim))
+        return replace(task, assuming=at_values(specification, claim, self.values).said)
+
+
+def values_put_in(home: Definitions, declared: bool) -> dict[str, Fraction]:
+    """At which values proofs are asked: those that were given; where ``declared`` one of each parameter."""
+    return home.all_values() if declared else dict(home.values)
+
+
+def assuming(
+    assume: str | None,
+    vehicles: Vehicles = None,
+    values: Mapping[str, Fraction] | None = None,
+) -> Assuming:
+    """What is assumed, in the words of Python. Raises ``UsageError``, ``InputError``."""
+    if assume not in (None, MOTION):
+        raise UsageError(f"assume={assume!r}: write {MOTION!r}")
+    if vehicles and assume is None:
+        raise UsageError("limits of vehicles are assumed with motion only: ask with assume motion")
+    return Assuming(assume is not None, models_of(vehicles), values or {})
+
+
+def claims_of(
+    home: Definitions,
+    what: Sequence[What | Under],
+    set_name: str | None,
+    expected: ClaimVerdict = Verdict.PROVED,
+    said: Assuming | None = None,
+) -> Claims:
+    """What is claimed: the list's claims in a set, in all where None; or one's own in that of ``home``.
+
+    Raises ``TextError``, ``InputError``, ``UsageError``.
+    """
+    named: list[str] = []
+    numbers: set[int] = set()
+    own: list[Under] = []
+    assumed = said or Assuming()
+    for x in what:
+        if isinstance(x, str) and _PROPERTY.fullmatch(x):
+            named.append(x)
+        elif isinstance(x, int | str) and not isinstance(x, bool) and are_numbers(str(x)):
+            numbers |= {*read_numbers(home.specification, str(x))}
+        else:
+            own.append(assumed.of(home, _read(home, x)))
+    if own and (named or numbers):
+        raise UsageError("ask for properties or for claims of your own, not for both at once")
+    if not own and assumed.motion:
+        raise UsageError("motion is assumed of claims of your own: the list is about all traces")
+    listed = [x for x in template_properties() if not (assumed.values and x.of_all_values)]
+    tasks = _own(home, own, expected) or choose(listed, named, set_name, sorted(numbers))
+    if not tasks:
+        words = ", ".join(map(str, what))
+        raise UsageError(f"no claim of {words} is stated for set={set_name or 'any'}: ask for others")
+    specifications = {x.set_name: home.specification.in_set(x.set_name) for x in tasks}
+    if not own:
+        tasks = [assumed.of_list(specifications[x.set_name], x) for x in tasks]
+    return Claims(tuple(tasks), specifications)
+
+
+def _read(home: Definitions, what: What | Under) -> Under:
+    if isinstance(what, Under):
+        return what
+    if not isinstance(what, str):
+        return Under(home.read(what))
+    said, claim = split(what)
+    return Under(home.read(claim), said)
+
+
+def _own(home: Definitions, claims: list[Under], expected: ClaimVerdict) -> list[Task]:
+    parts = [str(k) if len(claims) > 1 else "" for k in range(1, len(claims) + 1)]
+    name = home.specification.set_name
+    return [
+        Task(OWN, k, "", None, name, x.query.text, expected, x.said)
+        for k, x in zip(parts, claims, strict=True)
+    ]
+
+
+def within_limits(
+    asked: Claims,
+    home: Definitions,
+    engine: Literal["smt", "milp"],
+    road: RoadLike | None = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+    vehicles: Vehicles = None,
+) -> Claims:
+    """The same claims, about drives on one road up to a horizon, within models of vehicles.
+
+    Raises ``InputError``, ``UsageError``.
+    """
+    from roadproof.engines.search.question import SearchOptions
+
+    if any(task.assuming for task in asked.tasks):
+        raise UsageError(
+            f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "
+            "engine='dense'"
+        )
+    place = replace(setting(home, road, vehicles=vehicles, horizon=horizon, dt=dt), values=dict(home.values))
+    return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))

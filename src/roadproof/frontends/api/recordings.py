@@ -1,0 +1,287 @@
+"""Recorded traffic, and the highD experiment on it."""
+
+import re
+import tempfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from roadproof.analysis.study.pool import Say
+from roadproof.drivers.models import DRIVERS
+from roadproof.errors import UsageError
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import one_of
+from roadproof.frontends.report.answers import answer_questions
+from roadproof.frontends.report.tables import as_text
+from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
+from roadproof.frontends.report.traffic_figures import draw_figures
+from roadproof.frontends.report.write_traffic import remove_report, write_report
+from roadproof.library.scenarios import COMPARISON, MIN_DANGER
+from roadproof.library.values import Number, exact
+from roadproof.recordings.evaluate.evaluate import Findings
+from roadproof.recordings.evaluate.experiment import (
+    Experiment,
+    ExperimentOutcome,
+    questions_for,
+    run_experiment,
+    saved_findings,
+)
+from roadproof.recordings.evaluate.questions import Settings, askable
+from roadproof.recordings.evaluate.recheck import recheck
+from roadproof.recordings.evaluate.results import Totals, as_json, driver_cells, driver_columns, question_mark
+from roadproof.recordings.formats.sources import find_sources
+from roadproof.recordings.formats.table import Frame, frame_of
+from roadproof.runtime.executors import Jobs, hands_of
+from roadproof.runtime.files import hold_folder
+from roadproof.semantics.sampled.answers import Convention
+from roadproof.verdict import ExitCode, Verdict
+
+MOST_FACTS = 12
+_HALF_WRITTEN = re.compile(r"\..+\.(json|csv|txt|md|tex|png|svg)\.[a-z0-9_]{8}")
+
+
+@dataclass(frozen=True, repr=False)
+class Evaluated:
+    """The experiment on recordings: what danger arose, and which scenario matches it.
+
+    ``failed``: recordings that were left out, and why; ``denied``: answers that the plain recursive
+    evaluator, where it was asked, does not give; ``folder``: where the results were written, or None
+    where all that was found is ``kept`` here.
+    """
+
+    experiment: Experiment
+    outcome: ExperimentOutcome
+    denied: tuple[str, ...] = ()
+    folder: Path | None = None
+    kept: tuple[Findings, ...] | None = None
+
+    @property
+    def settings(self) -> Settings:
+        """What was asked."""
+        return self.experiment.settings
+
+    @property
+    def findings(self) -> tuple[Findings, ...]:
+        """What was found in each recording, read from the folder unless there is none."""
+        if self.kept is not None:
+            return self.kept
+        return tuple(found for _, found in saved_findings(self.experiment, self.outcome))
+
+    @property
+    def totals(self) -> Totals:
+        """All counts."""
+        return self.outcome.totals
+
+    @property
+    def failed(self) -> dict[str, str]:
+        return self.outcome.failed
+
+    @property
+    def exit_code(self) -> ExitCode:
+        if self.totals.broken or self.denied:
+            return ExitCode.CROSSCHECK_FAILED
+        return ExitCode.UNKNOWN if self.outcome.lost else ExitCode.AS_EXPECTED
+
+    def to_frame(self) -> Frame:
+        """A row for each road sector, minDanger and set; null for scenarios of other sectors."""
+        rows: list[Row] = [
+            {
+                "sector": x.sector.name,
+                "minDanger": float(x.min_danger),
+                "set": x.set_name,
+                "traces": x.traces,
+                "matching": x.matching,
+                "recall": x.recall,
+                **{
+                    f"s{i}": x.scenarios[i] if i in x.sector.scenarios else None
+                    for i in self.settings.scenarios
+                },
+            }
+            for rows in self.totals.shown.values()
+            for x in rows
+        ]
+        return frame_of(rows)
+
+    def matches(self) -> Frame:
+        """A row for each match: recording, vehicles, lane, frames, minDanger (s), spec set, scenario."""
+        dangers = [float(x) for x in self.settings.min_danger]
+        rows: list[Row] = [
+            {
+                "recording": x.recording,
+                "SV": m.sv,
+                "POV": m.pov,
+                "POV2": m.pov2,
+                "lane": m.lane,
+                "first_frame": m.start_frame,
+                "last_frame": m.end_frame,
+                "minDanger": dangers[m.min_danger],
+                "set": m.set_name,
+                "scenario": m.scenario,
+                "uncertain": m.uncertain,
+                **dict(zip(driver_columns(self.settings), driver_cells(self.settings, m), strict=True)),
+            }
+            for x in self.findings
+            for m in x.matches
+        ]
+        return frame_of(rows)
+
+    def pairs(self) -> Frame:
+        """A row for each trace on which danger arises, with whether a scenario of each set matches it."""
+        dangers = [float(x) for x in self.settings.min_danger]
+        rows: list[Row] = []
+        for x in self.findings:
+            matched = {(m.pair, m.min_danger, m.set_name) for m in x.matches}
+            for trace in x.traces:
+                pair = (trace.first, trace.second)
+                row: Row = {"recording": x.recording, "first": trace.first, "second": trace.second}
+                row |= {"minDanger": dangers[trace.min_danger]}
+                row |= {"first_frame": trace.start_frame, "last_frame": trace.end_frame}
+                row |= {"sectors": "; ".join(trace.sectors)}
+                sets = self.settings.sets
+                rows.append(row | {name: (pair, trace.min_danger, name) in matched for name in sets})
+        return frame_of(rows)
+
+    def as_data(self) -> dict[str, Any]:
+        """As the plain data of ``--json``."""
+        return as_json(self.totals, self.failed)
+
+    def plot(self) -> Picture:
+        """The first of the figures."""
+        return next(picture(formats) for _, formats in draw_figures(self.totals))
+
+    def __str__(self) -> str:
+        tables = [
+            *results_tables(self.totals, self.failed).values(),
+            comparison_table(self.totals, self.failed),
+            drivers_table(self.totals),
+        ]
+        lines = [as_text(table) for table in tables if table is not None]
+        section = answer_questions(self.totals, self.failed).partition("## Facts")[2].partition("\n\n")[2]
+        facts = section.partition("\n\n")[0].splitlines()
+        lines += facts[:MOST_FACTS]
+        if len(facts) > MOST_FACTS:
+            where = "" if self.folder is None else f" in {self.folder / 'answers.md'}"
+            lines.append(f"… {len(facts) - MOST_FACTS} more{where}")
+        broken = [*self.totals.broken, *self.denied]
+        if broken:
+            counts = f"{len(self.totals.broken)} facts violated, {len(self.denied)} answers denied"
+            lines.append(f"{Verdict.CROSSCHECK_FAILED}: {counts}")
+            lines += [f"  {line}" for line in broken[:20]]
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        rows = sum(map(len, self.totals.shown.values()))
+        return f"<Evaluated: {self.totals.recordings} recordings, {rows} rows>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
+
+
+def evaluate(
+    path: str | Path,
+    out: str | Path | None = None,
+    using: Definitions | None = None,
+    among: Among = None,
+    min_danger: Iterable[Number] = (0, "0.6 s"),
+    classes: Iterable[str] = ("Car",),
+    end: Convention = "truncated",
+    detectors: bool = True,
+    check: bool = False,
+    keep_going: bool = False,
+    pictures: bool = True,
+    jobs: Jobs = None,
+    tell: Say | None = None,
+    drivers: Iterable[str] = (),
+) -> Evaluated:
+    """Find where danger arises in recordings, and match it with scenarios (paper, RQ1 to RQ5).
+
+    ``path``: a folder of recordings in one format, or the file of one. ``out``: where results go and are
+    taken up again; None keeps nothing. ``using``: base, extA and ext where None. ``among``: all scenarios of
+    two or three vehicles where None; those of road sectors that a recording does not have are not asked.
+    ``min_danger`` in s; ``classes`` of vehicles; ``end``: what the end of a trace means. ``detectors``: also
+    those of earlier works; ``check``: ask the plain recursive evaluator again. ``drivers``: models of
+    ``driver.spec`` (``load(specs=["driver"])``), such as careful, that matches are put to. Raises
+    ``InputError``, ``UsageError``.
+    """
+    models = tuple(drivers)
+    home = using or load("base", "extA", "ext", specs=[DRIVERS] if models else [])
+    settings = replace(_settings_of(home, among, min_danger, classes, end, detectors), drivers=models)
+    if out is None:
+        if hands_of(jobs).shard is not None:
+            raise UsageError("a shard needs a folder in which the runs keep what they find: name out")
+        with tempfile.TemporaryDirectory() as folder:
+            found = _evaluate(Path(path), Path(folder), settings, check, keep_going, False, jobs, tell)
+            return replace(found, folder=None, kept=found.findings)
+    return _evaluate(Path(path), Path(out), settings, check, keep_going, pictures, jobs, tell)
+
+
+def _settings_of(
+    home: Definitions,
+    among: Among,
+    min_danger: Iterable[Number],
+    classes: Iterable[str],
+    end: Convention,
+    detectors: bool,
+) -> Settings:
+    """What is asked of traffic. Raises ``UsageError``, ``InputError``."""
+    one_of("end", end, Convention)
+    if MIN_DANGER in home.values:
+        raise UsageError(f"params {MIN_DANGER}: evaluate takes several values of it; use min_danger=(0, 0.6)")
+    return Settings(
+        home.library,
+        home.specification.options,
+        home.all_values(),
+        sets=home.sets,
+        min_danger=tuple(exact(MIN_DANGER, x, "s") for x in min_danger),
+        scenarios=home.among(among) or askable(home.specification),
+        classes=tuple(classes),
+        convention=end,
+        detectors=COMPARISON if detectors else (),
+    )
+
+
+def _evaluate(
+    path: Path,
+    out: Path,
+    settings: Settings,
+    check: bool,
+    keep_going: bool,
+    pictures: bool,
+    jobs: Jobs,
+    tell: Say | None,
+) -> Evaluated:
+    """As ``evaluate``, with what is asked as a value, in a folder that no other run is writing into."""
+    hands = hands_of(jobs)
+    experiment = Experiment(path, out, settings, hands, keep_going)
+    say = tell or (lambda line: None)
+    find_sources(path)
+    with hold_folder(out, shared=hands.shard is not None):
+        remove_report(out)
+        outcome = run_experiment(experiment, say)
+        denied = tuple(_denied(experiment, outcome, say)) if check else ()
+        write_report(out, outcome.totals, outcome.failed, pictures)
+        _sweep(out)
+        return Evaluated(experiment, outcome, denied, out)
+
+
+def _denied(experiment: Experiment, outcome: ExperimentOutcome, say: Say) -> Iterator[str]:
+    """Every answer again, recording by recording, from what was saved."""
+    question = question_mark(experiment.settings)
+    for source, findings in saved_findings(experiment, outcome):
+        recording = source.read()
+        questions = questions_for(experiment.settings, question, recording)
+        denied = list(recheck(recording, questions, findings))
+        say(f"checked {source.name}: {len(denied)} answers denied")
+        yield from denied
+
+
+def _sweep(out: Path) -> None:
+    """Remove what a killed run may have left: hidden files that were never put in their place."""
+    for folder in (out, out / "recordings", out / "figures"):
+        for path in folder.glob(".*"):
+            if _HALF_WRITTEN.fullmatch(path.name):
+                path.unlink(missing_ok=True)

@@ -1,0 +1,143 @@
+"""Results of any kind as one page that needs no network."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from roadproof.analysis.study.pool import Progress
+from roadproof.errors import RoadproofError, UsageError
+from roadproof.evidence.finding import Acceptance, Finding, summary
+from roadproof.evidence.folder import INDEX
+from roadproof.evidence.heading import version
+from roadproof.frontends.api.checking import Checked, Solver, check
+from roadproof.frontends.api.settings import one_of
+from roadproof.frontends.report.page.page import page as page_of
+from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.results import Given, Result, read_results
+from roadproof.frontends.report.page.sections import evidence_section, section
+from roadproof.library.scenarios import numbers_of
+from roadproof.library.specification import Library, load_library
+from roadproof.library.words import words_of
+from roadproof.runtime.files import whole_file
+from roadproof.verdict import ExitCode
+
+
+@dataclass(frozen=True, repr=False)
+class Page:
+    """A page, as a ``text`` and where it was written; ``checked``: what was found of the evidence in it."""
+
+    path: Path
+    text: str
+    drives: int
+    results: int
+    checked: Checked | None
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """That of the evidence: a page shows what is not accepted, and says so."""
+        findings = () if self.checked is None else self.checked.findings
+        return max((x.outcome.exit_code for x in findings), default=ExitCode.AS_EXPECTED)
+
+    def __repr__(self) -> str:
+        return f"<Page: {self.path}>"
+
+    def __str__(self) -> str:
+        counts = [(self.results, "result"), (self.drives, "drive")]
+        told = ", ".join(f"{n} {word}{'s' if n != 1 else ''}" for n, word in counts)
+        findings = () if self.checked is None else self.checked.findings
+        wrong = sum(x.outcome is not Acceptance.ACCEPTED for x in findings)
+        bad = f"; {wrong} of {len(findings)} claims are not accepted, and the page says why" if wrong else ""
+        size = f"{len(self.text.encode()) / 1e6:.1f} MB"
+        return f"{self.path}: {told}, {size}, in one file that needs no network{bad}"
+
+
+def page(
+    *results: str | Path,
+    out: str | Path,
+    title: str | None = None,
+    solver: Solver = "z3",
+    specs: Iterable[str | Path] = (),
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> Page:
+    """One HTML file about results: folders of ``out``, evidence, and answers as JSON.
+
+    Evidence is checked again while the page is made, and each claim says what was found. ``specs``:
+    specification files that the results were made with. Raises ``InputError`` for what is no result or cannot
+    be written, ``UsageError``.
+    """
+    one_of("solver", solver, Solver)
+    if not results:
+        raise UsageError("name results: folders and JSON answers that commands have written, or evidence")
+    paths = [Path(x) for x in results]
+    target = Path(out)
+    if target.suffix.lower() not in (".html", ".htm"):
+        raise UsageError(f"out={target}: name a file that ends with .html")
+    named = tuple(Path(x) for x in specs)
+    given = read_results(paths)
+    checked = (
+        check(*given.checkable, solver=solver, specs=named, jobs=jobs, progress=progress)
+        if given.checkable
+        else None
+    )
+    library = load_library((*named, *(checked.specs if checked else ())))
+    inside = {} if checked is None else {x.where: x for x in checked.findings if x.kind == "index"}
+    book = Book(library, _by_file(checked), inside, _rejected(checked))
+    sections = [section(x, book, _words(x, library)) for x in given.results]
+    alone = _alone(given, checked)
+    if alone and checked is not None:
+        sections.append(evidence_section(alone, book, solver))
+    said = title or f"roadproof: {', '.join(x.name or str(x) for x in paths)[:120]}"
+    text = page_of(said, sections, book.documents, _made(checked))
+    with whole_file(target) as file:
+        file.write(text.encode("utf-8"))
+    return Page(target, text, len(book.documents), len(given.results) + bool(alone), checked)
+
+
+def _made(checked: Checked | None) -> str:
+    """Which version made a page, how much evidence was accepted, and what nothing was compared with."""
+    made = f"Made by roadproof {version('roadproof')}"
+    if checked is None:
+        return f"{made}."
+    left = (f"not checked in {folder}: {', '.join(x)}" for folder, x in checked.not_checked.items())
+    return "; ".join([made, summary(checked.findings, checked.solver), *left]) + "."
+
+
+def _rejected(checked: Checked | None) -> dict[str, list[str]]:
+    """What is not accepted of each index itself, or not decided, in words."""
+    found: dict[str, list[str]] = {}
+    for x in () if checked is None else checked.findings:
+        if x.outcome is not Acceptance.ACCEPTED and Path(x.where).name == INDEX:
+            found.setdefault(x.where, []).append(f"{x.label}: {x.reason}" if x.label else x.reason)
+    return found
+
+
+def _by_file(checked: Checked | None) -> dict[Path, Finding]:
+    """What was found of each file of evidence; of several claims of one file the first that is refused."""
+    found: dict[Path, Finding] = {}
+    for finding in () if checked is None else checked.findings:
+        path = Path(finding.where)
+        if not path.is_file():
+            continue
+        known = found.get(path.resolve())
+        if known is None or known.outcome is Acceptance.ACCEPTED:
+            found[path.resolve()] = finding
+    return found
+
+
+def _alone(given: Given, checked: Checked | None) -> list[Finding]:
+    """The findings on files of evidence that no index names."""
+    wanted = {path.resolve() for path in given.evidence}
+    findings = () if checked is None else checked.findings
+    return [x for x in findings if Path(x.where).is_file() and Path(x.where).resolve() in wanted]
+
+
+def _words(result: Result, library: Library) -> Mapping[int, str]:
+    """What scenarios are called in the set of a result."""
+    said = result.data.get("set") or result.data.get("sets") or "base"
+    name = said if isinstance(said, str) else said[0]
+    try:
+        home = library.select(name.partition(",")[0])
+    except RoadproofError:
+        home = library.select()
+    return {n: words_of(home, n).name for n in numbers_of(home)}

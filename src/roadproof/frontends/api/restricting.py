@@ -1,0 +1,89 @@
+"""Questions about scenarios, asked only of what a driver prevents, or cannot prevent."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from roadproof.analysis.catalogue.decisions import Drivers
+from roadproof.drivers.models import DRIVERS, check_courses, check_driver, require
+from roadproof.drivers.restriction import About, Restriction, check_library, files_for
+from roadproof.errors import UsageError
+from roadproof.frontends.api.definitions import Among, Definitions, What
+from roadproof.library.bind import values_with
+from roadproof.library.diagnose import checked_library
+from roadproof.library.query import Query
+from roadproof.library.scenarios import number_in, numbers_of
+from roadproof.library.specification import load_library, on_request
+from roadproof.logic import formula as f
+from roadproof.logic.formula import subformulas
+
+
+def restricted(
+    home: Definitions,
+    preventable: str | None,
+    unpreventable: str | None,
+    among: Among = None,
+    what: Sequence[What] | None = None,
+    about: About = "scenarios",
+) -> Definitions:
+    """The same definitions under ``prevention.spec``; as they are where no driver model is named.
+
+    ``among`` or ``what``: what is asked for, among which there has to be a scenario of which the model says
+    something; nothing of that where it is ``about`` drives. Raises ``InputError``, ``UsageError``.
+    """
+    if preventable is None and unpreventable is None:
+        return home
+    if preventable is not None and unpreventable is not None:
+        raise UsageError(
+            f"preventable={preventable}, unpreventable={unpreventable}: no drive begins as both; ask for one"
+        )
+    wanted = _restriction(preventable, unpreventable, about)
+    said = f"{wanted.side}={wanted.model}"
+    check_driver(wanted.model, said)
+    files = files_for(home.library.files)
+    library = home.library if len(files) == len(home.library.files) else checked_library(files)
+    check_library(library)
+    options = {**home.specification.options, **wanted.options}
+    found = replace(home, specification=library.select(home.sets[0], options))
+    if about == "scenarios":
+        check_courses(wanted.model, [*dict.fromkeys(_asked(found, among, what))], said)
+    return found
+
+
+def drivers_of(home: Definitions, names: tuple[str, ...]) -> Drivers | None:
+    """Driver models to be asked, in definitions on top of which ``driver.spec`` is read; None for no names.
+
+    Raises ``InputError``, ``UsageError``.
+    """
+    if not names:
+        return None
+    library = home.library
+    path = on_request()[DRIVERS]
+    if all(x.name != str(path) for x in library.files):
+        library = load_library([path, *library.files])
+    specification = library.select(home.sets[0], home.specification.options)
+    values = values_with(library, home.values)
+    require(specification, values)
+    return Drivers(specification, values, names)
+
+
+def _restriction(preventable: str | None, unpreventable: str | None, about: About) -> Restriction:
+    if unpreventable is not None:
+        return Restriction("unpreventable", unpreventable, about)
+    assert preventable is not None
+    return Restriction("preventable", preventable, about)
+
+
+def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:
+    """The scenarios that are asked for, those that formulas speak of among them."""
+    if not what:
+        yield from home.among(among) or numbers_of(home.specification)
+    for one in what or ():
+        if isinstance(one, Query):
+            raise UsageError(
+                f"{one.text[:60]}: it was read without a driver model; give the formula as text, or read it "
+                "from definitions that have one"
+            )
+        for part in subformulas(home.read(one).formula):
+            number = number_in(part.name.partition("@")[0]) if isinstance(part, f.Named) else None
+            if number is not None:
+                yield number

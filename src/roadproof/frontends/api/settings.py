@@ -1,0 +1,136 @@
+"""Where, with whom and for how long drives are looked for, in the words of Python."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, get_args
+
+from roadproof.errors import UsageError
+from roadproof.frontends.api.definitions import Definitions, What
+from roadproof.library.bind import values_with
+from roadproof.library.scenarios import numbers_of, roles
+from roadproof.library.values import Number, exact
+from roadproof.runtime.budget import Effort
+from roadproof.world.models import load_road, load_vehicle
+from roadproof.world.road import Road
+from roadproof.world.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from roadproof.analysis.basis import Basis
+    from roadproof.engines.search.ask import Search
+    from roadproof.engines.search.question import SearchOptions, Setting
+
+RoadLike: TypeAlias = Road | str | Path
+VehicleLike: TypeAlias = Vehicle | str | Path
+Vehicles: TypeAlias = VehicleLike | Mapping[str, VehicleLike] | None
+"""A model for all vehicles, or models by name."""
+
+
+def setting(
+    using: Definitions,
+    road: RoadLike | None = None,
+    lanes: Mapping[str, str] | None = None,
+    vehicles: Vehicles = None,
+    horizon: Number = 6,
+    dt: Number | None = None,
+    reach: Number = 80,
+    collisions: bool = False,
+) -> "Setting":
+    """Where, with whom and for how long drives are looked for.
+
+    ``road``: a reference road or a .toml file, by the formula where None; ``lanes``: free lanes, such as
+    ``{"L": "main-2"}``; ``vehicles``: a model for all, or models by name; ``horizon``, ``dt`` in s,
+    ``reach`` in m. Raises ``InputError``.
+    """
+    from roadproof.engines.search.question import Setting
+
+    return Setting(
+        None if road is None else as_road(road),
+        dict(lanes or {}),
+        models_of(vehicles),
+        values=values_with(using.library, using.values),
+        horizon=positive("horizon", horizon, "s"),
+        dt=None if dt is None else positive("dt", dt, "s"),
+        reach=positive("reach", reach, "m"),
+        collisions=collisions,
+    )
+
+
+def models_of(vehicles: Vehicles) -> dict[str, Vehicle]:
+    """Models of vehicles by name, "" for all. Raises ``InputError``."""
+    models = vehicles if isinstance(vehicles, Mapping) else {} if vehicles is None else {"": vehicles}
+    return {name: x if isinstance(x, Vehicle) else load_vehicle(str(x)) for name, x in models.items()}
+
+
+def searches_of(
+    home: Definitions,
+    what: Sequence[What],
+    place: "Setting",
+    search_options: "SearchOptions",
+    count: int = 1,
+) -> "Iterator[Search]":
+    """A search for each formula in each spec set; without any, for all scenarios of the set.
+
+    Raises ``TextError``, ``InputError``, ``UsageError``.
+    """
+    from roadproof.engines.search.ask import Search
+
+    for name in home.sets:
+        here = replace(home, specification=home.specification.in_set(name))
+        for x in what or numbers_of(here.specification):
+            scenario, query = here.numbered(x)
+            yield Search(here.specification, query, place, search_options, count, scenario)
+
+
+def as_road(road: RoadLike) -> Road:
+    """A road, from its name or file where it is none yet. Raises ``InputError``."""
+    return road if isinstance(road, Road) else load_road(str(road))
+
+
+def positive(name: str, value: Number, unit: str) -> Fraction:
+    """A value in SI units that is greater than 0. Raises ``UsageError``, ``InputError``."""
+    found = exact(name, value, unit)
+    if found <= 0:
+        raise UsageError(f"{name}={value}: write a number greater than 0")
+    return found
+
+
+def work_of(effort: float, timeout: float | None) -> Effort:
+    """So many units of work, and seconds after which the clock ends it. Raises ``UsageError``."""
+    for name, value in (("effort", effort), ("timeout", timeout)):
+        if value is not None and not value > 0:
+            raise UsageError(f"{name}={value}: write a number greater than 0")
+    return Effort(effort, timeout)
+
+
+def one_of(name: str, value: str, allowed: Any) -> None:
+    """Raises ``UsageError`` where ``value`` is none of the words of the type ``allowed``."""
+    if value not in get_args(allowed):
+        raise UsageError(f"{name}={value!r}: write {' or '.join(map(repr, get_args(allowed)))}")
+
+
+def basis_of(
+    home: Definitions,
+    effort: float,
+    timeout: float | None,
+    vehicles: Vehicles = None,
+) -> "Basis":
+    """What analyses rest on; ``effort``: units of work for a drive; ``vehicles``: models, by role or for all.
+
+    Raises ``InputError``, ``UsageError`` for a role that no scenario has.
+    """
+    from roadproof.analysis.basis import Basis
+
+    models = models_of(vehicles)
+    known = {name for count in (2, 3) for name in roles(count)}
+    for name in models:
+        if name and name not in known:
+            raise UsageError(f"vehicle {name}: scenarios speak of {', '.join(sorted(known))}")
+    return Basis(
+        home.specification,
+        home.sets,
+        home.all_values(),
+        effort=work_of(effort, timeout),
+        vehicles=models,
+    )

@@ -1,0 +1,120 @@
+"""Traffic that is simulated in the shape of recordings."""
+
+import csv
+import io
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Say
+from roadproof.errors import UsageError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import Judged
+from roadproof.library.specification import bundled_library
+from roadproof.recordings.export.road_toml import road_toml
+from roadproof.recordings.formats.table import Frame, frame_of
+from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.recordings.simulate.planting import PLANTED_COLUMNS, Truth, lane_width, plant_drives, rows_of
+from roadproof.recordings.simulate.ramps import road_of
+from roadproof.recordings.simulate.synthetic import markings_of
+from roadproof.recordings.simulate.synthetic import simulate as simulate_one
+from roadproof.recordings.simulate.traffic import Ramp, Traffic
+from roadproof.runtime.files import write_whole
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """Recordings that were written to ``folder``; ``planted``: which drive was woven in where.
+
+    ``left_out``: drives that could not be planted, and why.
+    """
+
+    folder: Path
+    recordings: int
+    planted: tuple[Truth, ...] = ()
+    left_out: tuple[str, ...] = ()
+
+    def to_frame(self) -> Frame:
+        """A row for each planted drive, as in planted.csv."""
+        rows = rows_of(self.planted)
+        return frame_of([dict(zip(PLANTED_COLUMNS, row, strict=True)) for row in rows])
+
+
+def simulate(
+    out: str | Path,
+    recordings: int = 1,
+    seconds: float = 990.0,
+    seed: int = 1,
+    lanes: int = 3,
+    flow: float = 3350.0,
+    truck_share: float = 0.18,
+    section: float = 420.0,
+    ramp: Ramp = "none",
+    ramp_flow: float = 400.0,
+    plant: Iterable[Judged | DriveFile] = (),
+    jobs: int | None = None,
+    tell: Say | None = None,
+) -> Simulated:
+    """Write simulated traffic in highD's format; the same numbers give the same files.
+
+    ``lanes`` each way, ``flow`` in vehicles an hour and way, ``section`` in m. ``ramp``: the lower
+    carriageway has an on-ramp ("merge") or an off-ramp ("depart") of ``ramp_flow`` vehicles an hour, which
+    XX_road.toml describes. ``plant``: drives that are woven in where there is no ramp (``witness`` finds
+    some). Raises ``InputError``, ``UsageError``.
+    """
+    drives = tuple(x.file if isinstance(x, Judged) else x for x in plant)
+    traffic = Traffic(
+        seconds=seconds,
+        lanes=lanes,
+        flow=flow,
+        truck_share=truck_share,
+        section=section,
+        ramp=ramp,
+        ramp_flow=ramp_flow,
+    )
+    if seed < 0:
+        raise UsageError(f"seed={seed}: a seed is 0 or more")
+    if not 1 <= recordings <= 999:
+        raise UsageError(f"recordings={recordings}: between 1 and 999 can be made")
+    if drives and ramp != "none":
+        raise UsageError(
+            f"ramp={ramp}: drives are planted on main roads only; simulate without one of the two"
+        )
+    if drives:
+        traffic = replace(traffic, lane_width=lane_width(drives))
+    folder = Path(out)
+    make = partial(_make_one, folder, traffic, seed, drives)
+    numbers = range(1, recordings + 1)
+    done = pool.in_order(pool.work(make, numbers, jobs, None, None, "recordings", fresh=True))
+    truths: list[Truth] = []
+    left_out: dict[str, None] = {}
+    for number, (made, missing) in enumerate(done, 1):
+        if tell is not None:
+            tell(f"[{number}/{recordings}] recording {number:02d}")
+        truths += made
+        left_out |= dict.fromkeys(missing)
+    if drives:
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(PLANTED_COLUMNS)
+        writer.writerows(rows_of(truths))
+        write_whole(folder / "planted.csv", text.getvalue().encode())
+    return Simulated(folder, recordings, tuple(truths), tuple(left_out))
+
+
+def _make_one(
+    out: Path, traffic: Traffic, seed: int, drives: tuple[DriveFile, ...], number: int
+) -> tuple[list[Truth], list[str]]:
+    """Simulate, plant and write one recording; what was planted, and what could not be."""
+    recording = simulate_one(traffic, seed, number)
+    truths: list[Truth] = []
+    left_out: list[str] = []
+    if drives:
+        recording, truths, left_out = plant_drives(recording, drives, bundled_library())
+    write_highd(recording, out)
+    if traffic.ramp != "none":
+        road = road_of(traffic, markings_of(traffic)[1])
+        write_whole(out / f"{recording.name}_road.toml", road_toml(road).encode())
+    return truths, left_out

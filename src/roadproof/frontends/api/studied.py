@@ -1,0 +1,101 @@
+"""Answers to long questions: asked in pieces, kept in a folder as they come, and taken up again."""
+
+import time
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Generic, Self, TypeVar
+
+from roadproof.analysis.study.evidence_store import write_index
+from roadproof.analysis.study.frame import Conducted, Study, conduct, put_away
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.drivers.restriction import restriction_of
+from roadproof.frontends.api.answer import Answer, Picture
+from roadproof.runtime.executors import Jobs
+from roadproof.runtime.files import write_whole
+from roadproof.verdict import ExitCode, Verdict
+
+S = TypeVar("S", bound=Study[Any, Any])
+A = TypeVar("A")
+
+
+@dataclass(frozen=True, repr=False)
+class Studied(Answer, Generic[S, A]):
+    """The answers to a ``study``; ``folder`` is where they were kept as they came, if anywhere."""
+
+    study: S
+    found: Conducted[A]
+    seconds: float
+    folder: Path | None = None
+    pieces: ClassVar[str] = "pieces"
+
+    @classmethod
+    def asked(
+        cls,
+        study: S,
+        out: str | Path | None = None,
+        jobs: Jobs = None,
+        progress: Progress | None = None,
+        say: Say | None = None,
+        each: Callable[[str, A], None] | None = None,
+        more: Callable[[], Mapping[str, Any]] = dict,
+        begun: float | None = None,
+    ) -> Self:
+        """Ask ``study`` (``study.frame.conduct``); what was kept in ``out`` before is not asked again.
+
+        ``more`` gives further fields of the answer, once all else is answered; ``begun``: since when the
+        seconds count.
+        """
+        since = time.monotonic() if begun is None else begun
+        folder = None if out is None else Path(out)
+        found = conduct(study, folder, jobs, progress, cls.pieces, say, each)
+        fields = more()
+        made = cls(study, found, time.monotonic() - since, folder, **fields)
+        if folder is not None:
+            made._write_index(folder, found.records)
+        return made
+
+    @abstractmethod
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        """The index, made of the answers as they are recorded."""
+
+    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+        write_index(folder, self._index(records))
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        """What is written beside the evidence to be looked at, by name."""
+        return {}
+
+    @property
+    def supposed(self) -> tuple[str, ...]:
+        """In words, what begins so that is asked about, where a driver model says it."""
+        options = self.study.question.said.get("options", {})
+        return tuple(str(x) for x in [restriction_of(options)] if x is not None)
+
+    @property
+    def exit_code(self) -> ExitCode:
+        doubt = Verdict.UNKNOWN in self.verdicts.values()
+        return ExitCode.UNKNOWN if doubt else ExitCode.AS_EXPECTED
+
+    def as_data(self) -> dict[str, Any]:
+        return self._index(self.found.records)
+
+    def _write(self, folder: Path, pictures: bool) -> None:
+        kept = self.found if folder == self.folder else put_away(self.study, self.found.answers, folder)
+        self._write_index(folder, kept.records)
+        self._add_files(folder, pictures)
+
+    def add_files(self, pictures: bool) -> None:
+        """Write what is to be looked at beside the evidence that was kept as it came."""
+        if self.folder is not None:
+            self._add_files(self.folder, pictures)
+
+    def _add_files(self, folder: Path, pictures: bool) -> None:
+        for name, content in self.files(pictures).items():
+            write_whole(folder / name, content)
+
+
+def drawn(pictures: Mapping[str, Picture]) -> dict[str, bytes]:
+    """Pictures as files by name."""
+    return {f"{name}.{kind}": getattr(x, kind) for name, x in pictures.items() for kind in ("png", "svg")}

@@ -1,0 +1,276 @@
+"""What scenarios are to each other: which hold together, which imply which, what could be left out."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+from roadproof.analysis.meeting import Meeting
+from roadproof.analysis.order.kinds import kinds_of
+from roadproof.analysis.order.study import Order, Ordering
+from roadproof.analysis.overlap import Overlap, PairVerdict, pairs_of
+from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
+from roadproof.analysis.study import pool
+from roadproof.analysis.study.pool import Progress, Say
+from roadproof.errors import UsageError
+from roadproof.evidence.kinds import Evidence
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.restricting import restricted
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import Vehicles, basis_of, one_of, positive
+from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.report import order as order_report
+from roadproof.frontends.report import overlap as overlap_report
+from roadproof.frontends.report import redundancy as redundancy_report
+from roadproof.library.scenarios import numbers_of
+from roadproof.library.values import Number
+from roadproof.library.words import Called, called, called_in
+from roadproof.runtime.executors import Jobs
+from roadproof.verdict import ExitCode, Verdict, exit_code
+
+_Same: TypeAlias = Literal["same", "any"]
+
+
+class Overlaps(Studied[Overlap, PairVerdict]):
+    """Which pairs of scenarios can hold together: a drive, or a proof that there is none, for each."""
+
+    pieces = "groups of pairs"
+
+    @cached_property
+    def pairs(self) -> list[PairVerdict]:
+        """The answers in the order of the pairs."""
+        return self.study.verdicts(self.found.answers)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        return {f"{x.a}, {x.b}": x.verdict for x in self.pairs}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        return tuple(y for x in self.pairs if (y := x.certificate or x.drive) is not None)
+
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        basis, numbers = self.study.basis, {y.number for x in self.pairs for y in (x.a, x.b)}
+        return called_in(basis.specification, basis.set_names, numbers)
+
+    @property
+    def across(self) -> bool:
+        """Whether the pairs are of two spec sets."""
+        return len(self.study.basis.set_names) > 1
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code((x.verdict, x.verdict) for x in self.pairs)
+
+    def rows(self) -> list[Row]:
+        return [
+            {
+                "a": str(x.a),
+                "b": str(x.b),
+                "verdict": str(x.verdict),
+                "reason": x.reason,
+                "seconds": x.seconds,
+            }
+            for x in self.pairs
+        ]
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.study.index(records, self.seconds)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """The heat map."""
+        said = self.study.question.said
+        how = f"lanes {said['lanes']}, roles {said['roles']}, start {said['start']}"
+        title = f"Which scenarios hold together: set {said['set']}; {how}"
+        yield "overlap", picture(overlap_report.draw_overlap(self.pairs, title, self.across, self.words))
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        table = {"overlap.csv": overlap_report.as_csv(self.pairs, self.words).encode()}
+        return table | drawn(self.pictures() if pictures else {})
+
+    def __str__(self) -> str:
+        count = f"{len(self.pairs)} pair{'s' if len(self.pairs) > 1 else ''} in {self.seconds:.1f} s"
+        return f"{overlap_report.as_text(self.pairs, self.across, self.words)}\n{count}"
+
+
+def overlap(
+    among: Among = None,
+    using: Definitions | None = None,
+    lanes: _Same = "same",
+    roles: _Same = "same",
+    start: _Same = "same",
+    horizon: Number | None = None,
+    preventable: str | None = None,
+    unpreventable: str | None = None,
+    vehicles: Vehicles = None,
+    effort: float = 60.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Overlaps:
+    """Which scenarios of one spec set can hold together, or those of one set with those of another.
+
+    ``among``: scenarios such as "1,3-8" (all where None); ``lanes``, ``roles``, ``start``: the same for
+    both, or any; ``horizon``: seconds of driving searched (6; 9 where ``start`` is any). ``preventable``,
+    ``unpreventable``: as for ``witness``. ``out``: a folder in
+    which answers are kept as they come; ``say`` is told of kept ones that do not count. Raises
+    ``InputError``, ``UsageError``.
+    """
+    for word, value in (("lanes", lanes), ("roles", roles), ("start", start)):
+        one_of(word, value, _Same)
+    home = restricted(using or load(), preventable, unpreventable, among)
+    if len(home.sets) > 2:
+        raise UsageError(f"{', '.join(home.sets)}: name one spec set, or two different ones")
+    # What happens one after the other takes longer than what happens at once.
+    usual = 9 if start == "any" else 6
+    found = positive("horizon", usual if horizon is None else horizon, "s")
+    basis = replace(basis_of(home, effort, timeout, vehicles), horizon=found)
+    pairs = pairs_of(basis, home.among(among))
+    if not pairs:
+        raise UsageError(f"--among {among} leaves no pair: name at least two scenarios")
+    if pool.are_forked(pairs, jobs):
+        from roadproof.engines.solve.milp import prepare
+
+        prepare()  # what every worker needs is imported once, before they are forked
+    return Overlaps.asked(Overlap(basis, pairs, Meeting(lanes, roles, start)), out, jobs, progress, say)
+
+
+class Orders(Studied[Ordering, Any]):
+    """Which scenarios imply which: every implication proved, every other one refuted by a drive."""
+
+    pieces = "families of scenarios"
+
+    @cached_property
+    def order(self) -> Order:
+        """The edges, and for the other pairs what refutes them."""
+        return self.study.order(self.found.answers)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        """Of every implication between two of the formulas that was asked by itself."""
+        order = self.order
+        found = {f"{x.above} -> {x.below}": Verdict.PROVED for x in order.proved}
+        found |= {f"{above} -> {below}": Verdict.REFUTED for above, below, _ in order.missing}
+        return found | {f"{x.above} -> {x.below}": Verdict.UNKNOWN for x in order.doubts}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        return (*(x.certificate for x in self.order.proved), *(x.drive for x in self.order.drives))
+
+    def rows(self) -> list[Row]:
+        return [{"implication": name, "verdict": str(x)} for name, x in self.verdicts.items()]
+
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        numbers = {node.number for kind in self.order.kinds for node in kind.nodes}
+        return called_in(self.study.basis.specification, self.study.basis.set_names, numbers)
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.study.index(self.order, records, self.seconds)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """The Hasse diagram."""
+        title = f"implications in {', '.join(self.study.basis.set_names)}; an arrow leads to what is implied"
+        yield "order", picture(order_report.draw_order(self.order, title, self.words))
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        graph = {"order.dot": order_report.as_dot(self.order, self.words).encode()}
+        return graph | drawn(self.pictures() if pictures else {})
+
+    def __str__(self) -> str:
+        return order_report.as_text(self.order, round(self.seconds, 1), self.words)
+
+
+def order(
+    among: Among = None,
+    using: Definitions | None = None,
+    vehicles: Vehicles = None,
+    effort: float = 120.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Orders:
+    """Which scenarios imply which, in the sets of ``using`` (base, extA and ext). Raises as ``overlap``."""
+    home = using or load("base", "extA", "ext")
+    basis = basis_of(home, effort, timeout, vehicles)
+    kinds = kinds_of(basis.specification, basis.set_names, home.among(among))
+    return Orders.asked(Ordering(basis, kinds), out, jobs, progress, say)
+
+
+class Redundancies(Studied[Redundancy, ChangeFindings]):
+    """Which parts of scenarios could be left out, and what shows the others needed."""
+
+    pieces = "scenarios"
+
+    @cached_property
+    def findings(self) -> dict[int, ChangeFindings]:
+        """The findings on every change, by the number of the scenario."""
+        return {number: self.found.answers[name_of(number)] for number in self.study.numbers}
+
+    @cached_property
+    def words(self) -> Called:
+        """What the scenarios are called."""
+        return called(self.study.basis.specification, self.study.numbers)
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        every = ((number, k, x) for number, each in self.findings.items() for k, x in enumerate(each, 1))
+        return {f"scenario {number}, change {k}": x.verdict for number, k, x in every}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        every = (x for each in self.findings.values() for x in each)
+        return tuple(y for x in every if (y := x.certificate or x.drive or x.trace) is not None)
+
+    def rows(self) -> list[Row]:
+        return [
+            {
+                "scenario": number,
+                "name": self.words[number].name,
+                "part": x.change.part,
+                "where": " > ".join(x.change.where),
+                "as": x.change.value,
+                "redundant": x.redundant,
+                "verdict": str(x.verdict),
+                "reason": x.reason,
+            }
+            for number, each in self.findings.items()
+            for x in each
+        ]
+
+    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+        return self.study.index(records, self.seconds)
+
+    def __str__(self) -> str:
+        return redundancy_report.as_text(self.findings, self.seconds, self.words)
+
+
+def redundancy(
+    among: Among = None,
+    using: Definitions | None = None,
+    whole: bool = False,
+    vehicles: Vehicles = None,
+    effort: float = 20.0,
+    timeout: float | None = None,
+    out: str | Path | None = None,
+    jobs: Jobs = None,
+    progress: Progress | None = None,
+    say: Say | None = None,
+) -> Redundancies:
+    """Which parts of scenarios could be left out; with ``whole`` also those of simple predicates.
+
+    Raises as ``overlap``.
+    """
+    home = using or load()
+    every = numbers_of(home.alone)
+    basis = basis_of(home, effort, timeout, vehicles)
+    return Redundancies.asked(Redundancy(basis, home.among(among) or every, whole), out, jobs, progress, say)

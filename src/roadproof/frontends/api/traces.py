@@ -1,0 +1,296 @@
+"""What a formula is on one trace: a drive, samples, or vehicles of a recording."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from html import escape
+from math import isfinite
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.answers import monitor as kept
+from roadproof.evidence.answers.monitor import Override, Place, Truth, View
+from roadproof.evidence.codec import write
+from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.evidence.heading import heading
+from roadproof.evidence.judged import Judged
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.settings import RoadLike, as_road, one_of, positive
+from roadproof.frontends.report.one_trace import as_text, draw_strips
+from roadproof.library.bind import bind, values_with
+from roadproof.library.query import Query
+from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner
+from roadproof.library.specification import Library
+from roadproof.library.values import Number
+from roadproof.recordings.evaluate.observed import Observed, Spans, observe_drive, observe_samples
+from roadproof.recordings.evaluate.one_trace import (
+    OneTrace,
+    is_pair,
+    of_columns,
+    read_pair,
+    read_samples,
+    refuse_unmeasured,
+    sample_drive,
+)
+from roadproof.recordings.formats.source import TRACK_FILES
+from roadproof.recordings.formats.table import Frame, columns_of, frame_of
+from roadproof.semantics.sampled.answers import Convention
+from roadproof.verdict import ExitCode
+
+# A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
+TraceLike: TypeAlias = str | Path | Judged | DriveFile | OneTrace | Mapping[str, Any] | Frame
+_CODES: dict[Truth, ExitCode] = {
+    "true": ExitCode.AS_EXPECTED,
+    "false": ExitCode.UNEXPECTED,
+    "undecided": ExitCode.UNKNOWN,
+}
+
+
+@dataclass(frozen=True, repr=False)
+class Monitored:
+    """The answer on one trace, with the definitions of ``library``; ``place`` says on which trace."""
+
+    library: Library
+    observed: Observed
+    place: Place
+    notes: tuple[str, ...] = ()
+
+    @property
+    def verdict(self) -> Truth:
+        """At the first sample: "true", "false", or "undecided" where what comes after the trace decides."""
+        return self.observed.verdict
+
+    @property
+    def robustness(self) -> tuple[float, float]:
+        """Bounds of the margin by which it holds; equal where nothing after the trace matters."""
+        return self.observed.margin
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return _CODES[self.verdict]
+
+    def to_frame(self) -> Frame:
+        """A row for each span in which a part is true or undecided: part, verdict, begin, end (s)."""
+        rows: list[Row] = [
+            {"part": strip.name, "verdict": verdict, "begin": begin, "end": end}
+            for strip in self.observed.strips
+            for verdict, spans in (("true", strip.true), ("undecided", strip.undecided))
+            for begin, end in spans
+        ]
+        return frame_of(rows)
+
+    def as_data(self) -> dict[str, Any]:
+        """As the plain data of ``--json``."""
+        x = self.observed
+        answer = kept.Answer(
+            **heading(kept.SCHEMA, self.library),
+            formula=x.formula,
+            view=x.view,
+            end=x.convention,
+            verdict=x.verdict,
+            under_the_other_end=x.other,
+            robustness=(_finite(x.margin[0]), _finite(x.margin[1])),
+            seconds=x.seconds,
+            dt=str(x.dt),
+            parts=tuple(
+                kept.Part(
+                    formula=strip.name,
+                    true=_ended(strip.true),
+                    undecided=_ended(strip.undecided),
+                    exact=strip.exact,
+                )
+                for strip in x.strips
+            ),
+            **vars(self.place),
+        )
+        return write(answer)
+
+    def plot(self) -> Picture:
+        """A strip for each part."""
+        return picture(draw_strips(self.observed))
+
+    def __str__(self) -> str:
+        return f"{as_text(self.observed)}\n{self.place}"
+
+    def __repr__(self) -> str:
+        return f"<Monitored: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None
+
+
+def _ended(spans: Spans) -> kept.Spans:
+    """Spans of which one that never ends has no end."""
+    return tuple((begin, _finite(end)) for begin, end in spans)
+
+
+def trace(columns: "Mapping[str, Any] | Frame", road: RoadLike = "main-2") -> OneTrace:
+    """A trace out of columns: numpy arrays by name, or a frame of polars or pandas.
+
+    Columns are ``time`` (s), ``vehicle`` (a name), ``s d`` (front-left corner, m), ``v_lon v_lat`` (m/s),
+    ``a_lon a_lat`` (m/s^2), ``length width`` (m): a row a time and vehicle, in equal steps. Raises
+    ``InputError`` with column, row, value and rule.
+    """
+    return of_columns(columns_of(columns), as_road(road))
+
+
+def monitor(
+    what: What,
+    on: TraceLike,
+    using: Definitions | None = None,
+    lanes: Mapping[str, str] | None = None,
+    road: RoadLike | None = None,
+    view: View | None = None,
+    dt: Number = Fraction(1, 25),
+    frames: tuple[int | None, int | None] = (None, None),
+    end: Convention = "truncated",
+) -> Monitored:
+    """Where a formula holds on one trace.
+
+    ``on``: a drive (judged exactly in dense time unless ``view`` is "recorded"; then sampled every ``dt`` s),
+    columns as for ``trace`` or a CSV or Parquet file of them on ``road`` (by default that beside the file, or
+    main-2), or vehicles of a recording such as "highd/01_tracks.csv:12,15" on ``frames``. What a drive file
+    says of set, readings and parameters holds where ``using`` is None. ``lanes``: for each free lane its
+    name, or a vehicle, whose lane at the start it is. ``end``: what the end of a recorded trace means. Raises
+    ``InputError``, ``UsageError``, ``TextError``.
+    """
+    if view is not None:
+        one_of("view", view, View)
+    one_of("end", end, Convention)
+    if isinstance(on, str | Path) and str(on).endswith(".json"):
+        return _on_drive(what, load_drive(Path(on)), str(on), using, lanes or {}, view, dt, end)
+    if isinstance(on, Judged | DriveFile):
+        file = on.file if isinstance(on, Judged) else on
+        return _on_drive(what, file, "drive", using, lanes or {}, view, dt, end)
+    if view == "dense":
+        raise UsageError("--view dense: only a drive file says what is true between samples")
+    home = using or load()
+    return _on_trace(what, _read(on, road, frames), home, home.all_values(), lanes or {}, {}, end)
+
+
+def _read(
+    on: "str | Path | OneTrace | Mapping[str, Any] | Frame",
+    road: RoadLike | None,
+    frames: tuple[int | None, int | None],
+) -> OneTrace:
+    if isinstance(on, OneTrace):
+        return on
+    if not isinstance(on, str | Path):
+        return trace(on, road or "main-2")
+    if is_pair(str(on)):
+        if road is not None:
+            raise UsageError(f"--road: {on} is on the road of its recording; leave --road out")
+        return read_pair(str(on), frames)
+    if Path(on).suffix in (".csv", ".parquet", ".xosc") and not TRACK_FILES.fullmatch(Path(on).name):
+        return read_samples(Path(on), None if road is None else as_road(road))
+    raise InputError(
+        f"{on}: a trace is a drive (.json), samples (.csv, .parquet or .xosc), or vehicles of a recording "
+        "such as highd/01_tracks.csv:12,15"
+    )
+
+
+def of_file(file: DriveFile) -> Definitions:
+    """The definitions under which a drive file was judged."""
+    home = load(file.set_name, options=file.options)
+    return Definitions(home.specification, home.sets, file.values)
+
+
+def _on_drive(
+    what: What,
+    file: DriveFile,
+    source: str,
+    using: Definitions | None,
+    asked: Mapping[str, str],
+    view: str | None,
+    dt: Number,
+    end: Convention,
+) -> Monitored:
+    home = using or of_file(file)
+    values = values_with(home.library, {**file.values, **home.values})
+    step = positive("dt", dt, "s")
+    samples = sample_drive(file.drive, file.road, file.horizon, step, source)
+    overruled = tuple(_overruled(file, home, values))
+    if view == "recorded":
+        found = _on_trace(what, samples, home, values, asked, file.lanes, end)
+        return replace(found, place=replace(found.place, overruled=overruled))
+    number, query = home.numbered(what)
+    lanes = _lanes(home, query, number, samples, file.lanes, asked)
+    formula = bind(query.formula, file.road, lanes, values)
+    observed = observe_drive(query.text, formula, file.drive, file.horizon, step)
+    return Monitored(home.library, observed, _place(samples, home, lanes, overruled))
+
+
+def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Override]:
+    specification = home.specification
+    for name, value in file.values.items():
+        if values[name] != value:
+            yield Override(what=f"parameter {name}", asked=str(values[name]), said=str(value))
+    for name, reading in file.options.items():
+        if specification.options.get(name) != reading:
+            asked = str(specification.options.get(name))
+            yield Override(what=f"option {name}", asked=asked, said=reading)
+    if specification.set_name != file.set_name:
+        yield Override(what="set", asked=specification.set_name, said=file.set_name)
+
+
+def _on_trace(
+    what: What,
+    samples: OneTrace,
+    home: Definitions,
+    values: Mapping[str, Fraction],
+    asked: Mapping[str, str],
+    known: Mapping[str, str],
+    end: Convention,
+) -> Monitored:
+    number, query = home.numbered(what)
+    lanes = _lanes(home, query, number, samples, known, asked)
+    formula = bind(query.formula, samples.road, lanes, values)
+    refuse_unmeasured(samples, formula)
+    observed = observe_samples(query.text, formula, samples.batch, end)
+    return Monitored(home.library, observed, _place(samples, home, lanes), samples.notes)
+
+
+def _place(
+    samples: OneTrace, home: Definitions, lanes: Mapping[str, str], overruled: tuple[Override, ...] = ()
+) -> Place:
+    return Place(
+        trace=samples.source,
+        start=samples.first,
+        set_name=home.alone.set_name,
+        road=samples.road.name,
+        lanes=lanes,
+        overruled=overruled,
+    )
+
+
+def _lanes(
+    home: Definitions,
+    query: Query,
+    number: int | None,
+    samples: OneTrace,
+    known: Mapping[str, str],
+    asked: Mapping[str, str],
+) -> dict[str, str]:
+    """A lane for each free lane of the formula: as asked for, as in the file, or a vehicle's."""
+    missing = [name for name in query.vehicles if name not in samples.lanes]
+    if missing:
+        raise InputError(
+            f"{query.text}: speaks of {', '.join(missing)}, but {samples.source} has "
+            f"{', '.join(samples.lanes)}; name other vehicles or another formula"
+        )
+    lanes = {**known, **{name: samples.lanes.get(lane, lane) for name, lane in asked.items()}}
+    scenario = None if number is None else Scenario(number, home.specification.set_name)
+    usual = SUBJECT if scenario is None else lane_owner(home.specification, scenario)
+    for name in query.lanes:
+        if not lanes.get(name):
+            lanes[name] = samples.lanes.get(usual, "")
+        if not lanes[name]:
+            raise InputError(f"lane {name}: {usual} is in no lane at the start; say --lane {name}=LANE")
+    return {name: lanes[name] for name in query.lanes}

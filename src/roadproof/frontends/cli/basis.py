@@ -1,0 +1,114 @@
+"""What questions are asked of, from the options that commands share."""
+
+import argparse
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
+
+from roadproof.errors import UsageError
+from roadproof.frontends.cli.numbers import read_hands
+from roadproof.frontends.cli.options import chosen_options, given_values, load_library_of, write_json
+from roadproof.frontends.cli.progress import Counter, warn
+from roadproof.frontends.cli.search_options import named
+
+if TYPE_CHECKING:
+    from roadproof.analysis.study.pool import Progress, Say
+    from roadproof.frontends.api.definitions import Definitions
+    from roadproof.frontends.api.studied import Studied
+    from roadproof.runtime.executors import Hands
+
+A = TypeVar("A")
+
+
+class Asking(TypedDict):
+    """How much work, how many processes, where answers are kept, and who is told how far it is."""
+
+    effort: float
+    timeout: float | None
+    jobs: "Hands"
+    out: Path | None
+    vehicles: dict[str, str]
+    progress: "Progress"
+    say: "Say"
+
+
+def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definitions":
+    """The definitions of ``sets``, readings and values. Raises ``InputError``, ``UsageError``."""
+    from roadproof.frontends.api.definitions import Definitions
+
+    if any(restricting(args).values()):
+        from roadproof.drivers.restriction import names_for
+
+        args.specs = names_for(args.specs)
+    library, options = load_library_of(args), chosen_options(args)
+    if len({*sets}) < len(sets):
+        raise UsageError(f"--set {','.join(sets)}: one is named twice; name one spec set, or different ones")
+    for name in sets:
+        library.select(name, options)
+    values = given_values(args, library) if "params" in args else {}
+    return Definitions(library.select(sets[0], options), tuple(sets), values)
+
+
+class Restricting(TypedDict):
+    """The driver models of --preventable and --unpreventable."""
+
+    preventable: str | None
+    unpreventable: str | None
+
+
+def restricting(args: argparse.Namespace) -> Restricting:
+    """What is asked of driver models; nothing where a command does not ask."""
+    return {
+        "preventable": getattr(args, "preventable", None),
+        "unpreventable": getattr(args, "unpreventable", None),
+    }
+
+
+def asking(args: argparse.Namespace, folder: Path | None) -> Asking:
+    """What every long question is told besides what is asked."""
+    return {
+        "effort": args.effort,
+        "timeout": args.timeout,
+        "jobs": read_hands(args),
+        "out": folder,
+        "vehicles": dict(named(getattr(args, "vehicles", ()), "")),
+        "progress": Counter(),
+        "say": warn,
+    }
+
+
+def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[str, A], None]:
+    """A listener that shows answers in the order of ``names``, each once those before it are shown."""
+    left, early = deque(names), dict[str, A]()
+
+    def hear(name: str, answer: A) -> None:
+        early[name] = answer
+        while left and left[0] in early:
+            first = left.popleft()
+            show(first, early[first])
+
+    return hear
+
+
+def hand_over(args: argparse.Namespace, found: "Studied[Any, Any]") -> int:
+    """JSON, what is written to be looked at, and the text of an answer; its exit code."""
+    if args.json:
+        write_json(found.as_data(), args.json)
+    if args.out is not None:
+        found.add_files(not getattr(args, "no_pictures", False))
+    if args.json != "-":
+        print(found)
+        for line in found.supposed:
+            print(line)
+        for name, said in found.study.question.library.freedom.items():
+            print(f"{name} is {said}")
+    return found.exit_code
+
+
+def evidence_folder(out: Path | None, target: str | None) -> Path | None:
+    """DIR of --out, or FILE-evidence beside the file of --json, or none."""
+    if out is None and target not in (None, "-"):
+        path = Path(str(target))
+        return path.with_name(f"{path.stem}-evidence")
+    return out

@@ -1,0 +1,92 @@
+"""``roadproof check``: certificates and drive files, checked again without what made them."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from roadproof.errors import UsageError
+from roadproof.frontends.cli.numbers import add_effort_options, add_working_options
+from roadproof.frontends.cli.options import add_json_option, add_spec_option, write_json
+from roadproof.frontends.cli.progress import Counter
+from roadproof.verdict import ExitCode
+
+SUMMARY = "check certificates and drive files again, without the programs that made them"
+
+_EXAMPLES = """\
+examples:
+  roadproof check proofs/                          every claim of a folder, with its index
+  roadproof check proofs/ --solver cvc5            ask another solver
+  roadproof check drives/scenario-04-base.json     judge a drive again, exactly
+  roadproof check proofs/ --kernel coq             certificates and drives are put to Coq, and to no solver
+  roadproof check proofs/ --kernel coq --write v/  what would be put to Coq, to be read
+  roadproof check proofs/ --strict                 for a pipeline: no answer may be without evidence
+  roadproof check mine/ --spec mine.spec           claims that were made with definitions of yours
+
+A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
+give the very query that is stored, and the solver answers unsat to it. A drive file is accepted when its
+formula holds on its drive, judged exactly in dense time. The index of a folder is a part of the evidence:
+each entry must be that of its file, and no file may be without one; kept answers (answers.jsonl) too. Where
+an index names specification files beside it, such as classes.spec, these are put on top of the library,
+unless they would change what is there.
+
+A line for each claim says what was checked, and what was not; fields of an index and files that nothing is
+compared with are listed below. Exit code 10 where something is rejected, 20 where the solver did not decide
+or no evidence was accepted at all, 3 where a file is damaged or speaks of definitions that are not at hand.
+For pipelines: with --strict also 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
+    parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who is asked (default: z3)")
+    parser.add_argument(
+        "--kernel",
+        choices=("coq",),
+        help="put certificates and drives to the kernel of Coq, with coqc, in place of a solver",
+    )
+    parser.add_argument(
+        "--write", type=Path, metavar="DIR", help="with --kernel: only write the files for Coq"
+    )
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit with 20 where an answer has no evidence (UNKNOWN, NONE-WITHIN)",
+    )
+    add_effort_options(parser, each="a query")
+    add_spec_option(parser, "a specification file that the claims were made with")
+    add_working_options(parser)
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.frontends.api.checking import check
+
+    if args.kernel is not None and args.solver != "z3":
+        raise UsageError(f"--kernel {args.kernel} asks no solver: ask without --solver, or without --kernel")
+    if args.write is not None:
+        return _write(args)
+    more: dict[str, Any] = {"strict": args.strict}
+    more |= {"effort": args.effort, "timeout": args.timeout, "jobs": args.jobs, "progress": Counter()}
+    checked = check(*args.paths, solver=args.solver, specs=args.specs, kernel=args.kernel, **more)
+    if args.json != "-":
+        print(checked)
+    if args.json:
+        write_json(checked.as_data(), args.json)
+    return checked.exit_code
+
+
+def _write(args: argparse.Namespace) -> int:
+    from roadproof.frontends.api.checking import write_sources
+
+    if args.kernel is None or args.json:
+        raise UsageError(
+            "--write DIR writes files for Coq and checks nothing: ask with --kernel, without --json"
+        )
+    reasons = write_sources(*args.paths, folder=args.write, specs=args.specs, jobs=args.jobs)
+    for path, reason in reasons.items():
+        print(f"no file for {path}: {reason}")
+    print(
+        f"written to {args.write}; there: coqc -Q Roadproof Roadproof FILE.v, after the theories in Roadproof"
+    )
+    return ExitCode.UNKNOWN if reasons else ExitCode.AS_EXPECTED

@@ -1,0 +1,68 @@
+"""``roadproof compare``: two scenarios or formulas, and which implies which."""
+
+import argparse
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.errors import UsageError
+from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.numbers import add_working_options
+from roadproof.frontends.cli.options import add_json_option, chosen_sets, write_json
+from roadproof.frontends.cli.progress import clear, note, tell_stage
+from roadproof.frontends.cli.search_options import add_search_options, how_asked, where_asked
+from roadproof.runtime.progress import listening
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.compare import Direction
+
+SUMMARY = "compare two formulas: equivalent, stronger, weaker or incomparable"
+
+_EXAMPLES = """\
+examples:
+  roadproof compare 'scenario_3(SV,POV,L)' 'scenario_4(POV,SV,L)'
+  roadproof compare 4 4 --set base --set ext          the same scenario in two spec sets
+  roadproof compare 1 4 --out differences             drives that tell the two apart
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("first", metavar="F1", help="a scenario's number, or a formula")
+    parser.add_argument("second", metavar="F2", help="another; in the second --set where two are given")
+    add_search_options(parser)
+    add_working_options(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and drive files")
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.frontends.api.comparing import compare
+
+    sets = chosen_sets(args)
+    if len(sets) > 2:
+        raise UsageError(f"--set is given {len(sets)} times: two formulas have at most two spec sets")
+    home = read_definitions(args, sets)
+    begun = time.monotonic()
+
+    def show(name: str, direction: "Direction") -> None:
+        note(f"{name}: {direction.verdict} (after {time.monotonic() - begun:.1f} s)")
+
+    with listening(tell_stage):
+        found = compare(
+            args.first,
+            args.second,
+            home,
+            **where_asked(args),
+            **how_asked(args),
+            jobs=args.jobs,
+            each=show,
+        )
+    clear()
+    if args.out is not None:
+        found.save(args.out)
+    if args.json:
+        write_json(found.as_data(), args.json)
+    if args.json != "-":
+        print(found)
+    return found.exit_code

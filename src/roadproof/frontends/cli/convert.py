@@ -1,0 +1,35 @@
+"""``roadproof convert``: recordings of any format, kept as Parquet."""
+
+import argparse
+from pathlib import Path
+
+from roadproof.frontends.cli.numbers import add_working_options
+from roadproof.frontends.cli.progress import Counter
+from roadproof.verdict import ExitCode
+
+SUMMARY = "keep recordings as Parquet, checked once, for quicker reading"
+
+_EXAMPLES = """\
+PATH is a folder of recordings in one format, or the file of one. Each is read with all checks, written as
+NAME.recording.json and NAME.samples.parquet, read again and compared. Everything that reads recordings reads
+DIR with the same answers. Another version of roadproof asks for converting again.
+
+examples:
+  roadproof convert highd/data --out highd-parquet --jobs 2
+  roadproof evaluate highd-parquet --out results
+  roadproof monitor 4 highd-parquet/01.recording.json:12,15
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
+    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the data set goes")
+    add_working_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.frontends.api.converting import convert
+
+    print(convert(args.path, args.out, args.jobs, Counter()))
+    return ExitCode.AS_EXPECTED

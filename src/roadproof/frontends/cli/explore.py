@@ -1,0 +1,106 @@
+"""``roadproof explore``: for which values a scenario has a drive, and how far a measure can go."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.errors import UsageError
+from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, restricting
+from roadproof.frontends.cli.numbers import (
+    add_sharing_options,
+    add_working_options,
+    read_effort,
+    read_hands,
+    whole,
+)
+from roadproof.frontends.cli.options import add_json_option, add_prevention_options, chosen_sets
+from roadproof.frontends.cli.progress import Counter, tell, warn
+from roadproof.frontends.cli.search_options import add_search_options, where_asked
+from roadproof.frontends.cli.what import add_what_arguments, some_or_all
+
+if TYPE_CHECKING:
+    from roadproof.analysis.explore.measure import Sense
+
+SUMMARY = "for which values of parameters and limits a scenario has a drive, and how far a measure can go"
+
+_EXAMPLES = """\
+examples:
+  roadproof explore 4 --vary minSafe=0:6                     a parameter: 11 values, then the boundary
+  roadproof explore 4 --vary minDanger=0:3 --vary rho=0:2    two: a map
+  roadproof explore 4 --vary POV.a_lon.min=-6:0              a limit of a vehicle; vehicle.… is that of all
+  roadproof explore 1 --least 'v_lon(SV) - v_lon(POV)'       the least value of a measure at the start
+  roadproof explore 4 --greatest 's(POV) - s(SV)' --when 'danger(SV,POV)'    at a moment of danger
+  roadproof explore --all --vary minDanger=0:30 --out explored
+  roadproof explore 1 --unpreventable careful --vary cc_delay=0.3:1.5    a value of the driver model
+  roadproof explore --spec driver 'unpreventable_cutIn_careful(SV,POV)' --vary cc_delay=0.3:1.5
+
+Limits are v_lon, v_lat, a_lon and a_lat, each .min and .max. Where durations change, dt is the coarsest step
+that divides them, and --dt its upper bound. A drive that was found is judged at every other value, so
+most values take no search. A value that none is found for costs up to three times the --effort.
+Nothing is claimed of values between those looked at, and no extreme is called the best there is: the
+other side of the bracket is printed with what is known of it.
+
+A formula about one instant that no engine reads (a driver model) is proved impossible at single values.
+
+# drive judged at this value, . proved impossible, - none within the limits printed, ? not decided.
+Exit code 20 where anything is not decided.
+A run with --out that was broken off goes on where it was, formula by formula.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    add_what_arguments(parser, "all scenarios of each --set")
+    parser.add_argument(
+        "--vary",
+        metavar="NAME=LOW:HIGH",
+        action="append",
+        default=[],
+        help="a parameter, or a limit such as POV.a_lon.min; may be given twice",
+    )
+    parser.add_argument(
+        "--steps", type=whole("--steps", 2), metavar="K", help="values of each (default: 11; of two: 6)"
+    )
+    for sense in ("least", "greatest"):
+        parser.add_argument(f"--{sense}", metavar="TERM", help=f"the {sense} value of a term")
+    parser.add_argument("--when", metavar="FORMULA", help="measure at a moment at which this holds, not at 0")
+    parser.add_argument(
+        "--precision",
+        metavar="P",
+        help="width of a bracket, in SI units (default: range/60; of a measure 0.1)",
+    )
+    add_search_options(parser, 6.0)
+    add_prevention_options(parser)
+    add_working_options(parser)
+    add_sharing_options(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, JSON, pictures")
+    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.engines.search.question import SearchOptions
+    from roadproof.frontends.api.exploring import explorables, explore_all
+    from roadproof.frontends.api.restricting import restricted
+    from roadproof.frontends.api.settings import setting
+
+    what, ranges = some_or_all(args), [_varied(text) for text in args.vary]
+    home = restricted(read_definitions(args, chosen_sets(args)), what=what, **restricting(args))
+    for name, _, _ in ranges:
+        if name in home.values:
+            raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")
+    place = setting(home, **where_asked(args))
+    means = SearchOptions(engine=args.engine, solver=args.solver, effort=read_effort(args))
+    measures: dict[Sense, str | None] = {"least": args.least or None, "greatest": args.greatest or None}
+    asked = explorables(home, what, place, means, ranges, measures, args.when, args.steps, args.precision)
+    folder = evidence_folder(args.out, args.json)
+    return hand_over(args, explore_all(asked, folder, read_hands(args), Counter(), warn, tell))
+
+
+def _varied(text: str) -> tuple[str, str, str]:
+    """``NAME=LOW:HIGH`` in its parts. Raises ``UsageError``."""
+    name, equals, ends = (part.strip() for part in text.partition("="))
+    low, colon, high = (part.strip() for part in ends.partition(":"))
+    if not (name and equals and low and colon and high):
+        raise UsageError(f"--vary {text}: write --vary NAME=LOW:HIGH, such as minDanger=0:3")
+    return name, low, high

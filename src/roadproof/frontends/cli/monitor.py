@@ -1,0 +1,114 @@
+"""``roadproof monitor``: where a formula holds on one trace."""
+
+import argparse
+import re
+import sys
+from pathlib import Path
+
+from roadproof.errors import UsageError
+from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.options import (
+    add_json_option,
+    add_parameter_option,
+    add_specification_options,
+    read_seconds,
+    write_json,
+)
+from roadproof.frontends.cli.search_options import named
+
+SUMMARY = "say where a formula holds on one trace: a drive, samples, or vehicles of a recording"
+
+_EXAMPLES = """\
+FORMULA is a formula or a scenario's number. TRACE is one of
+  drive.json               a drive file of roadproof witness; judged exactly, in dense time, unless
+                           --view recorded asks for samples of it; what the file says of parameters,
+                           options and set holds unless the command line says otherwise
+  samples.csv, .parquet    a row a time and vehicle, with the header
+                           time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width
+                           (SI units, s along the road, d to the left, front-left corner of the box)
+  highd/01_tracks.csv:12,15     vehicles of a recording: SV, POV (or SV, POV1, POV2); so for files of
+                           every format that roadproof evaluate takes, such as us101.xml:503,504
+
+exit codes: 0 true, 10 false, 20 undecided (it depends on what comes after the trace)
+
+examples:
+  roadproof monitor 4 drives/scenario-04-base.json
+  roadproof monitor 'initSafe(SV,POV)' samples.csv --road main-3
+  roadproof monitor 1 highd/01_tracks.csv:12,15 --set ext --picture pair.png
+  roadproof monitor 'F danger(SV,POV)' highd/01_tracks.csv:12,15 --frames 100-400 --end clip
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("formula", metavar="FORMULA", help="a formula, or a scenario's number")
+    parser.add_argument("trace", metavar="TRACE", help="a drive, samples, or vehicles of a recording")
+    add_specification_options(parser, None)
+    add_parameter_option(parser)
+    parser.add_argument(
+        "--lane",
+        dest="lanes",
+        metavar="[L=]LANE",
+        action="append",
+        default=[],
+        help="the lane that L stands for: its name, or a vehicle, whose lane at the start it is "
+        "(default: SV's, POV's for scenario 7, acceleration behind; a drive file names its own)",
+    )
+    parser.add_argument(
+        "--road", metavar="R", help="road of samples (default: NAME_road.toml beside the file, or main-2)"
+    )
+    parser.add_argument(
+        "--view", choices=("dense", "recorded"), help="how a drive file is read (default: dense)"
+    )
+    parser.add_argument("--dt", metavar="S", default="1/25", help="seconds between samples of a drive")
+    parser.add_argument("--frames", metavar="A-B", help="frames of a recording (default: all common ones)")
+    parser.add_argument(
+        "--end",
+        choices=("truncated", "clip"),
+        default="truncated",
+        help="what the end of a recorded trace means (default: truncated)",
+    )
+    parser.add_argument("--picture", metavar="FILE", type=Path, help="draw strips into FILE (.png or .svg)")
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.evidence.drive_file import load_drive
+    from roadproof.frontends.api.traces import monitor
+    from roadproof.library.scenarios import LANE
+
+    if args.picture is not None and args.picture.suffix not in (".png", ".svg"):
+        raise UsageError(f"--picture {args.picture}: name a file that ends in .png or .svg")
+    file = load_drive(Path(args.trace)) if args.trace.endswith(".json") else None
+    if file is not None:
+        args.set_name = args.set_name or file.set_name
+        args.options = [*(f"{name}={value}" for name, value in file.options.items()), *args.options]
+    found = monitor(
+        args.formula,
+        args.trace,
+        read_definitions(args, [args.set_name or "base"]),
+        dict(named(args.lanes, LANE)),
+        args.road,
+        args.view,
+        read_seconds("--dt", args.dt),
+        _frames(args.frames),
+        args.end,
+    )
+    for line in found.notes:
+        print(f"note: {line}", file=sys.stderr)
+    if args.json:
+        write_json(found.as_data(), args.json)
+    if args.json != "-":
+        print(found)
+    if args.picture is not None:
+        found.plot().save(args.picture)
+    return found.exit_code
+
+
+def _frames(text: str | None) -> tuple[int | None, int | None]:
+    if text is None:
+        return None, None
+    read = re.fullmatch(r"(\d{1,9})-(\d{1,9})", text)
+    if read is None:
+        raise UsageError(f"--frames {text[:40]}: write the first and the last frame, such as 100-400")
+    return int(read[1]), int(read[2])

@@ -1,0 +1,120 @@
+"""``roadproof preventable``: which initial values a driver prevents a collision from, exactly."""
+
+import argparse
+from pathlib import Path
+
+from roadproof.errors import UsageError
+from roadproof.frontends.cli.basis import asking, hand_over, read_definitions
+from roadproof.frontends.cli.numbers import (
+    add_effort_options,
+    add_sharing_options,
+    add_working_options,
+    whole,
+)
+from roadproof.frontends.cli.options import add_json_option, add_parameter_option, add_specification_options
+
+SUMMARY = "which initial values a driver model prevents a collision from: exact boundaries, drives, proofs"
+
+_EXAMPLES = """\
+examples:
+  roadproof preventable cut-in                            sheets for all models
+  roadproof preventable 1 --at dy0=2.2 --at Vy=0.5        drives of the scenario: they begin safe
+  roadproof preventable cut-in --model careful,r157 --at 'Ve0=60km/h' --at Vy=1 --out cut-in
+  roadproof preventable deceleration --at Ve0=60km/h,130km/h --along dx0=0:120
+  roadproof preventable deceleration --at dGdt=5    POV's braking grows by 5 m/s^3, and is not there at once
+  roadproof preventable cut-out --option cc_gate=none --param cc_delay=0.5
+  roadproof preventable cut-in --option cc_perception=overlap     another reading of the regulation
+  roadproof preventable cut-in --model careful --option cc_aeb=max    AEB after full wrap
+
+A plate varies two initial values and fixes the others. On each of its lines the ends of what is unpreventable
+are exact; a judged drive on each side follows the model, and touches the other vehicle, or never does. The
+lemmas say why the formula (--spec driver) is the boundary. The fuzzy safety model (fsm) is a controller that
+looks ten times a second: its lines are places decided one by one, and nothing is claimed between them.
+With --out: evidence, plates.csv, plates.png.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument(
+        "manoeuvre", metavar="MANOEUVRE", help="cut-in, cut-out, deceleration; or a scenario: 1, 2 or 4"
+    )
+    parser.add_argument(
+        "--model",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="careful, r157, eu1426, rss; by name only: fsm",
+    )
+    parser.add_argument(
+        "--at",
+        metavar="NAME=VALUE[,…]",
+        action="append",
+        default=[],
+        help="an initial value; several make several plates",
+    )
+    for word, what in (("along", "each line runs along"), ("across", "differs from line to line")):
+        parser.add_argument(f"--{word}", metavar="NAME=LOW:HIGH", help=f"the range of the value that {what}")
+    parser.add_argument(
+        "--lines", type=whole("--lines", 2), default=100, metavar="K", help="lines of a plate (default: 100)"
+    )
+    parser.add_argument("--no-lemmas", action="store_true", help="prove no lemmas")
+    add_specification_options(parser)
+    add_parameter_option(parser)
+    add_effort_options(parser, 60.0, "a lemma")
+    add_working_options(parser)
+    add_sharing_options(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, CSV, pictures")
+    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    add_json_option(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.drivers.manoeuvres import MANOEUVRES
+    from roadproof.drivers.models import DRIVERS, manoeuvre_of
+    from roadproof.frontends.api.preventing import preventable
+
+    if Path(DRIVERS) not in args.specs:
+        args.specs = [Path(DRIVERS), *args.specs]
+    kind = MANOEUVRES[manoeuvre_of(args.manoeuvre)[0]]
+    models = [name.strip() for text in args.model for name in text.split(",")]
+    told = asking(args, args.out)
+    found = preventable(
+        args.manoeuvre,
+        models,
+        dict(_named("--at", text) for text in args.at),
+        _range("--along", args.along, kind.line),
+        _range("--across", args.across, kind.across),
+        args.lines,
+        not args.no_lemmas,
+        read_definitions(args, [args.set_name]),
+        told["effort"],
+        told["timeout"],
+        told["out"],
+        told["jobs"],
+        told["progress"],
+        told["say"],
+    )
+    return hand_over(args, found)
+
+
+def _named(option: str, text: str) -> tuple[str, list[str]]:
+    name, equals, value = text.partition("=")
+    if not equals or not value.strip():
+        raise UsageError(
+            f"{option} {text}: write NAME=VALUE, or several with commas, such as Ve0=60km/h,90km/h"
+        )
+    return name.strip(), [x.strip() for x in value.split(",")]
+
+
+def _range(option: str, text: str | None, name: str) -> tuple[str, str] | None:
+    """The range that a text names. Raises ``UsageError`` where it is that of something else."""
+    if text is None:
+        return None
+    said, equals, value = text.partition("=")
+    low, colon, high = value.partition(":")
+    if not equals or not colon:
+        raise UsageError(f"{option} {text}: write {name}=LOW:HIGH")
+    if said.strip() != name:
+        raise UsageError(f"{option} {text}: here it is {name} that varies, so write {name}=LOW:HIGH")
+    return low.strip(), high.strip()

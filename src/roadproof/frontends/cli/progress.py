@@ -1,0 +1,127 @@
+"""How far a run is, on stderr: on a terminal one line that changes, else one every half minute.
+
+The lines of every half minute are printed by the process that watches this one (``cli.supervising``), so
+they come also while a solver keeps this one busy.
+"""
+
+import contextlib
+import os
+import sys
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from roadproof.runtime.progress import Stage
+
+QUIET = "ROADPROOF_QUIET"
+_BE_QUIET = "quiet"
+
+
+class _Listeners:
+    """Where word of the progress goes: ``pipe`` leads to the process that watches."""
+
+    pipe: int | None = None
+    quiet: bool = False
+
+
+_listeners = _Listeners()
+
+
+def report_to(pipe: int) -> None:
+    """Tell the process at the other end of ``pipe``, too."""
+    _listeners.pipe = pipe
+
+
+def be_quiet(quiet: bool = True) -> None:
+    """Say nothing from now on."""
+    _listeners.quiet = quiet or bool(os.environ.get(QUIET))
+    if _listeners.quiet:
+        _report(_BE_QUIET)
+
+
+def tell(text: str, last: bool = False) -> None:
+    """How far it is now, in one line; with ``last`` the line is left standing on a terminal."""
+    if _listeners.quiet:
+        return
+    _report(text)
+    if _is_terminal():
+        print(f"\r\033[K{text}", end="\n" if last else "", file=sys.stderr, flush=True)
+
+
+def note(line: str) -> None:
+    """A line of its own for something that is done."""
+    if _listeners.quiet:
+        return
+    _report(line)
+    clear()
+    print(line, file=sys.stderr, flush=True)
+
+
+def warn(line: str) -> None:
+    """A line that is said in any case, as it is about what was found and not about how far it is."""
+    clear()
+    print(line, file=sys.stderr, flush=True)
+
+
+ALIKE = ("recordings",)
+"""Pieces that take about as long as each other. One claim or search may take as long as all others."""
+LEAST_DONE = 2
+"""So many pieces must be done before the time for the others is estimated from them."""
+
+
+class Counter:
+    """Tells how many of many are done; where pieces are alike, also how long the rest will take about."""
+
+    def __init__(self) -> None:
+        self.begun = time.monotonic()
+        self.known: int | None = None
+
+    def __call__(self, done: int, total: int, what: str) -> None:
+        """So many are done of so many; ``what`` is the word for many of them."""
+        if self.known is None or done < self.known:
+            self.begun, self.known = time.monotonic(), done
+        known = what in ALIKE and done - self.known >= LEAST_DONE
+        seconds = time.monotonic() - self.begun
+        left = time_left(seconds, done - self.known, total - self.known) if known else ""
+        tell(f"{done} of {total} {what}{left}", last=done == total)
+
+
+def tell_stage(stage: "Stage") -> None:
+    """What the run is at."""
+    tell(str(stage))
+
+
+def clear() -> None:
+    """Make room for a line of results on a terminal."""
+    if not _listeners.quiet and _is_terminal():
+        print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+def _is_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
+def _report(text: str) -> None:
+    if _listeners.pipe is not None:
+        with contextlib.suppress(OSError):
+            os.write(_listeners.pipe, text.replace("\n", " ").encode()[:1000] + b"\n")
+
+
+def wants_quiet(text: str) -> bool:
+    """Whether a line that came through the pipe asks for silence."""
+    return text == _BE_QUIET
+
+
+def time_left(seconds: float, done: int, total: int) -> str:
+    """``, about 3 min left`` after so many seconds for ``done`` of ``total`` jobs; empty where unknown."""
+    if not 0 < done < total:
+        return ""
+    return f", about {duration(seconds / done * (total - done))} left"
+
+
+def duration(seconds: float) -> str:
+    """Seconds in words: 40 s, 3 min, 2 h 10 min."""
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"

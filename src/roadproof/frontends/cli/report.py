@@ -1,0 +1,53 @@
+"""``roadproof report``: results of any kind as one page that needs no network."""
+
+import argparse
+from pathlib import Path
+
+from roadproof.frontends.cli.numbers import add_working_options
+from roadproof.frontends.cli.options import add_spec_option
+from roadproof.frontends.cli.progress import Counter, clear
+
+SUMMARY = "one page about results: drives, proofs, matrices, tables; it needs no network"
+
+_EXAMPLES = """\
+examples:
+  roadproof report drives -o drives.html                 a folder of witness --out, each drive with its viewer
+  roadproof report proofs overlap results -o all.html    folders of prove, overlap and evaluate on one page
+  roadproof report answer.json -o answer.html            an answer of --json
+
+Evidence is checked again while the page is made, as by `roadproof check`, and each claim says what was found.
+The page is one file: it opens without a server, prints, and follows the system's choice of light or dark.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument(
+        "results",
+        metavar="RESULT",
+        nargs="+",
+        type=Path,
+        help="a folder of --out, a file of evidence or of --json",
+    )
+    parser.add_argument("-o", "--out", metavar="FILE", type=Path, required=True, help="the page, NAME.html")
+    parser.add_argument("--title", metavar="TEXT", help="what the page is called")
+    parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who checks (default: z3)")
+    add_spec_option(parser, "a specification file that the results were made with")
+    add_working_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.frontends.api.reporting import page
+
+    found = page(
+        *args.results,
+        out=args.out,
+        title=args.title,
+        solver=args.solver,
+        specs=args.specs,
+        jobs=args.jobs,
+        progress=Counter(),
+    )
+    clear()
+    print(found)
+    return found.exit_code

@@ -1,0 +1,206 @@
+"""``roadproof show``: a scenario, a definition or a formula, as text, LaTeX or JSON."""
+
+import argparse
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from roadproof.errors import InputError
+from roadproof.evidence.answers import show as kept
+from roadproof.evidence.codec import write
+from roadproof.evidence.heading import heading
+from roadproof.frontends.cli.options import add_specification_options, select_specification, write_json
+from roadproof.library.elaborate import read_claim, signature
+from roadproof.library.scenarios import name_of, number_in
+from roadproof.library.specification import Specification, unknown
+from roadproof.library.uses import definitions_used, parameters_used
+from roadproof.library.words import Words, words_of
+from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic.latex import align, latex
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.restore import as_syntax, term_as_syntax
+from roadproof.logic.show import decimal, text
+from roadproof.logic.syntax import Binding, Claim, Definition, ParameterDeclaration, SetBlock
+from roadproof.logic.tree import tree
+from roadproof.verdict import ExitCode
+
+SUMMARY = "show a scenario, a definition or a formula"
+
+_WIDTH = 100
+_NAME = re.compile(r"([A-Za-z_]\w*)(?:@([A-Za-z_]\w*))?")
+_EXAMPLES = """\
+examples:
+  roadproof show 4                                scenario 4, deceleration ahead, and its definitions
+  roadproof show cutIn --set ext                  a definition as spec set ext has it
+  roadproof show 4 --expand                       scenario_4 as one formula without definitions
+  roadproof show 'scenario_8(SV,POV,L) -> F danger(SV,POV)' --format latex
+"""
+
+
+@dataclass(frozen=True)
+class About:
+    """A scenario in words, and the set that it is of where that changes another."""
+
+    words: Words
+    other: SetBlock | None
+
+
+@dataclass(frozen=True)
+class Exhibit:
+    """What is on show: a claim, or definitions with the parameters that they speak of, or all three.
+
+    ``about``: the scenario that it is, in words.
+    """
+
+    claim: Claim | None
+    definitions: tuple[Definition, ...] = ()
+    parameters: tuple[ParameterDeclaration, ...] = ()
+    about: About | None = None
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("what", metavar="WHAT", help="a scenario's number, a definition's name, or a formula")
+    add_specification_options(parser)
+    parser.add_argument("--expand", action="store_true", help="write every definition out, as one formula")
+    parser.add_argument("--format", choices=("text", "latex", "json"), default="text", help="default: text")
+
+
+def run(args: argparse.Namespace) -> int:
+    specification = select_specification(args)
+    exhibit = _find(specification, args.what.strip(), args.expand)
+    if args.format == "json":
+        write_json(_as_json(exhibit, specification), "-")
+    else:
+        print(_as_latex(exhibit) if args.format == "latex" else _as_text(exhibit))
+    return ExitCode.AS_EXPECTED
+
+
+def _find(specification: Specification, what: str, expand: bool) -> Exhibit:
+    """``what``, elaborated before it is shown so that mistakes in it are found. Raises ``InputError``."""
+    named = _NAME.fullmatch(name_of(int(what)) if re.fullmatch(r"[0-9]{1,4}", what) else what)
+    if named is None or named[0] in ("true", "false"):
+        return _find_claim(specification, what, expand)
+    if named[2] is not None:
+        specification = specification.in_set(named[2])
+    exhibit = _find_definition(specification, named[1], expand)
+    number = number_in(named[1])
+    return exhibit if number is None else replace(exhibit, about=_about(specification, number))
+
+
+def _about(specification: Specification, number: int) -> About:
+    block = specification.library.sets[specification.set_name]
+    return About(words_of(specification, number), block if block.parent else None)
+
+
+def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibit:
+    claim = parse_claim(what)
+    formula = read_claim(specification, what).formula
+    if expand:
+        return Exhibit(Claim(claim.given, as_syntax(formula, expand=True)))
+    definitions = _described(specification, definitions_used(specification, claim.body))
+    return Exhibit(claim, definitions, parameters_used(specification.library, claim.body, definitions))
+
+
+def _find_definition(specification: Specification, name: str, expand: bool) -> Exhibit:
+    if name not in specification.definitions:
+        raise InputError(unknown("definition", name, specification.definitions))
+    claim = _application(specification, specification.definitions[name])
+    if not expand:
+        read_claim(specification, text(_compared(claim) if _is_number(specification, claim) else claim))
+        definitions = _described(specification, definitions_used(specification, claim.body))
+        return Exhibit(None, definitions, parameters_used(specification.library, claim.body, definitions))
+    if not _is_number(specification, claim):
+        return Exhibit(Claim(claim.given, as_syntax(read_claim(specification, text(claim)).formula, True)))
+    comparison = read_claim(specification, text(_compared(claim))).formula
+    assert isinstance(comparison, f.Compare), "a number compared with zero is a comparison"
+    return Exhibit(Claim(claim.given, term_as_syntax(comparison.left)))
+
+
+def _described(specification: Specification, definitions: Sequence[Definition]) -> tuple[Definition, ...]:
+    """The definitions with what their descriptions mention written out."""
+    return tuple(replace(definition, doc=specification.describe(definition)) for definition in definitions)
+
+
+def _application(specification: Specification, definition: Definition) -> Claim:
+    """``definition`` applied to its own parameters, the members of a group of vehicles one by one."""
+    roles = signature(specification, definition.name)
+    given: list[Binding] = []
+    for binding in definition.parameters:
+        is_group = binding.sort == "vehicles"
+        members = len(roles) - len(definition.parameters) + 1 if is_group else 1
+        sort = "vehicle" if is_group else binding.sort
+        given += [Binding(role, sort) for role in roles[len(given) : len(given) + members]]
+    return Claim(tuple(given), syntax.Call(definition.name, tuple(syntax.Name(role) for role in roles)))
+
+
+def _compared(claim: Claim) -> Claim:
+    """A claim about a number, which alone would be none."""
+    return Claim(claim.given, syntax.Binary(">=", claim.body, syntax.Literal_(Fraction(0))))
+
+
+def _is_number(specification: Specification, claim: Claim) -> bool:
+    """Whether the claim compares as a number does; mistakes elsewhere in it make no difference here."""
+    try:
+        read_claim(specification, text(_compared(claim)))
+    except InputError:
+        return False
+    return True
+
+
+def _as_text(exhibit: Exhibit) -> str:
+    blocks = [
+        "\n".join(f"# {line}" for line in _said(exhibit.about)),
+        "" if exhibit.claim is None else text(exhibit.claim, _WIDTH),
+        "\n".join(text(definition, _WIDTH) for definition in exhibit.definitions),
+        "\n".join(_declaration(parameter) for parameter in exhibit.parameters),
+    ]
+    return "\n\n".join(block for block in blocks if block)
+
+
+def _said(about: About | None) -> Iterator[str]:
+    """The sentence first; what a set changes is said last."""
+    if about is None:
+        return
+    if about.words.sentence:
+        yield about.words.sentence
+        yield str(about.words)
+    if about.other is not None and about.other.doc:
+        yield f"set {about.other.name}: {about.other.doc}"
+
+
+def _declaration(parameter: ParameterDeclaration) -> str:
+    bound = f" where {parameter.name} {parameter.bound} 0" if parameter.bound else ""
+    sign = "-" if parameter.value < 0 else ""
+    value = f"{sign}{decimal(abs(parameter.value))} {parameter.unit}"
+    return f'param {parameter.name} = {value}{bound} "{parameter.doc}"'
+
+
+def _as_latex(exhibit: Exhibit) -> str:
+    blocks = [
+        "" if exhibit.claim is None else f"\\[\n{latex(exhibit.claim)}\n\\]",
+        align(exhibit.definitions) if exhibit.definitions else "",
+    ]
+    return "\n\n".join(block for block in blocks if block)
+
+
+def _as_json(exhibit: Exhibit, specification: Specification) -> dict[str, Any]:
+    claim = exhibit.claim
+    answer = kept.Answer(
+        **heading(kept.SCHEMA, specification.library),
+        set=specification.set_name,
+        options=specification.options,
+        scenario=None if exhibit.about is None else exhibit.about.words,
+        formula=None if claim is None else kept.ShownFormula(text=text(claim), tree=tree(claim)),
+        definitions=tuple(
+            kept.Definition(name=x.name, text=text(x), tree=tree(x)) for x in exhibit.definitions
+        ),
+        parameters=tuple(
+            kept.Parameter(name=p.name, value=str(p.value), unit=p.unit, doc=p.doc)
+            for p in exhibit.parameters
+        ),
+    )
+    return write(answer)

@@ -1,0 +1,194 @@
+"""``roadproof simulate``: recordings in the highD format, made of simulated traffic."""
+
+import argparse
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.errors import InputError, UsageError
+from roadproof.frontends.cli.numbers import LARGEST_SEED, add_working_options, decimal, whole
+from roadproof.frontends.cli.progress import note
+from roadproof.verdict import ExitCode
+
+_NUMBERS = re.compile(r"\d{1,2}(-\d{1,2})?(,\d{1,2}(-\d{1,2})?)*")
+
+if TYPE_CHECKING:
+    from roadproof.evidence.drive_file import DriveFile
+
+SUMMARY = "make recordings in the highD format from simulated traffic"
+
+_EXAMPLES = """\
+Car following is IDM (Treiber et al. 2000), lane changes are MOBIL (Kesting et al. 2007). The same seed
+gives the same files. With --plant, planted.csv tells which pair does what, when; its columns are those
+of matches.csv.
+
+examples:
+  roadproof simulate --out traffic --recordings 2 --seconds 60 --seed 1
+  roadproof simulate --out traffic --recordings 60 --jobs 2
+  roadproof simulate --out traffic --seconds 120 --ramp merge
+  roadproof simulate --out traffic --seconds 120 --plant 1-8
+  roadproof witness 1 2 --set ext --out drives; roadproof simulate --out traffic --plant drives
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the files go")
+    parser.add_argument(
+        "--recordings", metavar="N", type=whole("--recordings", 1), default=1, help="how many (default: 1)"
+    )
+    parser.add_argument(
+        "--seconds", metavar="S", type=decimal("--seconds"), default=990.0, help="length (default: 990)"
+    )
+    parser.add_argument(
+        "--seed",
+        metavar="K",
+        type=whole("--seed", 0, LARGEST_SEED),
+        default=1,
+        help="0 to 2^64 - 1 (default: 1)",
+    )
+    parser.add_argument(
+        "--lanes", metavar="N", type=whole("--lanes", 1), default=3, help="each way (default: 3)"
+    )
+    parser.add_argument(
+        "--flow",
+        metavar="F",
+        type=decimal("--flow"),
+        default=3350.0,
+        help="vehicles an hour and way (default: 3350)",
+    )
+    parser.add_argument(
+        "--truck-share", metavar="P", type=float, default=0.18, help="share of trucks (default: 0.18)"
+    )
+    parser.add_argument(
+        "--section",
+        metavar="M",
+        type=decimal("--section"),
+        default=420.0,
+        help="length of the road in m (default: 420)",
+    )
+    parser.add_argument(
+        "--ramp",
+        choices=("none", "merge", "depart"),
+        default="none",
+        help="an on-ramp or an off-ramp of the lower carriageway, with XX_road.toml (default: none)",
+    )
+    parser.add_argument(
+        "--ramp-flow",
+        metavar="F",
+        type=decimal("--ramp-flow"),
+        default=400.0,
+        help="vehicles an hour on the ramp (default: 400)",
+    )
+    parser.add_argument(
+        "--plant",
+        metavar="PATH|N,N",
+        action="append",
+        default=[],
+        help="weave in drives: a drive file, a folder of them, or scenarios to find drives for, such as "
+        "1-8; may be repeated",
+    )
+    parser.add_argument(
+        "--plant-set", metavar="S", default="base", help="spec set of --plant N,N (default: base)"
+    )
+    add_working_options(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.frontends.api.simulating import simulate
+
+    if args.recordings > 999:
+        raise UsageError(f"--recordings {args.recordings}: between 1 and 999 can be made")
+    if args.plant and args.ramp != "none":
+        raise UsageError(f"--plant with --ramp {args.ramp}: drives are planted on main roads only; drop one")
+    drives = tuple(_drives(args.plant, args.plant_set))
+    if args.plant and not drives:
+        raise InputError(f"--plant {' '.join(args.plant)}: no drive that can be planted")
+    road = {"lanes": args.lanes, "flow": args.flow, "truck_share": args.truck_share, "section": args.section}
+    road |= {"ramp": args.ramp, "ramp_flow": args.ramp_flow}
+    made = {"recordings": args.recordings, "seconds": args.seconds, "seed": args.seed}
+    found = simulate(args.out, **made, **road, plant=drives, jobs=args.jobs, tell=note)
+    for line in found.left_out:
+        _warn(f"not planted: {line}")
+    if drives and not found.planted:
+        raise InputError("--plant: no drive could be planted; simulate more seconds, or find other drives")
+    planted = f", {len(found.planted)} drives planted" if drives else ""
+    print(f"{args.recordings} recordings of {args.seconds:g} s in {args.out}{planted}")
+    return ExitCode.AS_EXPECTED
+
+
+def _drives(texts: Sequence[str], set_name: str) -> "Iterator[DriveFile]":
+    """The drives that were asked for and can be planted; of the others it is said why not."""
+    for text in texts:
+        if _NUMBERS.fullmatch(text):
+            yield from _found(text, set_name)
+        else:
+            yield from _read(Path(text))
+
+
+def _read(path: Path) -> "Iterator[DriveFile]":
+    """The drives of a file or a folder."""
+    from roadproof.evidence.drive_file import load_drive
+    from roadproof.evidence.judged import judge_file
+    from roadproof.library.specification import bundled_library
+    from roadproof.recordings.simulate.planting import plantable
+
+    files = [x for x in sorted(path.glob("*.json")) if _may_be_drive(x)] if path.is_dir() else [path]
+    if not files:
+        raise InputError(f"--plant {path}: the folder holds no drive files (*.json)")
+    for name in files:
+        file = load_drive(name)
+        reason = plantable(file) or judge_file(file, bundled_library()).reason
+        if reason:
+            _warn(f"not planted: {name}: {reason}")
+        else:
+            yield file
+
+
+def _may_be_drive(path: Path) -> bool:
+    """Whether a file of a folder is no other evidence, as ``roadproof witness`` writes beside drives."""
+    from roadproof.evidence import certificate, journal
+    from roadproof.evidence.strict import read_json
+
+    content = read_json(path)
+    kind = content.get("schema") if isinstance(content, dict) else None
+    return kind not in (*certificate.SCHEMAS_READ, journal.SCHEMA)
+
+
+def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
+    """A drive for each scenario of ``text`` (such as 1-3,7), whose danger lasts up to its horizon.
+
+    A recorded trace ends with its last danger, so whatever else the scenario needs has happened then;
+    L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (semantics §7).
+    """
+    from roadproof.engines.search.ask import Search, ask
+    from roadproof.engines.search.question import Setting
+    from roadproof.library import scenarios as s
+    from roadproof.library.bind import default_values
+    from roadproof.library.compose import both
+    from roadproof.library.specification import bundled_library
+    from roadproof.world.models import load_road
+
+    specification = bundled_library().select(set_name)
+    for item in text.split(","):
+        low, _, high = item.partition("-")
+        for number in range(int(low), int(high or low) + 1):
+            if not 1 <= number <= 8:
+                raise UsageError(f"--plant {text}: recordings show a main road, so scenarios 1 to 8")
+            scenario, setting = s.Scenario(number, set_name), Setting(load_road("main-2"))
+            claim, vehicles = s.applied(specification, scenario), s.vehicles_of(specification, scenario)
+            latest = setting.horizon - default_values(bundled_library())[s.MIN_DANGER]
+            alone = s.alone_in_lane(specification, s.lane_owner(specification, scenario))
+            lasting = s.danger_at(specification, *s.endangered(vehicles), latest)
+            outcome = ask(Search(specification, both(claim, alone, lasting), setting))
+            if outcome.drives:
+                yield replace(outcome.drives[0].file, scenario=number, formula=claim.text)
+            else:
+                _warn(f"not planted: scenario {number}, {set_name}: {outcome.verdict}: {outcome.reason}")
+
+
+def _warn(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

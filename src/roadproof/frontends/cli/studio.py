@@ -1,0 +1,42 @@
+"""``roadproof studio``: a page in the browser in which formulas are written and tried."""
+
+import argparse
+from pathlib import Path
+
+SUMMARY = "write formulas and see what they mean, on a page in the browser"
+
+_EXAMPLES = """\
+examples:
+  roadproof studio                          opens the browser
+  roadproof studio mine.spec drive.json     with definitions of yours, and a drive
+  roadproof studio --no-browser --port 9000
+
+The page is served on this machine's loopback interface only, at the address that is printed; its token is
+made anew at each start. Nothing is sent anywhere else. Ctrl-C ends it. Needs the extra: 'roadproof[studio]'.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.set_defaults(quiet=True)  # how far it is, the page says
+    parser.add_argument(
+        "files", metavar="FILE", nargs="*", type=Path, help="a .spec file, or a drive (.json)"
+    )
+    parser.add_argument("--port", type=int, metavar="N", help="default: 8642, or any that is free")
+    parser.add_argument("--no-browser", action="store_true", help="print the address, and open nothing")
+
+
+def run(args: argparse.Namespace) -> int:
+    from roadproof.errors import UsageError
+    from roadproof.frontends.studio.server import Studio, serve
+    from roadproof.frontends.studio.start_page import begin_with
+    from roadproof.verdict import ExitCode
+
+    if args.port is not None and not 0 <= args.port < 65536:
+        raise UsageError(f"--port {args.port}: write a number from 1 to 65535, or 0 for any that is free")
+    serve(Studio(begin_with(args.files)), args.port, not args.no_browser, _say)
+    return ExitCode.AS_EXPECTED
+
+
+def _say(address: str) -> None:
+    print(f"roadproof studio: {address}\nCtrl-C ends it.", flush=True)

@@ -1,0 +1,4 @@
+"""Answers as text, tables, pictures, CSV files and HTML pages.
+
+Imports analyses for their answers; neither solvers nor the API.
+"""

@@ -1,0 +1,240 @@
+"""What a catalogue tests, to look at: lines, a table for a spreadsheet, a report for CI, a matrix."""
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
+from textwrap import indent
+from typing import Any
+from xml.etree import ElementTree as xml
+
+from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, Figure, kind_of
+from roadproof.analysis.catalogue.gaps import PREFIX
+from roadproof.analysis.catalogue.ranges import Span
+from roadproof.analysis.catalogue.result import Result
+from roadproof.analysis.catalogue.tested import Remark, Target, Tested
+from roadproof.frontends.report import catalogue_drivers
+from roadproof.frontends.report.figures import as_bytes, count_axis, make_figure
+from roadproof.library.scenarios import number_in
+
+MOST_TOLD = 40
+_SURE, _POSSIBLE, _NONE = "#1f5fbf", "#9dbbe3", "#b5473c"
+_INCH_A_LETTER = 0.06  # of labels at 7 points
+
+
+def as_text(
+    tests: int,
+    found: Tested,
+    notes: Sequence[str],
+    counted: Sequence[Figure],
+    drivers: Iterable[str] = (),
+) -> str:
+    """How much is tested, in ``counted`` figures, what is missing, and every remark.
+
+    ``drivers``: lines on what becomes of tests under driver models.
+    """
+    lines = [f"{tests} test{'s' * (tests != 1)}", *_figures(counted), *_gaps(found), *drivers]
+    lines += _listed("not tested", [f"{x.name}: {x.words}" for x in found.missing])
+    for heading, remarks in headings(found).items():
+        lines += _listed(heading, [remark_line(x) for x in remarks])
+    return "\n".join([*lines, *(f"note: {x}" for x in notes), _summary(found)])
+
+
+def kinds(found: Tested) -> dict[str, list[Target]]:
+    """The targets by what they are."""
+    return {kind: [x for x in found.targets if kind_of(x.name) == kind] for kind in (SCENARIOS, CLASSES)}
+
+
+def _figures(counted: Sequence[Figure]) -> Iterator[str]:
+    """A line a figure, those of road sectors below; which spec set, where there are several."""
+    sets = dict.fromkeys(x.set_name for x in counted)
+    for x in counted:
+        where = f"set {x.set_name}, " if len(sets) > 1 and not x.sector else ""
+        what = f"  {x.sector.replace('_', ' and ')}" if x.sector else f"{where}{x.kind}"
+        yield f"{what}: {x.tested} of {x.total} are tested"
+
+
+def _gaps(found: Tested) -> Iterator[str]:
+    """What is known of gaps beyond figures."""
+    gaps = found.gaps
+    if gaps.empty:
+        yield f"classes of gaps that are proved empty: {len(gaps.empty)}"
+    if not gaps.asked and any(x.tested or x.possible for x in gaps.targets):
+        shown = sum(bool(x.tested) for x in gaps.targets)
+        yield f"classes of gaps: {shown} of {gaps.total} are shown (--gaps: which others there are)"
+
+
+def range_lines(spans: Sequence[Span], horizon: Fraction) -> Iterator[str]:
+    """What part of the ranges nobody tests, a line a number, and within which limits that is."""
+    if spans:
+        yield (
+            f"how tests begin, of how drives can that were found ({horizon} s of driving, cars, at most 80 m "
+            "apart at the start):"
+        )
+    for name in dict.fromkeys(x.target for x in spans):
+        yield f"  {name}"
+        for x in (y for y in spans if y.target == name):
+            tested, can = (f"{low:.4g} to {high:.4g}" for low, high in (x.tested, x.reached))
+            yield f"    {x.term}: {tested} of {can} {x.unit}; {x.share:.0%} is not tested"
+
+
+def tables(result: Result) -> dict[str, bytes]:
+    """The tables beside an index, by file name."""
+    tests = tuple(x.id for x in result.catalogue.entries)
+    found, in_force = result.tested, result.in_force
+    made = {
+        "matrix.csv": as_csv(tests, found, in_force),
+        "figures.csv": figures_csv(result.figures),
+        "drivers.csv": catalogue_drivers.as_csv(result.decisions),
+        "junit.xml": as_junit(tests, found, in_force),
+    }
+    return {name: text.encode() for name, text in made.items()}
+
+
+def figures_csv(counted: Sequence[Figure]) -> str:
+    """The figures as a table."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["set", "kind", "sector", "tested", "total"])
+    writer.writerows([x.set_name, x.kind, x.sector, x.tested, x.total] for x in counted)
+    return out.getvalue()
+
+
+def headings(found: Tested) -> dict[str, Sequence[Remark]]:
+    """The remarks under what is wrong."""
+    return {
+        "readers contradict each other": found.contradictions,
+        "not what they claim": found.faults,
+        "in doubt": found.doubts,
+        "say the same": found.alike,
+    }
+
+
+def remark_line(remark: Remark) -> str:
+    return f"{' and '.join(remark.tests)}: {remark.told}"
+
+
+def _listed(heading: str, lines: Sequence[str]) -> Iterator[str]:
+    if lines:
+        yield f"{heading}:"
+        yield from (indent(line, "  ") for line in lines[:MOST_TOLD])
+        if len(lines) > MOST_TOLD:
+            yield f"  … {len(lines) - MOST_TOLD} more"
+
+
+def _summary(found: Tested) -> str:
+    wrong = [
+        f"{len(those)} {word}"
+        for those, word in (
+            (found.missing, "not tested"),
+            (found.faults, "not what they claim"),
+            (found.doubts, "in doubt"),
+            (found.contradictions, "contradicting"),
+        )
+        if those
+    ]
+    return ", ".join(wrong) or "complete"
+
+
+def as_csv(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> str:
+    """A row a test, a column a scenario, class or gap: ``x`` shown or implied, ``o`` by some drives of it.
+
+    ``in_force``: what was asked otherwise than by default, which the first cell says.
+    """
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["; ".join(["test", *in_force]), *(x.name for x in found.all_targets)])
+    for test in tests:
+        writer.writerow([test, *(_mark(test, x) for x in found.all_targets)])
+    return out.getvalue()
+
+
+def _mark(test: str, target: Target) -> str:
+    return "x" if test in target.tested else "o" if test in target.possible else ""
+
+
+def as_junit(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> str:
+    """A suite of the tests, which fail where they are not what they claim, and one of all targets.
+
+    ``in_force``: what was asked otherwise than by default, a property of each suite.
+    """
+    suites = xml.Element("testsuites", name="roadproof catalogue")
+    wrong = {x.tests[0]: x.told for x in (*found.doubts, *found.faults, *found.contradictions)}
+    _suite(suites, "tests", {test: wrong.get(test, "") for test in tests}, in_force)
+    targets = (*found.targets, *(found.gaps.targets if found.gaps.asked else ()))
+    missing = {x.name: f"no test shows {x.words}" for x in found.missing}
+    in_doubt = {name: f"in doubt: {reason}" for name, reason in found.gaps.open.items()}
+    _suite(suites, "tested", {x.name: (missing | in_doubt).get(x.name, "") for x in targets}, in_force)
+    xml.indent(suites)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + xml.tostring(suites, "unicode") + "\n"
+
+
+def _suite(suites: xml.Element, name: str, cases: dict[str, str], in_force: Sequence[str]) -> None:
+    failures = sum(bool(told) for told in cases.values())
+    suite = xml.SubElement(suites, "testsuite", name=name, tests=str(len(cases)), failures=str(failures))
+    if in_force:
+        properties = xml.SubElement(suite, "properties")
+        for told in in_force:
+            xml.SubElement(properties, "property", name="asked with", value=told)
+    for case, told in cases.items():
+        element = xml.SubElement(suite, "testcase", classname=name, name=case)
+        if told:
+            xml.SubElement(element, "failure", message=told)
+
+
+def draw_matrix(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> dict[str, bytes]:
+    """Tests over scenarios and gaps, how many tests each class has, and each class of gaps, if that is asked:
+    ``{"png": …, "svg": …}``.
+    """
+    scenarios, classes = kinds(found).values()
+    gaps = [x for x in found.gaps.targets if x.tested or x.possible]
+    bars = {"tests of each class (red: none)": classes}
+    bars |= {"tests of each class of gaps (red: none)": [*found.gaps.targets] if found.gaps.asked else []}
+    bars = {title: those for title, those in bars.items() if those}
+    columns = [*scenarios, *gaps]
+    names = [f"{number_in(x.name)} {x.words}" for x in scenarios]
+    names += [x.name.removeprefix(PREFIX).replace("_", " ") + " (gap)" for x in gaps]
+    labels = _INCH_A_LETTER * max(map(len, names), default=0)
+    heights = [0.16 * len(tests) + labels + 1.2, *(2.2 + 0.6 * ("gaps" in title) for title in bars)]
+    longest = max(map(len, bars.values()), default=0)
+    width = max(7.0, 1.5 + 0.26 * len(columns), 1.0 + 0.15 * longest)
+    figure, axes = make_figure(heights, width=width)
+    above = axes[0]
+    for x, target in enumerate(columns):
+        for y, test in enumerate(tests):
+            mark = _mark(test, target)
+            if mark:
+                above.scatter(x, y, s=26, marker="s", color=_SURE if mark == "x" else _POSSIBLE)
+    if gaps:
+        above.axvline(len(scenarios) - 0.5, color="#888888", lw=0.8)
+    above.xaxis.tick_top()  # before labels have colours, since it draws others
+    above.set_xticks(range(len(columns)), names, fontsize=7, rotation=90)
+    for label, target in zip(above.get_xticklabels(), columns, strict=True):
+        label.set_color("black" if target.tested else _NONE)
+    above.set_yticks(range(len(tests)), tests, fontsize=6)
+    wrong = {test for x in (*found.faults, *found.contradictions) for test in x.tests}
+    for label, test in zip(above.get_yticklabels(), tests, strict=True):
+        label.set_color(_NONE if test in wrong else "black")
+    above.grid(color="#eeeeee", lw=0.6)
+    above.set_axisbelow(True)
+    above.set_ylim(len(tests) - 0.5, -0.5)
+    above.set_xlim(-0.6, len(columns) - 0.4)
+    title = "scenarios, gaps and tests; red: not tested, not what it claims; light: by some drives of it only"
+    above.set_title("\n".join([title, *in_force]), fontsize=8)
+    for below, (title, those) in zip(axes[1:], bars.items(), strict=True):
+        _draw_bars(below, title, those)
+    return as_bytes(figure)
+
+
+def _draw_bars(axes: Any, title: str, targets: Sequence[Target]) -> None:
+    """How many tests each target has."""
+    counts = [len(x.tested) for x in targets]
+    axes.bar(range(len(targets)), counts, color=_SURE, width=0.8)
+    missing = [k for k, count in enumerate(counts) if not count]
+    axes.scatter(missing, [0] * len(missing), marker="x", s=16, color=_NONE, zorder=3)
+    labels = [x.name.removeprefix("class_").removeprefix(PREFIX).replace("_", " ") for x in targets]
+    axes.set_xticks(range(len(targets)), labels, fontsize=5, rotation=90)
+    axes.set_xlim(-0.8, len(targets) - 0.2)
+    count_axis(axes.yaxis)
+    axes.tick_params(axis="y", labelsize=7)
+    axes.set_title(title, fontsize=8)

@@ -1,0 +1,184 @@
+"""Settled claims to look at: a line, a table, or all details."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby
+
+from roadproof.analysis.claims import Answered, Claims
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.judged import Judged
+from roadproof.evidence.refutation import Countermodel
+from roadproof.library.motion import Assumed, is_moving, statement
+from roadproof.library.scenarios import LANE
+from roadproof.library.specification import Specification
+from roadproof.library.words import called_by, legend
+from roadproof.world.motion import state_at
+from roadproof.world.road import Road
+
+
+def line(answered: Answered) -> str:
+    """The verdict in one line."""
+    task = answered.task
+    scenario = "" if task.scenario is None else f" {task.scenario}"
+    mark = "" if answered.verdict is answered.expected else f", expected {answered.expected}"
+    seconds = answered.settled.result.seconds
+    at = f" at {', '.join(task.assuming)}" if task.assuming else ""
+    return f"{task.id}{scenario} {task.set_name}{at}: {verdict(answered)}{mark} ({seconds:.2f} s)"
+
+
+def verdict(answered: Answered) -> str:
+    """The verdict; of a claim that is refuted also by what, since not every trace can be driven."""
+    by = answered.settled.refuted_by
+    return str(answered.verdict) if by is None else f"{answered.verdict} by a {by}"
+
+
+def table(answered: Sequence[Answered], specification: Specification) -> str:
+    """A line for each property and set; below it what was not as expected.
+
+    At the end at which values claims were settled, and what scenarios are called.
+    """
+    rows: list[str] = []
+    for (name, title, set_name), group in groupby(
+        answered, key=lambda s: (s.task.id, s.task.title, s.task.set_name)
+    ):
+        found = list(group)
+        verdicts = sorted({verdict(s) for s in found})
+        expected = found[0].expected
+        slowest = max(s.settled.result.seconds for s in found)
+        mark = "" if all(s.verdict is expected for s in found) else f"   expected {expected}"
+        count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
+        rows.append(
+            f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
+        )
+        rows += [f"      {line(s)} {s.settled.result.reason}" for s in found if s.verdict is not s.expected]
+    values = sorted({value for s in answered for value in s.task.assuming})
+    rows += [f"each at those of {', '.join(values)} that it speaks of"] if values else []
+    words = called_by(specification, (s.task.claim for s in answered))
+    rows += [f"  {line}" for line in legend(words)]
+    return "\n".join(rows)
+
+
+def details(answered: Answered, asked: Claims) -> str:
+    """The verdict with its evidence: certificate in numbers, drive or trace.
+
+    Also what scenarios are called, and what is supposed of own signals.
+    """
+    task, settled = answered.task, answered.settled
+    result = settled.result
+    lines = [f"{verdict(answered)}  {statement(task.assuming, ' '.join(task.claim.split()))}"]
+    lines += [
+        f"  {words}" for words in called_by(asked.specification_of(task), [task.claim]).values() if words.name
+    ]
+    within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
+    lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
+    lines += [f"  {said}" for said in asked.supposed(task)]
+    if result.reason:
+        lines.append(f"  {result.reason}")
+    if result.certificate is not None:
+        certificate = result.certificate
+        count = sum(len(texts) for texts in certificate.instances.values())
+        lines.append(
+            f"  certificate: {count} instance{'s' if count != 1 else ''}, "
+            f"{len(certificate.lemmas)} lemma{'s' if len(certificate.lemmas) != 1 else ''}"
+            + _values_of(certificate)
+        )
+        lines += _show_premises(certificate.assumed)
+    if settled.drive is not None:
+        lines += _show_drive(settled.drive)
+        lines += [f"  this drive lies outside the {settled.beyond}"] if settled.beyond else []
+    elif result.countermodel is not None:
+        lines += _show_countermodel(result.countermodel)
+    return "\n".join(lines)
+
+
+def _values_of(certificate: Certificate) -> str:
+    """The values of parameters that its premise demands, and that it holds for all others."""
+    pinned = f", at {', '.join(certificate.pinned)}" if certificate.pinned else ""
+    return pinned + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
+
+
+def _show_premises(assumed: Assumed) -> list[str]:
+    """The premises of a certificate: limits, facts about motion and inductions; and the other limits."""
+    return [*_show_assumed(assumed), *(f"  by induction over time: {x}" for x in assumed.inductions)]
+
+
+def _show_assumed(assumed: Assumed) -> list[str]:
+    """The limits and facts about motion that are premises, and the limits that are none."""
+    if not is_moving(assumed.said):
+        return []
+    lines = [f"  of the limits: {', '.join(assumed.limits)}"] if assumed.limits else []
+    if assumed.facts:
+        lines.append(f"  of motion: {', '.join(map(str, assumed.facts))}")
+    if not lines:
+        without = "neither a limit nor a fact about motion" if assumed.unused else "no fact about motion"
+        return [f"  the proof uses {without}: the claim holds without them"]
+    return lines + ([f"  limits not used: {', '.join(assumed.unused)}"] if assumed.unused else [])
+
+
+def _show_drive(judged: Judged) -> list[str]:
+    """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
+    named = judged.file.lanes
+    lanes = named[LANE] if set(named) == {LANE} else ", ".join(f"{k}={v}" for k, v in named.items())
+    lines = [f"  false on this drive, judged exactly in dense time{f' (lane {lanes})' if lanes else ''}:"]
+    for name, motion in judged.file.drive.vehicles.items():
+        start = f"starts at s={_short(motion.s)} m, d={_short(motion.d)} m"
+        last = sum((x.duration for x in motion.pieces if x.duration is not None), Fraction(0))
+        end = state_at(motion, last)
+        moved = f", moves to d={_short(end.d)} m" if abs(end.d - motion.d) > 1 else ""
+        lines.append(f"    {name} {start}, {_short(motion.v_lon)} -> {_short(end.v_lon)} m/s{moved}")
+    for (signal, vehicle), course in judged.file.drive.own.items():
+        values = ", ".join(f"{_short(value)} from {_short(since)} s" for since, value in course[:4])
+        more = ", …" if len(course) > 4 else ""
+        lines.append(f"    {signal}{f'({vehicle})' if vehicle else ''} is {values}{more}")
+    return lines
+
+
+def _short(value: Fraction) -> str:
+    return f"{float(value):.4g}"
+
+
+def _show_countermodel(countermodel: Countermodel) -> list[str]:
+    lines = [
+        "  false on this trace over points in time, judged; it may jump:",
+        f"    between two instants it keeps the state of the one {countermodel.held}",
+    ]
+    if countermodel.loop is not None:
+        loop = countermodel.loop
+        lines.append(f"    from {_number(loop.start)} s on it repeats itself every {_number(loop.period)} s")
+    if countermodel.parameters:
+        shown = ", ".join(f"{n}={_number(v)}" for n, v in sorted(countermodel.parameters.items()))
+        lines.append(f"    parameters: {shown}")
+    if countermodel.road is not None:
+        lines.append("    on a road made for it:")
+        lines += [f"      {_lane(lane, countermodel.road)}" for lane in countermodel.road.lanes]
+    for instant in countermodel.instants:
+        true = ", ".join(sorted(x for x, holds in instant.atoms.items() if holds)) or "none of the predicates"
+        lines.append(f"    at {_number(instant.time)} s: {true}")
+        lines += [f"      {x}" for x in _values_in(instant.values, countermodel)]
+        if instant.after is not None and instant.after != instant.values:
+            lines += [f"      after it {x}" for x in _values_in(instant.after, countermodel)]
+    return lines
+
+
+def _values_in(values: Mapping[str, Fraction], countermodel: Countermodel) -> list[str]:
+    """A state without the parameters, in a line; none where nothing is left."""
+    shown = [f"{n}={_number(v)}" for n, v in sorted(values.items()) if n not in countermodel.parameters]
+    return [", ".join(shown)] if shown else []
+
+
+def _lane(lane: str, road: Road) -> str:
+    """The rectangles of a lane, in metres along and across, and the lanes beside it."""
+    shown = ", ".join(
+        f"{x.zone} [{_end(x.s[0])}, {_end(x.s[1])}] x [{_number(x.d[0])}, {_number(x.d[1])}]"
+        for x in road.lanelets_of(lane)
+    )
+    beside = road.beside(lane)
+    return f"{lane}: {shown}" + (f"; beside {', '.join(beside)}" if beside else "")
+
+
+def _end(value: Fraction | None) -> str:
+    return "" if value is None else _number(value)
+
+
+def _number(value: Fraction) -> str:
+    return f"{float(value):.6g}"

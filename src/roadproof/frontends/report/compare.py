@@ -1,0 +1,47 @@
+"""Two formulas side by side, in words."""
+
+from collections.abc import Iterator
+
+from roadproof.engines.search.compare import Comparison
+from roadproof.library.query import Query
+from roadproof.library.scenarios import scenario_number
+from roadproof.library.specification import Specification
+from roadproof.library.words import words_of
+from roadproof.logic.custom_names import told_freedom
+from roadproof.logic.formula import conjunction
+
+_SENTENCES = {
+    "equivalent": "the two are equivalent",
+    "stronger": "the first is stronger: it implies the second, but not the reverse",
+    "weaker": "the first is weaker: the second implies it, but not the reverse",
+    "incomparable": "the two are incomparable: neither implies the other",
+    "unknown": "not decided",
+}
+
+
+def as_text(comparison: Comparison, specification: Specification) -> str:
+    """The two formulas, how they relate, and what shows that."""
+    sets = comparison.sets
+    lines = [
+        f"first   {comparison.first.text}  (set {sets[0]})",
+        *_called(comparison.first, specification.in_set(sets[0])),
+        f"second  {comparison.second.text}  (set {sets[1]})",
+        *_called(comparison.second, specification.in_set(sets[1])),
+        _SENTENCES[comparison.relation],
+    ]
+    both = told_freedom(conjunction(comparison.first.formula, comparison.second.formula))
+    lines += [f"  {said}" for said in both]
+    for name, direction in comparison.directions.items():
+        shown = f"  {name}: {direction.verdict}"
+        shown += " for all time, on every road" if direction.certificate else ""
+        shown += " by a judged drive" if direction.drive else ""
+        shown += f"; {direction.reason}" if direction.reason else ""
+        lines.append(shown)
+    return "\n".join(lines)
+
+
+def _called(query: Query, specification: Specification) -> Iterator[str]:
+    """What a side is called that is one scenario."""
+    number = scenario_number(query)
+    if number is not None and (name := words_of(specification, number).name):
+        yield f"        {name}"

@@ -1,0 +1,116 @@
+"""Which disturbances a set misses, in words: its classes of gaps as a table; and a picture for each gap."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from roadproof.analysis.coverage.answers import ClassAnswer, Gap
+from roadproof.analysis.coverage.needed import Need
+from roadproof.analysis.coverage.occurring import GapTraffic
+from roadproof.analysis.coverage.surveyed import Surveyed
+from roadproof.frontends.report.drive import draw_drive
+from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
+from roadproof.library.specification import Library
+from roadproof.library.words import Called, words_of
+from roadproof.runtime.files import write_whole
+from roadproof.verdict import Verdict
+
+
+def as_text(surveyed: Surveyed, name: str, seconds: float, words: Called) -> str:
+    """All that is known of the set ``name``, after so many seconds."""
+    lines: list[str] = []
+    if surveyed.classes:
+        gaps = sum(len(x.gaps) for x in surveyed.classes)
+        lines += [as_table(surveyed.classes, words), f"set {name}: " + "\n".join(summary(surveyed.classes))]
+        lines += [f"{gaps} gaps in {seconds:.1f} s"]
+    else:
+        lines += [f"proved: {x.claim.text}" for x in surveyed.claims]
+    lines += [f"{need.definition}: {_needed(need)}" for need in surveyed.needs]
+    lines += [] if surveyed.traffic is None else _in_traffic(surveyed.traffic)
+    if surveyed.verdict is Verdict.COVERED:
+        lines.append(f"set {name} misses no danger that arises from safety between two vehicles")
+    if surveyed.verdict is Verdict.CROSSCHECK_FAILED:
+        lines.append("traffic shows what is proved not to be, which is our fault: please report it")
+    return "\n".join(lines)
+
+
+def _needed(need: Need) -> str:
+    if need.drive is not None:
+        return f"needed, by a drive on {need.drive.file.road.name}"
+    return "not needed, by proof" if need.verdict is Verdict.PROVED else "neither shown needed nor spare"
+
+
+def _in_traffic(traffic: GapTraffic) -> list[str]:
+    lines = [f"of {traffic.disturbances} disturbances in traffic {len(traffic.missed)} are missed"]
+    if traffic.repeats:
+        lines.append(f"{traffic.repeats} more are shown again by windows that overlap, and count once")
+    return lines
+
+
+def as_table(classes: Sequence[ClassAnswer], words: Called) -> str:
+    """One line a class, below its component and scenario; gaps by numbers from 1 on."""
+    lines: list[str] = []
+    number, last = 1, 0
+    for answer in classes:
+        part = answer.part
+        what = "" if part is None else part.condition or "the component"
+        if part is None:
+            lines.append("no single condition is to blame: in every scenario two or more are false")
+        elif not part.condition:
+            lines += [str(words[part.scenario])] * (part.scenario != last)
+            lines.append(f"{part.component}: {part.description}")
+            last = part.scenario
+        lines.append(f"  {what:<70} {answer.verdict:<10} {_evidence(answer, number)}".rstrip())
+        number += len(answer.gaps)
+    return "\n".join(lines)
+
+
+def _evidence(answer: ClassAnswer, first: int) -> str:
+    said = [f"drive {number} ({_catching(gap)})" for number, gap in enumerate(answer.gaps, first)]
+    said += [answer.reason] if answer.reason else []
+    said += [f"{answer.in_traffic} in traffic"] if answer.in_traffic else []
+    none = " or ".join(answer.none_for)
+    said += [f"no drive found that {none} is first to catch"] if none else []
+    return "; ".join(said)
+
+
+def _catching(gap: Gap) -> str:
+    choices = " or ".join(" with ".join(names) for names in gap.caught_by)
+    return f"{gap.first}: {choices}" if gap.first else "caught by no set"
+
+
+def summary(classes: Sequence[ClassAnswer]) -> Iterator[str]:
+    """How many classes have which answer, and which wider set catches drives of how many."""
+    counts = {verdict: sum(x.verdict is verdict for x in classes) for verdict in Verdict}
+    yield (
+        f"of {len(classes)} classes {counts[Verdict.WITNESSED]} have a judged drive, "
+        f"{counts[Verdict.IMPOSSIBLE]} are proved empty, {counts[Verdict.UNKNOWN]} are undecided"
+    )
+    for name in dict.fromkeys(gap.first for answer in classes for gap in answer.gaps):
+        has = sum(any(gap.first == name for gap in answer.gaps) for answer in classes)
+        who = f"{name} is the first set to catch" if name else "no set catches"
+        yield f"  {who} a drive of {has} classes"
+
+
+def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> dict[str, bytes]:
+    """The picture of a gap, with when each part of the missed scenario is true."""
+    file, part = gap.drive.file, answer.part
+    specification = library.select(file.set_name, file.options)
+    if part is None:
+        missed, title = danger_comes(specification, *PAIR), "no single condition is to blame"
+    else:
+        missed = applied(specification, Scenario(part.scenario, file.set_name))
+        title = f"{words_of(specification, part.scenario)}\nbut for {part.component} ({part.description})"
+        title += f": {part.condition}" if part.condition else ""
+    title = f"Danger that {file.set_name} misses; {title}"
+    return draw_drive(replace(file, formula=missed.text), library, title)
+
+
+def draw_beside(library: Library, job: tuple[ClassAnswer, Gap, Path]) -> None:
+    """Write the picture of a gap beside its file, unless there is one of that very file."""
+    answer, gap, path = job
+    picture = path.with_suffix(".png")
+    if picture.exists() and picture.stat().st_mtime_ns >= path.stat().st_mtime_ns:
+        return
+    for kind, content in draw_gap(answer, gap, library).items():
+        write_whole(path.with_suffix(f".{kind}"), content)

@@ -1,0 +1,279 @@
+"""What the picture of a drive shows, as data: strips of truth, distances against RSS, danger, the road.
+
+Distances and danger are the library's own: its definitions are bound and judged, no formula is written here.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import groupby
+from typing import Literal, TypeAlias
+
+from roadproof.drivers.words import words_of_parts
+from roadproof.errors import RoadproofError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.library.bind import bind, values_with
+from roadproof.library.query import Query
+from roadproof.library.scenarios import SUBJECT, danger, too_near_ahead, too_near_left
+from roadproof.library.specification import Library, Specification
+from roadproof.logic.formula import Compare, Formula, nesting, subformulas
+from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.exact import Judgement, judge
+from roadproof.semantics.exact.robust import robustness
+from roadproof.semantics.exact.truth import TruthSet
+from roadproof.world.motion import state_at, states_at
+from roadproof.world.road import Road, Zone
+
+Span: TypeAlias = tuple[float, float]
+Direction: TypeAlias = Literal["along", "across"]
+GRAIN = Fraction(1, 10)
+ZONES: Mapping[Zone, str] = {"main": "main road", "merge": "merge zone", "depart": "departure zone"}
+
+
+@dataclass(frozen=True)
+class Strip:
+    """When a part of the formula is true, in seconds; ``depth``: in how many other parts it is."""
+
+    name: str
+    depth: int
+    spans: tuple[Span, ...]
+
+
+@dataclass(frozen=True)
+class Distance:
+    """Between two boxes in one direction, below 0 where they are beside each other in it; m, by ``GRAIN``.
+
+    ``needed``: the RSS distance that the one behind, or the right one, needs; ``one_behind``: whether that is
+    ``one``, so that the distance jumps where it changes.
+    """
+
+    one: str
+    other: str
+    gap: tuple[float, ...]
+    needed: tuple[float, ...]
+    one_behind: tuple[bool, ...]
+
+    @property
+    def runs(self) -> Iterator[slice]:
+        """The samples between changes of who is behind."""
+        begin = 0
+        for _, group in groupby(self.one_behind):
+            end = begin + len([*group])
+            yield slice(begin, end)
+            begin = end
+
+
+@dataclass(frozen=True)
+class Danger:
+    """When danger between two vehicles begins for the first time, in seconds."""
+
+    one: str
+    other: str
+    begins: float
+
+    def __str__(self) -> str:
+        return f"danger between {self.one} and {self.other} from {self.begins:.1f} s on"
+
+
+@dataclass(frozen=True)
+class ShownRoad:
+    """What of a road lies in a window along it; ``lanes``: name and middle; m.
+
+    ``pieces``: rectangles along × across with their zones.
+    """
+
+    lanes: tuple[tuple[str, float], ...]
+    pieces: tuple[tuple[Zone, Span, Span], ...]
+    across: Span
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """The zones that can be seen, each once."""
+        return tuple(dict.fromkeys(zone for zone, _, _ in self.pieces))
+
+
+def vehicles_of(file: DriveFile) -> list[str]:
+    """SV first, the others by name."""
+    return sorted(file.drive.vehicles, key=lambda name: (name != SUBJECT, name))
+
+
+def times_of(file: DriveFile) -> list[Fraction]:
+    """The instants at which curves are drawn."""
+    return [k * GRAIN for k in range(int(file.horizon / GRAIN) + 1)]
+
+
+def strips_of(judgement: Judgement, horizon: Fraction) -> tuple[Strip, ...]:
+    """Every named part of a judged formula, each below the one that it is part of."""
+    depths, words = nesting(judgement.formula), words_of_parts(judgement.formula)
+    return tuple(
+        Strip(
+            words.get(part) or f"{part.name}({', '.join(part.arguments)})",
+            depths[part],
+            tuple(_spans(truth, float(horizon))),
+        )
+        for part, truth in judgement.named()
+    )
+
+
+def _spans(truth: TruthSet, horizon: float) -> Iterator[Span]:
+    """The stretches of a truth set up to the horizon."""
+    for span in truth.spans():
+        begin = approximate(span.begin.point)
+        if begin <= horizon:
+            yield begin, horizon if span.end is None else min(horizon, approximate(span.end.point))
+
+
+def dangers_of(file: DriveFile, library: Library) -> tuple[Danger, ...]:
+    """The first danger of the first vehicle with each other one, as the file's definitions have it."""
+    first, *others = vehicles_of(file)
+    begun = ((other, _first_danger(file, library, first, other)) for other in others)
+    found = [Danger(first, other, time) for other, time in begun if time is not None]
+    return tuple(sorted(found, key=lambda x: x.begins))
+
+
+def _first_danger(file: DriveFile, library: Library, one: str, other: str) -> float | None:
+    formula = _bound(file, library, lambda home: danger(home, one, other))
+    if formula is None:
+        return None
+    spans = _spans(judge(formula, file.drive).truth(formula), float(file.horizon))
+    return next((begin for begin, _ in spans), None)
+
+
+def distances_of(file: DriveFile, library: Library, direction: Direction) -> tuple[Distance, ...]:
+    """Of the first vehicle from each other one; those are left out that the library has no distance for."""
+    first, *others = vehicles_of(file)
+    made = (_distance(file, library, direction, first, other) for other in others)
+    return tuple(x for x in made if x is not None)
+
+
+def _distance(
+    file: DriveFile, library: Library, direction: Direction, one: str, other: str
+) -> Distance | None:
+    gaps = {pair: _gaps(file, direction, *pair) for pair in ((one, other), (other, one))}
+    margins = {pair: _margins(file, library, direction, *pair) for pair in gaps}
+    gap, needed, one_behind = [], [], []
+    for k in range(len(times_of(file))):
+        pair = max(gaps, key=lambda pair: gaps[pair][k].order)
+        known = margins[pair]
+        if known is None:
+            return None
+        gap.append(gaps[pair][k].gap)
+        needed.append(gaps[pair][k].gap + known[k])
+        one_behind.append(pair == (one, other))
+    return Distance(one, other, tuple(gap), tuple(needed), tuple(one_behind))
+
+
+@dataclass(frozen=True)
+class _Gap:
+    """``order``: how much further the second vehicle is than the first, by the points that are tracked."""
+
+    order: float
+    gap: float
+
+
+def _gaps(file: DriveFile, direction: Direction, low: str, high: str) -> list[_Gap]:
+    """From the front of one vehicle to the rear of another, or from a left to a right side."""
+    lower, higher = file.drive.vehicles[low], file.drive.vehicles[high]
+    times = times_of(file)
+    found = []
+    for a, b in zip(states_at(lower, times), states_at(higher, times), strict=True):
+        if direction == "along":
+            order, size = b.s - a.s, higher.length
+        else:
+            order, size = b.d - a.d, higher.width
+        found.append(_Gap(float(order), float(order - size)))
+    return found
+
+
+def _margins(
+    file: DriveFile, library: Library, direction: Direction, low: str, high: str
+) -> Sequence[float] | None:
+    """RSS distance less gap at each time; None where the library's definition is of another form."""
+    formula = _bound(file, library, lambda home: too_near(home, direction, low, high))
+    nearer = None if formula is None else nearer_in(formula)
+    if nearer is None:
+        return None
+    return list(robustness(nearer, file.drive, GRAIN, times_of(file)[-1]).margins[nearer])
+
+
+def too_near(home: Specification, direction: Direction, low: str, high: str) -> Query:
+    """One vehicle is ahead, or left, of the other, and nearer than the RSS distance."""
+    return too_near_ahead(home, low, high) if direction == "along" else too_near_left(home, low, high)
+
+
+def nearer_in(formula: Formula) -> Formula | None:
+    """The comparison in ``too_near`` whose margin is RSS distance less gap; None in another form."""
+    comparisons = [x for x in subformulas(formula) if isinstance(x, Compare)]
+    return comparisons[1] if len(comparisons) == 2 else None
+
+
+def _bound(file: DriveFile, library: Library, said: Callable[[Specification], Query]) -> Formula | None:
+    """A formula of the file's set on its road; None where the library has no such definitions."""
+    try:
+        query = said(library.select(file.set_name, file.options))
+        return bind(query.formula, file.road, file.lanes, values_with(library, file.values))
+    except RoadproofError:
+        return None
+
+
+def window_of(file: DriveFile, times: Sequence[Fraction]) -> Span:
+    """What has to be seen along the road, in metres from the first vehicle: all of them at these times."""
+    first, *_ = vehicles_of(file)
+    places = []
+    for time in times:
+        origin = state_at(file.drive.vehicles[first], time).s
+        for motion in file.drive.vehicles.values():
+            front = state_at(motion, time).s - origin
+            places += [float(front - motion.length), float(front)]
+    room = 0.1 * max(40.0, max(places) - min(places))
+    return min(-20.0, min(places) - room), max(20.0, max(places) + room)
+
+
+def road_in(road: Road, origin: Fraction, window: Span) -> ShownRoad:
+    """What of a road is seen in a window around ``origin``."""
+    pieces: list[tuple[Zone, Span, Span]] = []
+    lanes: dict[str, float] = {}
+    for lanelet in road.lanelets:
+        low = window[0] if lanelet.s[0] is None else max(window[0], float(lanelet.s[0] - origin))
+        high = window[1] if lanelet.s[1] is None else min(window[1], float(lanelet.s[1] - origin))
+        if low < high:
+            right, left = (float(x) for x in lanelet.d)
+            pieces.append((lanelet.zone, (low, high), (right, left)))
+            lanes.setdefault(lanelet.lane, (right + left) / 2)
+    across = [float(x) for lanelet in road.lanelets for x in lanelet.d]
+    return ShownRoad(tuple(lanes.items()), tuple(pieces), (min(across), max(across)))
+
+
+Box: TypeAlias = tuple[float, float, float, float]
+"""Left, right, bottom, top."""
+
+
+def place_names(boxes: Mapping[str, Box], sizes: Mapping[str, tuple[float, float]]) -> dict[str, Box]:
+    """A place of its size for each vehicle's name, beside its box: in no box and on no other name.
+
+    Ahead of the box is tried first, then behind it, above and below; where all are taken it is ahead.
+    """
+    placed: dict[str, Box] = {}
+    for name in sorted(boxes, key=lambda x: -boxes[x][1]):
+        taken = [*boxes.values(), *placed.values()]
+        free = (x for x in _places(boxes[name], sizes[name]) if not any(_meet(x, y) for y in taken))
+        placed[name] = next(free, next(_places(boxes[name], sizes[name])))
+    return placed
+
+
+def _places(box: Box, size: tuple[float, float]) -> Iterator[Box]:
+    left, right, bottom, top = box
+    width, height = size
+    middle, centre = (bottom + top) / 2, (left + right) / 2
+    room = 0.15 * width
+    for begin, low in (
+        (right + room, middle - height / 2),
+        (left - room - width, middle - height / 2),
+        (centre - width / 2, top),
+        (centre - width / 2, bottom - height),
+    ):
+        yield begin, begin + width, low, low + height
+
+
+def _meet(one: Box, other: Box) -> bool:
+    return one[0] < other[1] and other[0] < one[1] and one[2] < other[3] and other[2] < one[3]

@@ -1,0 +1,101 @@
+"""Which results are in files and folders: answers of ``--json``, folders with an index, evidence alone."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from roadproof.analysis.study.evidence_store import INDEX
+from roadproof.errors import InputError
+from roadproof.evidence import certificate, drive_file
+from roadproof.evidence.journal import ANSWERS, HEAD
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+
+TRAFFIC = "results.json"
+EVIDENCE = (certificate.SCHEMA, *drive_file.SCHEMAS_READ)
+
+
+@dataclass(frozen=True)
+class Result:
+    """An answer as plain data; ``folder``: where the evidence lies that it names, None where it has none.
+
+    ``id``: its place on the page.
+    """
+
+    name: str
+    schema: str
+    data: Mapping[str, Any]
+    folder: Path | None = None
+    id: int = 0
+
+    @property
+    def kind(self) -> str:
+        """``overlap`` of roadproof/overlap/1."""
+        return self.schema.split("/")[1] if self.schema.count("/") == 2 else self.schema
+
+
+@dataclass(frozen=True)
+class Given:
+    """``results``, in the order in which they were named, and files of ``evidence`` that are of none."""
+
+    results: tuple[Result, ...]
+    evidence: tuple[Path, ...]
+
+    @property
+    def checkable(self) -> tuple[Path, ...]:
+        """What ``check`` reads: folders with an index of evidence, and files alone."""
+        folders = [x.folder for x in self.results if x.folder is not None and x.kind != "traffic-results"]
+        return (*dict.fromkeys(folders), *self.evidence)
+
+
+def read_results(paths: Sequence[Path]) -> Given:
+    """What is in files and folders. Raises ``InputError`` for what is not there, or is no result."""
+    results: list[Result] = []
+    evidence: list[Path] = []
+    for path in paths:
+        if not path.exists():
+            raise InputError(f"{path} does not exist: name a file or a folder that a command has written")
+        found = [*_in_folder(path)] if path.is_dir() else [path]
+        if not found:
+            raise InputError(
+                f"{path} holds no result: name a folder or a JSON answer that a command has written"
+            )
+        for file in found:
+            schema, data = _read(file)
+            if schema in EVIDENCE:
+                evidence.append(file)
+            else:
+                here = file.parent if file.name in (INDEX, TRAFFIC) else _beside(file)
+                name = file.parent.name if file.name in (INDEX, TRAFFIC) else file.stem
+                results.append(Result(name or str(file), schema, data, here, len(results)))
+    return Given(tuple(results), tuple(dict.fromkeys(evidence)))
+
+
+def _beside(file: Path) -> Path | None:
+    """The folder in which the evidence of an answer of ``--json`` lies."""
+    folder = file.with_name(f"{file.stem}-evidence")
+    return folder if (folder / INDEX).is_file() else None
+
+
+def _in_folder(folder: Path) -> Iterator[Path]:
+    """The index of a folder, or its results; without these the evidence in it, and in the folders in it."""
+    whole = [folder / name for name in (INDEX, TRAFFIC) if (folder / name).is_file()]
+    if whole:
+        yield from whole
+        return
+    kept = (folder / HEAD).is_file()
+    for path in sorted(folder.iterdir()):
+        if path.is_symlink() or (kept and path.name in (HEAD, ANSWERS)):
+            continue
+        if path.is_dir():
+            yield from _in_folder(path)
+        elif path.suffix == ".json":
+            yield path
+
+
+def _read(file: Path) -> tuple[str, Mapping[str, Any]]:
+    data = Fields(read_json(file, LARGEST_INDEX), str(file))
+    schema = data.text("schema") if "schema" in data.content else ""
+    if not schema.startswith("roadproof/"):
+        raise InputError(f"{file} is no result of roadproof: it has no schema that begins with roadproof/")
+    return schema, data.content

@@ -1,0 +1,248 @@
+"""Plates to look at: which initial values a driver prevents a collision from, as text, CSV and pictures."""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from itertools import product
+from math import ceil
+from textwrap import wrap
+from typing import Any
+
+from roadproof.analysis.preventable.study import Plate, Preventable, Proved, Shown
+from roadproof.drivers.lines import Line
+from roadproof.drivers.manoeuvres import Quantity
+from roadproof.drivers.models import MODELS, parts_of
+from roadproof.drivers.words import legend
+from roadproof.frontends.report.figures import as_bytes, make_page
+from roadproof.world.units import UNITS
+
+COLOURS: Mapping[str, str] = {
+    "careful": "#1f5fa8",
+    "r157": "#c44e1b",
+    "eu1426": "#2c8a4b",
+    "rss": "#7d3c98",
+    "fsm": "#8a6d1b",
+}
+_STEPPED = "Single lines: places looked at, stepped at 10 Hz; nothing is claimed between them"
+_LEGEND = 1.9, 0.2  # inches for the name of a model
+_LETTERS = 21  # of a line below the plates, an inch
+_TOLD = 5  # lines of a plate, and spans of a line, that the terminal shows
+
+
+def measured(quantity: Quantity, value: Fraction) -> str:
+    """A value in its quantity's unit: ``60 km/h``."""
+    return f"{float(value / UNITS[quantity.unit][0]):g} {quantity.unit}"
+
+
+def fixed_text(study: Preventable, plate: Plate) -> str:
+    """What is fixed on a plate."""
+    known = study.manoeuvre.quantities
+    return ", ".join(f"{name} = {measured(known[name], value)}" for name, value in plate.fixed.items())
+
+
+def shown_symbols(study: Preventable) -> tuple[Quantity, ...]:
+    """The initial values that plates are about, in the order of the manoeuvre."""
+    names = {study.manoeuvre.line, study.manoeuvre.across, *study.sheet, *study.fixed}
+    return tuple(x for name, x in study.manoeuvre.quantities.items() if name in names)
+
+
+def share_of(study: Preventable, plate: Plate) -> float:
+    """Which part of the plane is unpreventable: the mean over its lines."""
+    low, high = study.along
+    total = sum(b.near - a.near for x in plate.lines for a, b in x.spans)
+    return total / (float(high - low) * len(plate.lines)) if plate.lines else 0.0
+
+
+def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved]) -> str:
+    """For the terminal: each plate with some of its lines and its drives, and the lemmas."""
+    known = study.manoeuvre.quantities
+    along, across = known[study.manoeuvre.line], known[study.manoeuvre.across]
+    lines: list[str] = []
+    for plate in plates:
+        fixed = fixed_text(study, plate)
+        title = MODELS[plate.model].title
+        lines.append(f"{plate.verdict:<11} {study.manoeuvre.name}, {title}{fixed and f'; {fixed}'}")
+        if plate.reason:
+            lines.append(f"  {plate.reason}")
+        if plate.lines:
+            percent = 100 * share_of(study, plate)
+            what = f"{percent:.1f} % of the plane"
+            if plate.stepped:
+                what = "what follows"
+                lines.append(f"  {plate.stepped};")
+                lines.append("  the drives follow the controller, which their formula does not say")
+            if plate.motion:
+                lines.append(f"  {plate.motion};")
+            lines.append(f"  unpreventable on {what}; {along.doc} [{along.unit}]:")
+        for line in _some(plate.lines):
+            shown = " and ".join(f"{a.near:.6g} to {b.near:.6g}" for a, b in line.spans[:_TOLD]) or "nowhere"
+            if len(line.spans) > _TOLD:
+                shown += f" and {len(line.spans) - _TOLD} more"
+            lines.append(f"    {across.name} = {measured(across, line.at):<14} {shown}")
+        for x in plate.shown:
+            told = x.reason
+            if x.drive is not None:
+                values = ", ".join(
+                    f"{name} = {measured(known[name], x.values[name])}" for name in (across.name, along.name)
+                )
+                told = f"a drive at {values}{_scenario_text(study, x)}"
+            lines.append(f"  {x.side}: {told}")
+    lines += [legend(shown_symbols(study))] if plates else []
+    for proved in lemmas:
+        lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
+        if proved.reason:
+            lines.append(f"  {proved.reason}")
+    if study.readings:
+        lines.append(f"with {', '.join(study.readings)}")
+    lines += [f"{said}: no boundary that is asked for depends on it" for said in study.idle]
+    return "\n".join(lines)
+
+
+def _scenario_text(study: Preventable, shown: Shown) -> str:
+    """What the drive is of, where the scenario was asked for."""
+    if study.scenario is None:
+        return ""
+    whole, happening = parts_of(study.scenario, study.manoeuvre.vehicles)
+    if shown.scenario == whole:
+        return f", of scenario {study.scenario}"
+    if shown.scenario == happening:
+        return f"; what happens in scenario {study.scenario}, but no start that was tried is safe"
+    return f"; no drive that was tried is of scenario {study.scenario}"
+
+
+def _some(lines: Sequence[Line]) -> Sequence[Line]:
+    """A few lines, first and last with them."""
+    if len(lines) <= _TOLD:
+        return lines
+    return [lines[round(k * (len(lines) - 1) / (_TOLD - 1))] for k in range(_TOLD)]
+
+
+def as_csv(study: Preventable, plates: Sequence[Plate]) -> str:
+    """A row for each span of each line: SI units, ends as numbers and exactly."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    fixed = list(dict.fromkeys(name for plate in plates for name in plate.fixed))
+    along, across = study.manoeuvre.line, study.manoeuvre.across
+    ends = [f"{along}_from", f"{along}_to", f"{along}_from_exact", f"{along}_to_exact"]
+    writer.writerow(["model", *fixed, across, *ends, "note"])
+    for plate in plates:
+        for line in plate.lines:
+            begins = [plate.model, *(_si(plate.fixed[name]) for name in fixed), _si(line.at)]
+            for a, b in line.spans:
+                exact = ("", "") if plate.stepped else (a.exact, b.exact)
+                writer.writerow([*begins, a.near, b.near, *exact, plate.stepped or plate.motion])
+    return out.getvalue()
+
+
+def _si(value: Fraction) -> str:
+    return f"{float(value):.10g}"
+
+
+def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
+    """All plates of a sheet: rows are the second of what is fixed, columns all else; colours are models."""
+    names = list(study.sheet)
+    beside = [name for name in names if name not in names[1:2]]
+    columns = list(product(*(study.sheet[name] for name in beside)))
+    rows = list(product(*(study.sheet[name] for name in names[1:2])))
+    width = 1.1 + 2.5 * len(columns)
+    top = 0.55 + _LEGEND[1] * ceil(len(study.models) / _models_a_row(width))
+    height = top + 0.3 + 0.12 * len(_below(study, width)) + 2.2 * len(rows)
+    figure = make_page(width, height)
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            box = [
+                (0.75 + 2.5 * j) / width,
+                1 - (top + 2.2 * (i + 1) - 0.42) / height,
+                2.0 / width,
+                1.6 / height,
+            ]
+            axes = figure.add_axes(box)
+            chosen = dict(zip((*beside, *names[1:2]), (*column, *row), strict=True))
+            here = [p for p in plates if all(p.fixed.get(name) == value for name, value in chosen.items())]
+            _draw_plate(axes, study, here)
+            told = [f"{n} {measured(study.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
+            axes.set_title(", ".join(told), fontsize=7, loc="left", pad=3)
+            if j == 0:
+                axes.set_ylabel(_label(study, study.manoeuvre.across), fontsize=7)
+            if i == len(rows) - 1:
+                axes.set_xlabel(_label(study, study.manoeuvre.line), fontsize=7)
+    _head(figure, study, width, height)
+    return as_bytes(figure)
+
+
+def _below(study: Preventable, width: float) -> list[str]:
+    """Lines below the plates, the lowest first: symbols, readings, and what single lines are."""
+    lines = [_STEPPED] if any(model.is_stepped for model in study.models) else []
+    lines += wrap(legend(shown_symbols(study)), int(width * _LETTERS))[::-1]
+    return lines + ([f"With {', '.join(study.readings)}"] if study.readings else [])
+
+
+def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
+    what = "in what is shaded"
+    if all(model.is_stepped for model in study.models):
+        what = "at places on lines"
+    known = study.manoeuvre.quantities
+    fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in study.fixed.items())
+    title = f"{study.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
+    figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
+    for k, said in enumerate(_below(study, width)):
+        figure.text(0.2 / width, (0.1 + 0.12 * k) / height, said, fontsize=5.5, va="center")
+    for k, model in enumerate(study.models):
+        row, column = divmod(k, _models_a_row(width))
+        x, y = (0.2 + _LEGEND[0] * column) / width, 1 - (0.45 + _LEGEND[1] * row) / height
+        told = f"─ {model.title}, stepped" if model.is_stepped else f"━ {model.title}"
+        figure.text(x, y, told, fontsize=7, color=COLOURS[model.name], va="center")
+
+
+def _models_a_row(width: float) -> int:
+    """How many names of models stand beside each other on a page so wide (inches)."""
+    return max(1, int((width - 0.2) / _LEGEND[0]))
+
+
+def _label(study: Preventable, name: str) -> str:
+    return f"{name} [{study.manoeuvre.quantities[name].unit}]"
+
+
+def _draw_plate(axes: Any, study: Preventable, plates: Sequence[Plate]) -> None:
+    known = study.manoeuvre.quantities
+    unit = float(UNITS[known[study.manoeuvre.across].unit][0])
+    scale = float(UNITS[known[study.manoeuvre.line].unit][0])
+    for plate in plates:
+        colour = COLOURS[plate.model]
+        if plate.stepped:
+            _draw_places(axes, plate, colour, scale, unit)
+        else:
+            _draw_area(axes, plate, colour, scale, unit, [float(x) / scale for x in study.along])
+        for x in plate.shown:
+            if x.drive is not None:
+                place = float(x.values[study.manoeuvre.line]) / scale
+                row = float(x.values[study.manoeuvre.across]) / unit
+                filled = colour if x.side == "unpreventable" else "white"
+                axes.plot(place, row, "o", markersize=2.6, color=colour, markerfacecolor=filled, zorder=4)
+    axes.set_xlim(*(float(x) / scale for x in study.along))
+    rows = [float(line.at) / unit for plate in plates for line in plate.lines]
+    axes.set_ylim(min(rows, default=0), max(rows, default=1))
+    axes.tick_params(labelsize=6)
+
+
+def _draw_places(axes: Any, plate: Plate, colour: str, scale: float, unit: float) -> None:
+    """Each span of each line by itself: nothing is claimed of what lies between lines and places."""
+    for line in plate.lines:
+        for a, b in line.spans:
+            ends, at = [a.near / scale, b.near / scale], [float(line.at) / unit] * 2
+            axes.plot(ends, at, "|-", color=colour, linewidth=0.6, markersize=1.5, alpha=0.8)
+
+
+def _draw_area(
+    axes: Any, plate: Plate, colour: str, scale: float, unit: float, edges: Sequence[float]
+) -> None:
+    """From the first to the last end of each line."""
+    at = [float(line.at) / unit for line in plate.lines]
+    low = [line.spans[0][0].near / scale if line.spans else 0.0 for line in plate.lines]
+    high = [line.spans[-1][1].near / scale if line.spans else 0.0 for line in plate.lines]
+    some = [bool(line.spans) for line in plate.lines]
+    axes.fill_betweenx(at, low, high, where=some, color=colour, alpha=0.14, linewidth=0)
+    for ends in (low, high):
+        curve = [x if there and x not in edges else float("nan") for x, there in zip(ends, some, strict=True)]
+        axes.plot(curve, at, color=colour, linewidth=1.1)

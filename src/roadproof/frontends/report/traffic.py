@@ -1,0 +1,283 @@
+"""The tables of a traffic evaluation, the paper's figures beside ours (semantics §7)."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+
+from roadproof.drivers.models import MODELS
+from roadproof.frontends.report.paper import COMPARISON, MARK, RESULTS, PaperRow
+from roadproof.frontends.report.tables import Table
+from roadproof.library.scenarios import DETECTORS, Metric
+from roadproof.library.words import Called
+from roadproof.recordings.evaluate.foretelling import LABELS
+from roadproof.recordings.evaluate.results import Row, Totals, foretold_rows, words_in
+from roadproof.recordings.evaluate.sectors import ANYWHERE
+
+NONE_FAILED: Mapping[str, str] = MappingProxyType({})
+OURS = "here"
+PAPER = "paper*"
+NAMES = 3
+"""So many scenarios are named on a line."""
+METRICS: tuple[Metric, ...] = ("TTC", "THW", "none")
+"""Danger metrics of earlier works."""
+KINDS = {"cut-in": 1, "deceleration": 4}
+"""What detectors detect, and the scenario that stands beside them (paper, RQ5)."""
+
+
+def results_tables(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> dict[str, Table]:
+    """The paper's results table, one for each road sector that the recordings have, by names for files.
+
+    For each minDanger and set there is a row of ours and, where the paper has one, a row of the paper's.
+    """
+    shown = totals.shown
+    several = len(shown) > 1
+    return {
+        f"results{ending_of(totals, x)}": _results_table(totals, x if several else "", rows, failed)
+        for x, rows in shown.items()
+    }
+
+
+def ending_of(totals: Totals, sector: str) -> str:
+    """What the names of files about a sector end in: nothing for the first one.
+
+    Words of a specification become part of a file's name, so other signs than letters and digits go.
+    """
+    first = next(iter(totals.tables))
+    return "" if sector == first else "-" + re.sub(r"[^a-z0-9]+", "-", sector.lower()).strip("-")
+
+
+def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapping[str, str]) -> Table:
+    scenarios = rows[0].sector.scenarios
+    columns = ("minDanger", "set", "data", "traces", "matching", "recall", *(f"s{i}" for i in scenarios))
+    three = rows[0].sector.of_three
+    return Table(
+        "Disturbance traces that match a scenario" + (f": {where}" if where else ""),
+        columns,
+        tuple(_result_rows(rows)),
+        (
+            *_names(scenarios, words_in(totals.settings)),
+            f"{OURS}: {_data(totals)}",
+            *_papers(rows),
+            "A trace is an unordered pair of vehicles, matched when one of its two role assignments is; "
+            "matching and recall are by scenarios of two cars, as in the paper."
+            + "".join(f" s{i} counts pairs (SV, POV2)." for i in three),
+            *_elsewhere(totals, where),
+            _convention(totals),
+            *_warnings(failed),
+            *_repeats(totals),
+            *_notes(totals),
+        ),
+    )
+
+
+def _names(scenarios: Sequence[int], words: Called) -> Iterator[str]:
+    """What the columns of a table are called, some to a line."""
+    named = [f"s{i} {words[i].title}" for i in scenarios if words[i].title]
+    yield from ("; ".join(named[k : k + NAMES]) for k in range(0, len(named), NAMES))
+
+
+def _papers(rows: Sequence[Row]) -> Iterator[str]:
+    if any(paper_row(row) is not None for row in rows):
+        yield f"{PAPER}: {MARK}; a comparison of methods, not of the same traffic."
+
+
+def drivers_table(totals: Totals) -> Table | None:
+    """What driver models say of the matches; None where none were asked for."""
+    if not totals.settings.drivers:
+        return None
+    rows = [
+        (decimal(danger), set_name, f"s{number}", driver, *map(str, counts))
+        for danger, set_name, number, driver, counts in foretold_rows(totals)
+    ]
+    said = [f"{name}: {MODELS[name].title} ({MODELS[name].source})" for name in totals.settings.drivers]
+    return Table(
+        "Matches by whether a driver model prevents a collision from where the manoeuvre begins",
+        ("minDanger", "set", "scenario", "model", *LABELS),
+        tuple(rows),
+        (
+            "; ".join(said) + ".",
+            "Rows of matches.csv, so a pair may count in both roles. The other vehicle is supposed to go on "
+            "as it moves where the manoeuvre begins; floating point, no evidence.",
+        ),
+    )
+
+
+def paper_row(row: Row) -> PaperRow | None:
+    """What the paper reports of the same; None where it is about other scenarios or parameters."""
+    known = RESULTS.get((row.min_danger, row.set_name))
+    return known if known is not None and {*known.scenarios} & {*row.sector.scenarios} else None
+
+
+def _elsewhere(totals: Totals, where: str) -> Iterator[str]:
+    """What is not in a table: traces that begin in other sectors, and sectors that no road has."""
+    if where:
+        yield f"Traces that begin in this road sector ({where}); those of the others are in their own tables."
+    absent = [name for name in totals.tables if name not in totals.met]
+    if absent and totals.recordings:
+        numbers = [i for name in absent for i in totals.tables[name][0].sector.scenarios]
+        yield f"No recording has a {' or a '.join(absent)}, so {_numbered(numbers)} were not asked."
+
+
+def _numbered(numbers: Sequence[int]) -> str:
+    return f"s{numbers[0]}" if len(numbers) == 1 else f"s{numbers[0]} to s{numbers[-1]}"
+
+
+def _result_rows(rows: Sequence[Row]) -> Iterator[tuple[str, ...]]:
+    for row in rows:
+        scenarios = row.sector.scenarios
+        head = (decimal(row.min_danger), row.set_name)
+        counts = (str(row.scenarios[i]) for i in scenarios)
+        recall = Share(row.matching, row.traces, traces_of(row)).percent
+        yield (*head, OURS, str(row.traces), str(row.matching), recall, *counts)
+        known = paper_row(row)
+        if known is not None:
+            theirs = (str(known.scenarios.get(i, "-")) for i in scenarios)
+            yield (*head, PAPER, str(known.traces), str(known.matching), known.recall, *theirs)
+
+
+def comparison_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> Table | None:
+    """The paper's comparison table; None where the detectors or the set ext were not asked for."""
+    ours = rss_row(totals)
+    wanted = {name for detectors in DETECTORS.values() for name in detectors.values()}
+    scenarios = set(KINDS.values())
+    if ours is None or not (
+        wanted <= set(totals.settings.detectors) and scenarios <= set(totals.settings.scenarios)
+    ):
+        return None
+    rows: list[tuple[str, ...]] = []
+    for kind, number in KINDS.items():
+        found = (str(totals.detected[DETECTORS[kind][metric]]) for metric in METRICS)
+        rows.append((kind, OURS, *found, str(ours.scenarios[number])))
+        rows.append((kind, PAPER, *(str(COMPARISON[kind][x]) for x in (*METRICS, "RSS"))))
+    limits = ", ".join(f"{name} = {decimal(totals.settings.values[name])}" for name in _thresholds(totals))
+    return Table(
+        "Cut-ins and decelerations by earlier definitions and by ISO 34502",
+        ("kind", "data", *METRICS, f"RSS ({ours.set_name}, minDanger {decimal(ours.min_danger)})"),
+        tuple(rows),
+        (
+            f"{OURS}: {_data(totals)} Unordered pairs; the first three columns look at whole recordings, the "
+            "last one is s1 and s4 of the results table.",
+            f"{PAPER}: {MARK}; TTC and THW of one earlier work, none of another.",
+            f"Thresholds (SI units; those that the paper does not state are ours): {limits}.",
+            *_warnings(failed),
+        ),
+    )
+
+
+def missing(failed: Mapping[str, str]) -> str:
+    """The warning about recordings that were left out."""
+    return f"WARNING: {len(failed)} recordings could not be used and are left out: {', '.join(failed)}."
+
+
+def _warnings(failed: Mapping[str, str]) -> tuple[str, ...]:
+    return (missing(failed),) if failed else ()
+
+
+def _repeats(totals: Totals) -> tuple[str, ...]:
+    if not totals.repeated:
+        return ()
+    shown = Share(totals.repeated, totals.repeated + totals.traces.total(), "traces in all road sectors")
+    return (
+        f"{shown.count} are shown by an earlier recording too, so they are left out; "
+        "vehicles and samples count as often as they are shown.",
+    )
+
+
+def _notes(totals: Totals) -> tuple[str, ...]:
+    count = sum(map(len, totals.notes.values()))
+    if not count:
+        return ()
+    said = "is 1 note" if count == 1 else f"are {count} notes"
+    return (f"There {said} on {len(totals.notes)} recordings: what is odd there is in results.json.",)
+
+
+def _thresholds(totals: Totals) -> tuple[str, ...]:
+    names = ("ttcLimit", "thwLimit", "farthest", "hardBraking", "leastDrift", "cutInTime", "brakeTime")
+    return tuple(name for name in names if name in totals.settings.values)
+
+
+def rss_row(totals: Totals) -> Row | None:
+    """The row of ext with the smallest minDanger, which the paper compares with earlier works."""
+    beside = {*KINDS.values()}
+    rows = [x for each in totals.tables.values() for x in each if beside <= {*x.sector.scenarios}]
+    rows = [row for row in rows if row.set_name == "ext"]
+    return min(rows, key=lambda row: row.min_danger) if rows else None
+
+
+def _data(totals: Totals) -> str:
+    kinds = ", ".join(totals.settings.classes)
+    return (
+        f"{totals.recordings} recordings, {totals.vehicles} vehicles ({kinds} evaluated), "
+        f"{totals.samples} samples."
+    )
+
+
+def _convention(totals: Totals) -> str:
+    says = {
+        "truncated": "End of a trace: truncated (true only if true for every continuation)",
+        "clip": "End of a trace: clip (windows are cut at the last sample)",
+    }[totals.settings.convention]
+    return (
+        f"{says}; {totals.undecided} of {totals.asked} answers undecided, {totals.differing} would be "
+        "another match under the other convention."
+    )
+
+
+@dataclass(frozen=True)
+class Share:
+    """``part`` of the ``whole`` of a population, which is named.
+
+    >>> str(Share(1, 3, "traces"))
+    '33.3% (1 of 3 traces)'
+    """
+
+    part: int
+    whole: int
+    population: str
+
+    def __post_init__(self) -> None:
+        if not self.population.strip():
+            raise ValueError("a share needs the name of its population")
+        if not 0 <= self.part <= self.whole:
+            raise ValueError(f"{self.part} is no part of {self.whole} {self.population}")
+
+    @property
+    def percent(self) -> str:
+        """With one decimal; ``-`` of nothing."""
+        return percent(self.part, self.whole)
+
+    @property
+    def count(self) -> str:
+        """The two numbers and what they count."""
+        return f"{self.part} of {self.whole} {self.population}"
+
+    def __str__(self) -> str:
+        return f"{self.percent} ({self.count})"
+
+
+def traces_of(row: Row) -> str:
+    """The population of a row: traces that begin in its road sector."""
+    return f"traces{_place(row.sector.name)}"
+
+
+def _place(sector: str) -> str:
+    return (
+        "" if sector == ANYWHERE else f" on the {sector}" if sector.endswith("road") else f" in the {sector}"
+    )
+
+
+def percent(part: int, whole: int) -> str:
+    """With one decimal, ``-`` of nothing.
+
+    >>> percent(1, 3), percent(1, 0)
+    ('33.3%', '-')
+    """
+    return f"{100 * part / whole:.1f}%" if whole else "-"
+
+
+def decimal(value: Fraction) -> str:
+    """0.6 for 3/5; a fraction that is no short decimal stays one."""
+    text = f"{float(value):g}"
+    return text if Fraction(text) == value else str(value)

@@ -1,0 +1,336 @@
+"""What the viewer in a browser shows, as one plain document: a drive, and formulas that were judged on it.
+
+The viewer (``report/viewer``) needs nothing else and no server. Distances, danger and truth are the judge's
+and the library's; places between the knots of a motion follow from its pieces, which are in the document.
+Floats are for drawing; ``exact`` of a part tells its truth with open and closed ends.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import isfinite, lcm
+from typing import Any, TypeAlias, assert_never
+
+from roadproof.drivers.words import words_of_parts
+from roadproof.errors import InputError, RoadproofError, UsageError
+from roadproof.evidence.drive_file import DriveFile, drive_data
+from roadproof.frontends.report.drive_data import (
+    GRAIN,
+    Direction,
+    dangers_of,
+    distances_of,
+    vehicles_of,
+)
+from roadproof.library.bind import bind, values_with
+from roadproof.library.places import Place, places_of
+from roadproof.library.query import Query
+from roadproof.library.scenarios import SUBJECT, read_query, scenario_number
+from roadproof.library.specification import Library, Specification
+from roadproof.library.words import words_of
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.fragment import intervals_of
+from roadproof.logic.rewrite import bounds_of
+from roadproof.logic.show import as_syntax, text
+from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.blame import blame
+from roadproof.semantics.exact.exact import Judgement, judge
+from roadproof.semantics.exact.robust import robustness
+from roadproof.semantics.exact.truth import TruthSet
+from roadproof.world.motion import starts_of, state_at
+from roadproof.world.road import Road
+
+SCHEMA = "roadproof/viewer/1"
+MOST_PARTS = 2000
+FINEST = 20  # margins are sampled at most so many times as often as curves
+DIGITS = 6
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A formula to be shown on a drive; ``role``: question, watch, before or after.
+
+    ``specification``: the definitions it is read with; the drive's own where None. ``explain``: a part, by
+    its place among the parts, and an instant (s) of which is to be said why it is true or false then.
+    """
+
+    role: str
+    formula: str
+    specification: Specification | None = None
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    explain: tuple[int, Fraction] | None = None
+
+
+def viewer_data(
+    file: DriveFile, library: Library, asked: Sequence[Asked] = (), verdict: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """The document for a drive; without ``asked`` the formula of the file is shown.
+
+    ``verdict``: what is said of the drive, as plain data. A formula that cannot be judged on the drive has
+    an ``error`` in place of parts. Raises ``InputError`` where the file's set or options are unknown.
+    """
+    home = library.select(file.set_name, file.options)
+    every = asked or (Asked("question", file.formula),)
+    return {
+        "schema": SCHEMA,
+        "title": _title(home, file),
+        "verdict": dict(verdict or {}),
+        "drive": shown_drive(file, library),
+        "file": drive_data(file, {}),
+        "formulas": [shown_formula(x, file, x.specification or home) for x in every],
+    }
+
+
+def _title(home: Specification, file: DriveFile) -> str:
+    if file.scenario is None:
+        return file.formula
+    return str(words_of(home, file.scenario))
+
+
+# --- the drive ----------------------------------------------------------------------------------
+
+
+def shown_drive(file: DriveFile, library: Library) -> dict[str, Any]:
+    """Road, vehicles by name (SV first) with their states at the knots, and distances every ``grain`` s."""
+    directions: tuple[Direction, ...] = ("along", "across")
+    return {
+        "set": file.set_name,
+        "horizon": float(file.horizon),
+        "grain": float(GRAIN),
+        "lanes": dict(file.lanes),
+        "road": shown_road(file.road),
+        "vehicles": {name: _shown_motion(file, name) for name in vehicles_of(file)},
+        "distances": [
+            {
+                "direction": direction,
+                "one": x.one,
+                "other": x.other,
+                "gap": _short(x.gap),
+                "needed": _short(x.needed),
+                "one_behind": list(x.one_behind),
+            }
+            for direction in directions
+            for x in distances_of(file, library, direction)
+        ],
+        "dangers": [vars(x) for x in dangers_of(file, library)],
+    }
+
+
+def shown_road(road: Road) -> dict[str, Any]:
+    """Lanelets with their extent (m), null where they have no end."""
+
+    def bound(value: Fraction | None) -> float | None:
+        return None if value is None else float(value)
+
+    lanelets = [
+        {"lane": x.lane, "zone": x.zone, "s": [bound(y) for y in x.s], "d": [float(y) for y in x.d]}
+        for x in road.lanelets
+    ]
+    return {"name": road.name, "lanelets": lanelets}
+
+
+def _shown_motion(file: DriveFile, name: str) -> dict[str, Any]:
+    motion = file.drive.vehicles[name]
+    knots = [[float(x) for x in vars(state).values()] for state in starts_of(motion)]
+    return {"length": float(motion.length), "width": float(motion.width), "knots": knots}
+
+
+# --- formulas -----------------------------------------------------------------------------------
+
+
+def shown_formula(asked: Asked, file: DriveFile, home: Specification) -> dict[str, Any]:
+    """One formula on the drive: its parts with truth and margins, or why it cannot be judged."""
+    data = {"role": asked.role, "formula": asked.formula, "set": home.set_name}
+    try:
+        query, onto = bound_on(asked, file, home)
+        judgement = judge(onto(query.formula), file.drive)
+        why = {} if asked.explain is None else _reasons(judgement, query, onto, home, *asked.explain)
+    except RoadproofError as error:
+        return {**data, "error": str(error)}
+    number = scenario_number(query)
+    sentence = "" if number is None else words_of(home, number).sentence
+    return {
+        **data,
+        "text": query.text,
+        "sentence": sentence,
+        "holds": judgement.holds,
+        **shown_parts(judgement, file, home),
+        **why,
+    }
+
+
+Onto: TypeAlias = Callable[[Formula], Formula]
+"""From a formula to what it is on the road of a drive."""
+
+
+def bound_on(asked: Asked, file: DriveFile, home: Specification) -> tuple[Query, Onto]:
+    """The formula that is asked for, and how parts of it are bound to the road of ``file``.
+
+    Free lanes are those of the file, else the one that SV is in at the start. Raises ``TextError``,
+    ``InputError``, ``UsageError``.
+    """
+    query = read_query(home, asked.formula, "formula")[1]
+    absent = [name for name in query.vehicles if name not in file.drive.vehicles]
+    if absent:
+        raise InputError(
+            f"{query.text}: speaks of {', '.join(absent)}, but the drive has {', '.join(file.drive.vehicles)}"
+        )
+    lanes = {name: file.lanes.get(name) or _lane_of(file, SUBJECT) for name in query.lanes}
+    values = values_with(home.library, {**file.values, **asked.values})
+    return query, lambda formula: bind(formula, file.road, lanes, values)
+
+
+def _reasons(
+    judgement: Judgement, query: Query, onto: Onto, home: Specification, place: int, at: Fraction
+) -> dict[str, Any]:
+    """``because``: when parts make one part what it is at an instant, by their places; ``said`` where.
+
+    Raises ``UsageError`` where there is no such part.
+    """
+    parts = list(subformulas(judgement.formula))[:MOST_PARTS]
+    if not 0 <= place < len(parts):
+        raise UsageError(f"part={place}: the formula has parts 0 to {len(parts) - 1}")
+    found = blame(judgement, parts[place], at)
+    because = {str(k): shown_truth(found[x])["true"] for k, x in enumerate(parts) if x in found}
+    said = [x for x in places_of(home, query) if isinstance(x.formula, f.Compare | f.Named)]
+    said = [x for x in said if _on_road(x.formula, onto) in found]
+    return {"because": because, "said": [shown_place(x) for x in said]}
+
+
+def _on_road(formula: Formula, onto: Onto) -> Formula | None:
+    """None for what is said of each lanelet, which has no meaning alone."""
+    try:
+        return onto(formula)
+    except InputError:
+        return None
+
+
+def shown_place(place: Place) -> dict[str, Any]:
+    """Where something is said: the text, and from which line and column to which, which is behind it."""
+    at = place.at
+    return {"source": place.source, "from": [at.line, at.column], "to": [at.end_line, at.end_column]}
+
+
+def _lane_of(file: DriveFile, name: str) -> str:
+    """The lane that the middle of a vehicle is in at the start."""
+    motion = file.drive.vehicles.get(name) or next(iter(file.drive.vehicles.values()))
+    state = state_at(motion, Fraction(0))
+    middle = state.d - motion.width / 2
+    for lanelet in file.road.lanelets:
+        if lanelet.d[0] <= middle <= lanelet.d[1]:
+            return lanelet.lane
+    return file.road.lanes[0]
+
+
+def shown_parts(judgement: Judgement, file: DriveFile, home: Specification) -> dict[str, Any]:
+    """Every distinct sub-formula once, the whole first; ``children`` are places in the list.
+
+    ``op``: name, and, or, not, F, G, U, compare or truth. ``more``: how many were left out.
+    """
+    every = list(subformulas(judgement.formula))
+    shown = every[:MOST_PARTS]
+    places = {part: k for k, part in enumerate(shown)}
+    step, margins = _margins(judgement.formula, file)
+    words = words_of_parts(judgement.formula)
+    parts = []
+    for part in shown:
+        entry: dict[str, Any] = {
+            "op": _operator(part),
+            "text": told(part),
+            "children": [places[x] for x in f.children(part) if x in places],
+            **shown_truth(judgement.truth(part)),
+        }
+        if isinstance(part, f.Named):
+            definition = home.definitions.get(part.name.partition("@")[0])
+            entry["says"] = "" if definition is None else home.describe(definition)
+            if part in words:
+                entry["words"] = words[part]
+        if part in margins:
+            entry["margins"] = _short(margins[part])
+        parts.append(entry)
+    return {"parts": parts, "more": len(every) - len(shown), "step": step}
+
+
+def shown_truth(truth: TruthSet) -> dict[str, Any]:
+    """When something is true: ``true`` as [begin, end or null, begin is in it, end is in it], and exactly."""
+    spans = [
+        [
+            approximate(span.begin.point),
+            None if span.end is None else approximate(span.end.point),
+            not span.begin.after,
+            span.end is not None and span.end.after,
+        ]
+        for span in truth.spans()
+    ]
+    return {"true": spans, "exact": str(truth)}
+
+
+def told(part: Formula) -> str:
+    """A part as text, definitions by name with the lanes that they are about."""
+    if isinstance(part, f.Named):
+        return f"{part.name}({', '.join(part.arguments)})"
+    return _with_lanes(part, text(as_syntax(_by_name(part))))
+
+
+def _by_name(part: Formula) -> Formula:
+    """As ``part``, with the lanes of roads as names of the language, since others are written out."""
+
+    def rename(one: Formula) -> Formula:
+        if isinstance(one, f.Named):
+            return f.Named(one.name, tuple(x.replace("-", "_") for x in one.arguments), one.body)
+        return one
+
+    return f.transform(part, rename)
+
+
+def _with_lanes(part: Formula, written: str) -> str:
+    """The text with the names that the road gives its lanes."""
+    named = {x for one in subformulas(part) if isinstance(one, f.Named) for x in one.arguments if "-" in x}
+    for name in named:
+        written = written.replace(name.replace("-", "_"), name)
+    return written
+
+
+def _operator(part: Formula) -> str:
+    match part:
+        case f.Named():
+            return "name"
+        case f.And():
+            return "and"
+        case f.Or():
+            return "or"
+        case f.Not():
+            return "not"
+        case f.Eventually():
+            return "F"
+        case f.Always():
+            return "G"
+        case f.Until():
+            return "U"
+        case f.Compare() | f.Occupies() | f.Some() | f.Every():
+            return "compare"
+        case f.Truth():
+            return "truth"
+        case _:
+            assert_never(part)
+
+
+def _margins(formula: Formula, file: DriveFile) -> tuple[float, Mapping[Formula, Iterable[float]]]:
+    """Margins of all parts, and seconds between them; none where bounds are too fine to be sampled."""
+    bounds = (bound for interval in intervals_of(formula) for bound in bounds_of(interval))
+    finer = lcm(*((bound / GRAIN).denominator for bound in bounds if bound is not None))
+    if finer > FINEST:
+        return 0.0, {}
+    step = GRAIN / finer
+    found = robustness(formula, file.drive, step, int(file.horizon / step) * step)
+    return float(step), found.margins
+
+
+def _short(values: Iterable[float]) -> list[float | None]:
+    """As a document has them: few digits, null where there is no number."""
+    return [short_number(x) if isfinite(x) else None for x in values]
+
+
+def short_number(value: float) -> float:
+    """With as many digits as a document has them."""
+    return float(f"{value:.{DIGITS}g}")

@@ -1,0 +1,76 @@
+"""The viewer with its documents as one file that needs no server and asks nobody for anything."""
+
+import base64
+import hashlib
+import html
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from roadproof.frontends.report.viewer_files import viewer_modules, viewer_style
+
+_PAGE = """\
+<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src data: {hashes}; \
+style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'">
+<title>{title}</title>
+<style>{style}
+body {{ margin: 0 auto; max-width: 1500px; padding: 12px 16px; background: var(--paper); color: var(--ink);
+  font: 14px/1.4 system-ui, sans-serif; }}
+h1 {{ font-size: 18px; }}
+article {{ margin: 0 0 28px; }}
+</style>
+<script type="importmap">{imports}</script>
+</head>
+<body>
+<h1>{title}</h1>
+{articles}
+<script type="application/json" id="documents">{documents}</script>
+<script type="module">{script}</script>
+</body>
+</html>
+"""
+_SCRIPT = """
+import {{ mount }} from "viewer/viewer";
+const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+document.documentElement.dataset.theme = dark ? "dark" : "light";
+const documents = JSON.parse(document.getElementById("documents").textContent);
+documents.forEach((x, k) => mount(document.getElementById("document-" + k), x));
+""".replace("{{", "{").replace("}}", "}")
+
+
+def viewer_page(documents: Sequence[Mapping[str, Any]], title: str) -> str:
+    """An HTML page with a viewer for each document of ``viewer_data``; all texts are escaped."""
+    imports = json.dumps({"imports": {name: as_url(text) for name, text in viewer_modules().items()}})
+    articles = "\n".join(f'<article id="document-{k}"></article>' for k in range(len(documents)))
+    hashes = " ".join(hash_of(x) for x in (imports, _SCRIPT))
+    return _PAGE.format(
+        title=html.escape(title),
+        style=viewer_style(),
+        imports=imports,
+        articles=articles,
+        documents=json_in_html(documents),
+        script=_SCRIPT,
+        hashes=hashes,
+    )
+
+
+def json_in_html(data: object) -> str:
+    """Plain data as JSON that no browser takes for the end of a script, whatever its texts say."""
+    text = json.dumps(data, ensure_ascii=False)
+    for sign in "<>&\u2028\u2029":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return text
+
+
+def as_url(text: str) -> str:
+    return "data:text/javascript;base64," + base64.b64encode(text.encode()).decode()
+
+
+def hash_of(script: str) -> str:
+    """What a policy calls a script that it lets run."""
+    return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"

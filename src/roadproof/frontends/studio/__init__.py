@@ -1,0 +1,1 @@
+"""The studio: a local page that asks questions through the API, in worker processes."""

@@ -1,0 +1,36 @@
+"""What the studio begins with: the files that were named on the command line."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from roadproof.errors import InputError
+from roadproof.evidence.strict import read_json
+from roadproof.library.specification import read_specification
+
+
+@dataclass(frozen=True)
+class Begun:
+    """``text``: the definitions that the editor begins with; ``drives``: drive files by name."""
+
+    text: str = ""
+    drives: tuple[tuple[str, Any], ...] = ()
+
+    def as_data(self) -> dict[str, Any]:
+        """As plain data."""
+        return {"text": self.text, "drives": [{"name": name, "drive": x} for name, x in self.drives]}
+
+
+def begin_with(paths: Sequence[Path]) -> Begun:
+    """Read specification files (.spec) and drive files (.json). Raises ``InputError``."""
+    texts: list[str] = []
+    drives: list[tuple[str, Any]] = []
+    for path in paths:
+        if path.suffix == ".json":
+            drives.append((path.name, read_json(path)))
+        elif path.suffix == ".spec":
+            texts.append(read_specification(path).text)
+        else:
+            raise InputError(f"{path}: the studio opens specification files (.spec) and drive files (.json)")
+    return Begun("\n".join(texts), tuple(drives))

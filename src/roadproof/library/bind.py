@@ -1,0 +1,139 @@
+"""A formula meets a road and values: what comes out holds comparisons of signals and sizes only."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import lru_cache
+
+from roadproof.errors import InputError
+from roadproof.library.specification import Library, is_within, source_of, unknown
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import terms_of, with_values
+from roadproof.world.road import Lanelet, Road
+from roadproof.world.units import UNITS
+
+
+def default_values(library: Library) -> dict[str, Fraction]:
+    """The declared value of every parameter, in SI units."""
+    return {name: p.value * UNITS[p.unit][0] for name, p in library.parameters.items()}
+
+
+def values_with(library: Library, given: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """The value of every parameter, those of ``given`` in place of the declared ones, in SI units.
+
+    Raises ``InputError`` for a name that is not declared and for a value outside its declared bound.
+    """
+    for name, value in given.items():
+        if name not in library.parameters:
+            raise InputError(f"{name}={value}: {unknown('parameter', name, library.parameters)}")
+        declared = library.parameters[name]
+        if not is_within(declared.bound, value):
+            where = source_of(library, declared).name
+            at = f"{where}, line {declared.at.line}, column {declared.at.column}: "
+            raise InputError(f"{name}={value}: {at}the library demands {name} {declared.bound} 0")
+    return {**default_values(library), **given}
+
+
+def bind(formula: Formula, road: Road, lanes: Mapping[str, str], values: Mapping[str, Fraction]) -> Formula:
+    """``formula`` on ``road``: free lanes replaced by ``lanes``, parameters by ``values``.
+
+    Quantifiers become finite conjunctions and disjunctions and ``occ`` becomes comparisons, so the
+    result has no ``Some``, ``Every``, ``Occupies`` or ``Parameter``. Raises ``InputError`` for a
+    lane that the road does not have or that ``lanes`` does not name, and for a number without value.
+    """
+    return _bound(formula, road, tuple(sorted(lanes.items())), tuple(sorted(values.items())))
+
+
+# A search asks for the same formula again and again: for its start, its engines and the judge.
+@lru_cache(maxsize=32)
+def _bound(
+    formula: Formula, road: Road, lanes: tuple[tuple[str, str], ...], values: tuple[tuple[str, Fraction], ...]
+) -> Formula:
+    refuse_variables(formula)
+    return with_values(_Grounding(road, dict(lanes)).visit(formula, {}), dict(values))
+
+
+def refuse_variables(formula: Formula) -> None:
+    """Raise ``InputError`` where a number declared with ``given`` has no value."""
+    for leaf in (leaf for side in terms_of(formula) for leaf in t.leaves(side)):
+        if isinstance(leaf, t.Variable):
+            raise InputError(
+                f"'{leaf.name}' stands for every number, and has no value on a drive or in a recording: "
+                "write a number, or declare a parameter in a specification file"
+            )
+
+
+def occupies(vehicle: str, lanelet: Lanelet) -> Formula:
+    """occ(a, l) on a straight road: box and lanelet overlap with positive area (semantics §4)."""
+    front: t.Term = t.Signal("s", vehicle)
+    left: t.Term = t.Signal("d", vehicle)
+    metres = (1, 0)
+    low, high = lanelet.s
+    inside: list[Formula] = []
+    if low is not None:
+        inside.append(f.Compare(front, ">", t.Number(low, metres)))
+    if high is not None:
+        inside.append(f.Compare(t.subtract(front, t.Size("length", vehicle)), "<", t.Number(high, metres)))
+    right_edge, left_edge = lanelet.d
+    inside.append(f.Compare(left, ">", t.Number(right_edge, metres)))
+    inside.append(f.Compare(t.subtract(left, t.Size("width", vehicle)), "<", t.Number(left_edge, metres)))
+    return f.conjunction(*inside)
+
+
+class _Grounding:
+    def __init__(self, road: Road, lanes: Mapping[str, str]) -> None:
+        self.road = road
+        self.lanes = lanes
+        self.lanelets = {x.id: x for x in road.lanelets}
+        self.known: dict[tuple[Formula, tuple[tuple[str, str], ...]], Formula] = {}
+
+    def visit(self, formula: Formula, scope: Mapping[str, str]) -> Formula:
+        """``scope`` gives the lane or lanelet that each bound variable stands for."""
+        key = (formula, tuple(sorted(scope.items())))
+        if key not in self.known:
+            self.known[key] = self._visit(formula, scope)
+        return self.known[key]
+
+    def _visit(self, formula: Formula, scope: Mapping[str, str]) -> Formula:
+        match formula:
+            case f.Occupies(vehicle, lanelet):
+                return occupies(vehicle, self._lanelet(scope.get(lanelet, lanelet)))
+            case f.Some(variable, domain, body):
+                return f.disjunction(
+                    *(self.visit(body, {**scope, variable: e}) for e in self._elements(domain, scope))
+                )
+            case f.Every(variable, domain, body):
+                return f.conjunction(
+                    *(self.visit(body, {**scope, variable: e}) for e in self._elements(domain, scope))
+                )
+            case f.Named(name, arguments, body):
+                shown = tuple(scope.get(a, self.lanes.get(a, a)) for a in arguments)
+                return f.Named(name, shown, self.visit(body, scope))
+            case _:
+                parts = tuple(self.visit(child, scope) for child in f.children(formula))
+                return f.with_children(formula, parts)
+
+    def _lanelet(self, name: str) -> Lanelet:
+        if name not in self.lanelets:
+            raise InputError(f"lanelet={name}: {unknown('lanelet', name, self.lanelets)}")
+        return self.lanelets[name]
+
+    def _lane(self, name: str, scope: Mapping[str, str]) -> str:
+        lane = scope.get(name, self.lanes.get(name, name))
+        if lane not in self.road.lanes:
+            raise InputError(
+                f"lane {name}={lane}: road '{self.road.name}' has the lanes {', '.join(self.road.lanes)}"
+            )
+        return lane
+
+    def _elements(self, domain: f.Domain, scope: Mapping[str, str]) -> tuple[str, ...]:
+        match domain.kind:
+            case "lanes":
+                return self.road.lanes
+            case "adjacent":
+                return self.road.beside(self._lane(domain.of, scope))
+            case "lanelets":
+                return tuple(x.id for x in self.road.lanelets_of(self._lane(domain.of, scope)))
+            case "zone":
+                return tuple(x.id for x in self.road.lanelets_in(domain.of))

@@ -1,0 +1,194 @@
+"""What names stand for while a claim is read: vehicles, lanes and lanelets, groups of vehicles, numbers."""
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from roadproof.errors import Position, TextError
+from roadproof.library.quantity import Quantity
+from roadproof.library.specification import unknown
+from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic import terms as t
+from roadproof.logic.syntax import Binding, Definition, Expression
+from roadproof.world.units import UNITS
+
+SORTS = ("vehicle", "vehicles", "lane", "lanelet")
+_FREE = {"vehicle": re.compile(r"SV|POV[0-9]?"), "lane": re.compile(r"L[0-9]?")}  # library.ROLE
+
+
+@dataclass(frozen=True)
+class Ref:
+    """A vehicle, lane or lanelet that a name stands for."""
+
+    sort: str
+    name: str
+
+
+@dataclass(frozen=True)
+class Vehicles:
+    names: tuple[str, ...]
+
+
+Value: TypeAlias = Ref | Vehicles | Quantity
+Scope: TypeAlias = Mapping[str, Value]
+# Names of vehicles and of lanes that nothing declares; those of a claim are added as they are met.
+Free: TypeAlias = Mapping[str, set[str]]
+
+
+def check_sort(binding: Binding) -> None:
+    if binding.sort not in SORTS and binding.sort not in UNITS:
+        raise TextError(unknown("sort or unit", binding.sort, (*SORTS, *UNITS)), binding.at)
+
+
+def refuse_signal(name: str, signals: Collection[str], at: Position) -> None:
+    """A name that is declared in a claim may not hide a signal."""
+    if name in signals:
+        raise TextError(
+            f"'{name}' is a signal of the specification", at, "Give what is declared another name."
+        )
+
+
+def value_of(binding: Binding) -> Value:
+    """What a declared name stands for: itself, or a number of which nothing is known."""
+    if binding.sort in SORTS:
+        return Ref(binding.sort, binding.name)
+    return Quantity(t.Variable(binding.name, UNITS[binding.sort][1]), UNITS[binding.sort][1])
+
+
+def scope_of(given: tuple[Binding, ...], parameters: Collection[str], free: Free) -> Scope:
+    """What is declared in front of a claim; ``parameters`` are those of the specification."""
+    scope: dict[str, Value] = {}
+    for binding in given:
+        if binding.name in scope:
+            raise TextError(f"'{binding.name}' is given twice", binding.at)
+        check_sort(binding)
+        if binding.sort in UNITS and binding.name in parameters:
+            raise TextError(
+                f"'{binding.name}' is a parameter of the specification",
+                binding.at,
+                "Give the variable another name.",
+            )
+        scope[binding.name] = value_of(binding)
+        if binding.sort in free:
+            free[binding.sort].add(binding.name)
+    return scope
+
+
+def reference(expression: Expression | Ref, sort: str, scope: Scope, free: Free | None) -> Ref:
+    """A vehicle, lane or lanelet named where that sort is expected; ``free`` is None inside definitions."""
+    if isinstance(expression, Ref) and expression.sort == sort:
+        return expression
+    if isinstance(expression, Ref):
+        raise TextError(f"'{expression.name}' is a {expression.sort}, but a {sort} is expected here")
+    if not isinstance(expression, syntax.Name):
+        raise TextError(f"a {sort} is expected here, not an expression", expression.at)
+    value = scope.get(expression.name)
+    if value is None:
+        if free is not None and sort in _FREE and _FREE[sort].fullmatch(expression.name):
+            free[sort].add(expression.name)
+            return Ref(sort, expression.name)
+        raise TextError(
+            unknown(sort, expression.name, [n for n, v in scope.items() if sort_of(v) == sort]),
+            expression.at,
+            f"Declare it in front of the claim: given {expression.name}: {sort}: …"
+            if free is not None and sort in free
+            else "",
+        )
+    if not isinstance(value, Ref) or value.sort != sort:
+        raise TextError(
+            f"'{expression.name}' is a {sort_of(value)}, but a {sort} is expected here", expression.at
+        )
+    return value
+
+
+def deal_out(
+    definition: Definition, call: syntax.Call, scope: Scope
+) -> Iterator[tuple[Binding, list[Expression | Ref]]]:
+    """The arguments of each parameter; one parameter of sort vehicles takes what the others leave."""
+    parameters = definition.parameters
+    rest = _spread(call.arguments, scope)
+    groups = [b for b in parameters if b.sort == "vehicles"]
+    if len(groups) > 1:
+        raise TextError(f"'{definition.name}' has more than one parameter of sort vehicles", call.at)
+    left_over = len(rest) - len(parameters) + len(groups)
+    if (groups and left_over < 1) or (not groups and left_over != 0):
+        names = ", ".join(f"{b.name}: {b.sort}" for b in parameters)
+        raise TextError(
+            f"'{definition.name}' takes {'at least ' if groups else ''}{len(parameters)} "
+            f"argument{'s' if len(parameters) != 1 else ''} but got {len(rest)}",
+            call.at,
+            f"It is {definition.name}({names}).",
+        )
+    for binding in parameters:
+        count = left_over if binding.sort == "vehicles" else 1
+        yield binding, rest[:count]
+        rest = rest[count:]
+
+
+def _spread(arguments: tuple[Expression, ...], scope: Scope) -> list[Expression | Ref]:
+    """Arguments with each group of vehicles replaced by its members."""
+    spread: list[Expression | Ref] = []
+    for argument in arguments:
+        value = scope.get(argument.name) if isinstance(argument, syntax.Name) else None
+        if isinstance(value, Vehicles):
+            spread += [Ref("vehicle", name) for name in value.names]
+        else:
+            spread.append(argument)
+    return spread
+
+
+def vehicles_in(
+    domain: syntax.Name | syntax.Call | syntax.Group, scope: Scope, free: Free | None
+) -> list[Ref] | None:
+    """The vehicles that are quantified over; None where the domain is one of the road."""
+    if isinstance(domain, syntax.Group):
+        return [reference(member, "vehicle", scope, free) for member in domain.members]
+    value = scope.get(domain.name) if isinstance(domain, syntax.Name) else None
+    return [Ref("vehicle", name) for name in value.names] if isinstance(value, Vehicles) else None
+
+
+def domain_of(domain: syntax.Name | syntax.Call | syntax.Group, scope: Scope, free: Free | None) -> f.Domain:
+    """The lanes or lanelets that are quantified over."""
+    if isinstance(domain, syntax.Name) and domain.name == "lanes":
+        return f.Domain("lanes")
+    if isinstance(domain, syntax.Call):
+        argument = domain.arguments[0]
+        if domain.name == "zone" and isinstance(argument, syntax.Name):
+            if argument.name not in ("main", "merge", "depart"):
+                raise TextError(unknown("zone", argument.name, ("main", "merge", "depart")), argument.at)
+            return f.Domain("zone", argument.name)
+        if domain.name == "lanelets":
+            return f.Domain("lanelets", reference(argument, "lane", scope, free).name)
+        if domain.name == "adjacentLanes":
+            return f.Domain("adjacent", reference(argument, "lane", scope, free).name)
+    raise TextError(
+        "this is no domain to quantify over",
+        domain.at,
+        "Use lanes, lanelets(L), zone(main), adjacentLanes(L), a group of vehicles, or {SV, POV}.",
+    )
+
+
+def sort_of(value: Value) -> str:
+    match value:
+        case Ref(sort, _):
+            return sort
+        case Vehicles():
+            return "group of vehicles"
+        case Quantity():
+            return "number"
+
+
+def names_in(bound: Scope) -> tuple[str, ...]:
+    """The arguments of an application as ``Named`` shows them."""
+    names: list[str] = []
+    for value in bound.values():
+        match value:
+            case Ref(_, name):
+                names.append(name)
+            case Vehicles(members):
+                names += members
+            case Quantity():
+                names.append("…")
+    return tuple(names)

@@ -1,1 +1,0 @@
-"""Preventable or not: drivers of regulations over planes of initial values, exactly."""

@@ -1,0 +1,1 @@
+"""Scenarios in recordings: how often each occurs, with results that can be checked."""

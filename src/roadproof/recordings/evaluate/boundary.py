@@ -1,0 +1,161 @@
+"""Matches on measured roads that depend on less than what the projection on a line is off by.
+
+A match is sure where its formula holds however each comparison of places comes out that is nearer to its
+boundary than places may be off there: such a comparison counts as false where the formula needs it, and as
+true where the formula needs that it is false. Comparisons are taken one by one at every sample, as if each
+could be off by itself, so a match that is called sure is; one that is not may be. Velocities, and which
+lanelets a box is in, are taken as they are, and so is where a trace starts and ends.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import numpy as np
+
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Compare, Formula
+from roadproof.logic.rewrite import signals_of, terms_of, without_names
+from roadproof.recordings.evaluate.lane_atoms import LaneAtom
+from roadproof.recordings.evaluate.traces import gather, rows_of
+from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, Slack
+from roadproof.semantics.sampled.answers import Convention
+from roadproof.semantics.sampled.arithmetic import COMPARISONS, margin_program
+from roadproof.semantics.sampled.batch import Batch
+from roadproof.semantics.sampled.compiled import compile
+from roadproof.semantics.sampled.robustness import observe_margins
+
+PLACES = ("s", "d")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A formula that holds on traces: vehicles and lanes by name as for ``gather``, an entry a trace."""
+
+    formula: Formula
+    vehicles: Mapping[str, Integers]
+    low: Integers
+    high: Integers
+    lanes: Mapping[str, Integers]
+    atoms: Mapping[Formula, LaneAtom]
+    convention: Convention
+
+
+def uncertain(recording: Recording, asked: Asked) -> Bools:
+    """For each trace whether what holds there depends on less than places may be off by."""
+    if recording.slack is None or not len(asked.low):
+        return np.zeros(len(asked.low), np.bool_)
+    plain = _Bounded(without_names(asked.formula))
+    signals = signals_of([asked.formula])
+    batch = gather(recording, asked.vehicles, asked.low, asked.high, signals, asked.lanes, asked.atoms)
+    comparisons = tuple(plain.comparisons)
+    margins = observe_margins(comparisons, margin_program(comparisons), batch, slice(0, batch.traces))
+    rows = {name: rows_of(recording, v, asked.low, asked.high) for name, v in asked.vehicles.items()}
+    given = dict(batch.given)
+    for compare in comparisons:
+        off = _off(compare, recording.slack, rows)
+        for sign, atom in zip((-1.0, 1.0), plain.comparisons[compare], strict=True):
+            with np.errstate(invalid="ignore"):  # an endless margin that is endlessly off is not known
+                shifted = np.nan_to_num(margins[compare] + sign * off, nan=sign * np.inf)
+            relation = COMPARISONS[">" if compare.op in ("<", ">") else ">="]
+            given[atom] = relation(shifted, 0.0)
+    bounded = Batch(batch.dt, batch.lengths, batch.signals, batch.sizes, given)
+    return ~compile({"sure": plain.formula}).evaluate(bounded, asked.convention).answers["sure"].true
+
+
+@dataclass
+class _Bounded:
+    """A formula with two atoms for each comparison of places: that it surely holds, and that it may.
+
+    The first stands where truth of the comparison helps the formula, the second where it hurts.
+    """
+
+    original: Formula
+    comparisons: dict[Compare, tuple[Formula, Formula]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.known: dict[tuple[Formula, bool], Formula] = {}
+        self.formula = self._visit(self.original, True)
+
+    def _visit(self, formula: Formula, helps: bool) -> Formula:
+        key = (formula, helps)
+        if key not in self.known:
+            self.known[key] = self._made(formula, helps)
+        return self.known[key]
+
+    def _made(self, formula: Formula, helps: bool) -> Formula:
+        match formula:
+            case Compare():
+                if not any(_is_place(leaf) for term in terms_of(formula) for leaf in t.leaves(term)):
+                    return formula
+                name = f"comparison {len(self.comparisons)}"
+                # An atom that only the batch decides; no lanelet has such a name.
+                atoms = (f.Occupies(name, "surely"), f.Occupies(name, "perhaps"))
+                return self.comparisons.setdefault(formula, atoms)[0 if helps else 1]
+            case f.Not(body):
+                return f.Not(self._visit(body, not helps))
+            case f.Some() | f.Every():
+                return formula
+            case _:
+                parts = tuple(self._visit(child, helps) for child in f.children(formula))
+                return f.with_children(formula, parts)
+
+
+def _is_place(leaf: t.Leaf) -> bool:
+    return isinstance(leaf, t.Signal) and leaf.name in PLACES
+
+
+def _off(compare: Compare, slack: Slack, rows: Mapping[str, Integers]) -> Floats:
+    """By how much both sides together may be off, for each sample of each trace.
+
+    That is what each box is off by, and between boxes what the road turns there, times how far beside the
+    line they are: so much longer or shorter is the way there than the line (``Slack``). Endless where
+    places are not added and multiplied by numbers only.
+    """
+    shares = _shares(t.subtract(compare.left, compare.right))
+    shape = next(iter(rows.values())).shape
+    if shares is None:
+        return np.full(shape, np.inf)
+    off = np.zeros(shape)
+    along = {leaf.vehicle: abs(float(c)) for leaf, c in shares.items() if leaf.name == "s" and c}
+    across = {leaf.vehicle: abs(float(c)) for leaf, c in shares.items() if leaf.name == "d" and c}
+    for vehicle, share in along.items():
+        off += share * slack.along[rows[vehicle]]
+    for vehicle, share in across.items():
+        off += share * slack.across[rows[vehicle]]
+    if len(along) > 1:
+        turn = np.stack([slack.turn[rows[vehicle]] for vehicle in along])
+        beside = np.stack([slack.off[rows[vehicle]] for vehicle in along])
+        off += max(along.values()) * np.ptp(turn, axis=0) * beside.max(axis=0)
+    return off
+
+
+def _shares(term: t.Term) -> dict[t.Signal, Fraction] | None:
+    """What each place is multiplied by in a sum; None where places are elsewhere than in sums."""
+    if not any(_is_place(leaf) for leaf in t.leaves(term)):
+        return {}
+    match term:
+        case t.Signal():
+            return {term: Fraction(1)}
+        case t.Sum(parts):
+            total: dict[t.Signal, Fraction] = {}
+            for part in parts:
+                shares = _shares(part)
+                if shares is None:
+                    return None
+                for signal, share in shares.items():
+                    total[signal] = total.get(signal, Fraction(0)) + share
+            return total
+        case t.Product(factors):
+            numbers = [t.constant_value(x) for x in factors]
+            others = [x for x, value in zip(factors, numbers, strict=True) if value is None]
+            inner = _shares(others[0]) if len(others) == 1 else None
+            if inner is None:
+                return None
+            factor = Fraction(1)
+            for value in numbers:
+                factor *= Fraction(1) if value is None else value
+            return {signal: share * factor for signal, share in inner.items()}
+        case _:
+            return None

@@ -1,0 +1,359 @@
+"""The highD experiment on one recording (semantics §7): which disturbance matches which scenario."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from roadproof.library.scenarios import LANE, PAIR, TRIPLE
+from roadproof.recordings.evaluate.boundary import Asked, uncertain
+from roadproof.recordings.evaluate.detectors import Detection, find_detections, order_of_detections
+from roadproof.recordings.evaluate.disturbances import (
+    NEVER,
+    CutTriples,
+    Disturbances,
+    cut_triples,
+    find_disturbances,
+)
+from roadproof.recordings.evaluate.foretelling import foretell
+from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE
+from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.questions import START, MonitorKey, Questions
+from roadproof.recordings.evaluate.traces import gather
+from roadproof.recordings.formats.overlaps import Overlap, find_overlaps, told_overlap
+from roadproof.recordings.formats.pairs import Pairs, triples_of
+from roadproof.recordings.formats.recording import Bools, Integers, Recording
+from roadproof.recordings.formats.repeats import Seen, see_pair
+from roadproof.recordings.formats.windows import Window
+from roadproof.semantics.sampled.answers import Convention
+from roadproof.semantics.sampled.compiled import Monitor, Observation
+
+OTHER: Mapping[Convention, Convention] = {"truncated": "clip", "clip": "truncated"}
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A disturbance: an unordered pair under one minDanger. Lanes and road sectors are those at its start."""
+
+    first: int
+    second: int
+    min_danger: int
+    start_frame: int
+    end_frame: int
+    first_lane: str
+    second_lane: str
+    sectors: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What was found in one recording. ``violating``: the pairs (ids, ascending) with an rssViolation in some
+    frame.
+
+    ``undecided`` counts questions whose answer depends on what comes after the trace, ``differing``
+    those that the other convention for the end of a trace answers otherwise. ``sectors``: the road sectors
+    that its road has, of those that were asked for. ``seen``: the pairs that
+    violate or are detected, where another recording may show them too.
+    """
+
+    recording: str
+    vehicles: int
+    samples: int
+    violating: tuple[tuple[int, int], ...]
+    triples: int
+    asked: int
+    undecided: int
+    differing: int
+    traces: tuple[Trace, ...]
+    matches: tuple[Match, ...]
+    detections: tuple[Detection, ...]
+    notes: tuple[str, ...]
+    sectors: tuple[str, ...]
+    seen: tuple[Seen, ...] = ()
+
+
+def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
+    """Filter, cut and match all pairs, and all triples for the scenarios of three cars."""
+    return evaluate_windows([Window(recording, np.ones(recording.vehicles, bool))], questions)
+
+
+def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Findings:
+    """As ``evaluate_recording``, of a recording in windows of time, of which one at a time is looked at.
+
+    A pair or triple is looked at where the last of its vehicles comes in, on all of its common frames.
+    """
+    parts: list[_Part] = []
+    name, notes = "", tuple[str, ...]()
+    for window in windows:
+        recording = window.recording
+        if recording.rate != questions.rate:
+            raise ValueError(f"questions for {questions.rate} Hz put to a recording of {recording.rate} Hz")
+        name, notes = recording.name, recording.notes
+        parts.append(_evaluate(window, questions))
+    matches = sorted((x for part in parts for x in part.matches), key=_order)
+    overlaps = sorted((x for part in parts for x in part.overlaps), key=lambda x: x[:2])
+    return Findings(
+        recording=name,
+        vehicles=sum(part.vehicles for part in parts),
+        samples=sum(part.samples for part in parts),
+        violating=tuple(sorted(pair for part in parts for pair in part.violating)),
+        triples=sum(part.triples for part in parts),
+        asked=sum(part.tally.asked for part in parts),
+        undecided=sum(part.tally.undecided for part in parts),
+        differing=sum(part.tally.differing for part in parts),
+        traces=tuple(sorted((x for part in parts for x in part.traces), key=_order_of_traces)),
+        matches=tuple(matches),
+        detections=tuple(sorted((x for part in parts for x in part.detections), key=order_of_detections)),
+        notes=(*notes, *map(told_overlap, overlaps), *_say_uncertain(matches)),
+        sectors=tuple(x.name for x in questions.sectors),
+        seen=tuple(sorted((x for part in parts for x in part.seen), key=lambda x: (x.first, x.second))),
+    )
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What was found in a window; fields as in ``Findings``."""
+
+    vehicles: int
+    samples: int
+    violating: tuple[tuple[int, int], ...]
+    triples: int
+    tally: "_Tally"
+    traces: tuple[Trace, ...]
+    matches: tuple[Match, ...]
+    detections: tuple[Detection, ...]
+    overlaps: tuple[Overlap, ...]
+    seen: tuple[Seen, ...]
+
+
+def _evaluate(window: Window, questions: Questions) -> _Part:
+    recording = window.recording
+    everything = find_disturbances(recording, questions)
+    found = everything.choose(window.has(everything.pairs.first, everything.pairs.second))
+    tally = _Tally(questions)
+    matches = list(_match_pairs(recording, questions, found, tally))
+    cut = None
+    if questions.triple_start is not None:
+        cut = _candidates(window, questions, everything)
+        matches += _match_triples(recording, questions, cut, tally)
+    meeting = everything.meeting.choose(window.has(everything.meeting.first, everything.meeting.second))
+    detections = find_detections(recording, questions, meeting)
+    return _Part(
+        vehicles=int(np.count_nonzero(window.new)),
+        samples=int(np.diff(recording.start)[window.new].sum()),
+        violating=tuple(_ids_of(recording, found.pairs)),
+        triples=0 if cut is None else len(cut.triples),
+        tally=tally,
+        traces=tuple(_traces(recording, questions, found)),
+        matches=tuple(foretell(recording, questions, matches)),
+        detections=detections,
+        overlaps=tuple(_overlapping(recording, found)),
+        seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),
+    )
+
+
+def _ids_of(recording: Recording, pairs: Pairs) -> Iterator[tuple[int, int]]:
+    """The ids of the vehicles of each pair, the smaller first."""
+    ids = recording.vehicle_id
+    for one, other in zip(ids[pairs.first].tolist(), ids[pairs.second].tolist(), strict=True):
+        yield min(one, other), max(one, other)
+
+
+def _overlapping(recording: Recording, found: Disturbances) -> Iterator[Overlap]:
+    """Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already."""
+    return find_overlaps(recording, found.pairs) if not len(recording.moments) else iter(())
+
+
+def _say_uncertain(matches: Sequence[Match]) -> Iterator[str]:
+    count = sum(match.uncertain for match in matches)
+    if count:
+        yield f"{count} of {len(matches)} matches depend on less than places along the road may be off"
+
+
+def _see(recording: Recording, found: Disturbances, detections: tuple[Detection, ...]) -> Iterator[Seen]:
+    ids = recording.vehicle_id
+    violating = set(zip(found.pairs.first.tolist(), found.pairs.second.tolist(), strict=True))
+    place = {number: v for v, number in enumerate(ids.tolist())}
+    detected = {(place[a], place[b]) for a, b in (x.pair for x in detections)}
+    for first, second in sorted(violating | detected):
+        yield see_pair(recording, first, second, (first, second) in violating)
+
+
+def _order(match: Match) -> tuple[object, ...]:
+    return (match.sv, match.pov, match.pov2 or 0, match.min_danger, match.set_name, match.scenario)
+
+
+def _order_of_traces(trace: Trace) -> tuple[int, int, int]:
+    return trace.first, trace.second, trace.min_danger
+
+
+@dataclass
+class _Tally:
+    questions: Questions
+    asked: int = 0
+    undecided: int = 0
+    differing: int = 0
+
+    def ask(
+        self, monitor: Monitor[MonitorKey], seen: Observation, arises: Bools
+    ) -> Mapping[MonitorKey, Bools]:
+        """For each question which traces, of those where danger ``arises``, satisfy it."""
+        convention = self.questions.settings.convention
+        answers = monitor.evaluate(seen, convention).answers
+        others = monitor.evaluate(seen, OTHER[convention]).answers
+        true = {}
+        for asked, answer in answers.items():
+            true[asked] = answer.true & arises
+            self.asked += int(np.count_nonzero(arises))
+            self.undecided += int(np.count_nonzero(answer.undecided & arises))
+            self.differing += int(np.count_nonzero((answer.true != others[asked].true) & arises))
+        return true
+
+
+def _match_pairs(
+    recording: Recording, questions: Questions, found: Disturbances, tally: _Tally
+) -> Iterator[Match]:
+    end = np.max(found.end, axis=0, initial=-1)
+    chosen = np.flatnonzero(end >= 0)
+    if not len(chosen) or not questions.pairs:
+        return
+    pairs, start = found.pairs.choose(chosen), found.start[chosen]
+    lanes = {
+        LANE: _lane_at(recording, pairs.first, start),
+        OTHER_LANE: _lane_at(recording, pairs.second, start),
+    }
+    vehicles = dict(zip(PAIR, (pairs.first, pairs.second), strict=True))
+    ends = tuple(x[chosen] for x in found.end)
+    ids = recording.vehicle_id
+    for k, asked, hits in _ask_all(
+        recording, questions, questions.pairs, vehicles, start, ends, lanes, tally
+    ):
+        for p, unsure in hits:
+            pair = int(ids[pairs.first[p]]), int(ids[pairs.second[p]])
+            sv, pov = pair if asked.sv == "first" else pair[::-1]
+            lane = _lane_name(recording, lanes[asked.lane][p])
+            frames = (int(start[p]), int(ends[k][p]))
+            yield Match(sv, pov, None, lane, *frames, k, asked.set_name, asked.number, unsure)
+
+
+def _candidates(window: Window, questions: Questions, found: Disturbances) -> CutTriples:
+    """Triples in which danger arises and whose start allows a scenario of three cars."""
+    recording = window.recording
+    triples = triples_of(recording, found.pairs, found.meeting)
+    triples = triples.choose(window.has(triples.sv, triples.pov1, triples.pov2))
+    cut = cut_triples(questions, found, triples)
+    assert questions.triple_start is not None
+    if not len(cut.triples):
+        return cut
+    lanes = {LANE: _lane_at(recording, cut.triples.sv, cut.start)}
+    batch = gather(
+        recording,
+        dict(zip(TRIPLE, (cut.triples.sv, cut.triples.pov1, cut.triples.pov2), strict=True)),
+        cut.start,
+        cut.start,
+        questions.triple_start.signals,
+        lanes,
+        questions.lane_atoms,
+    )
+    return cut.choose(questions.triple_start.evaluate(batch).answers[START].true)
+
+
+def _match_triples(
+    recording: Recording, questions: Questions, cut: CutTriples, tally: _Tally
+) -> Iterator[Match]:
+    triples, start = cut.triples, cut.start
+    if not len(triples):
+        return
+    lanes = {LANE: _lane_at(recording, triples.sv, start)}
+    vehicles = dict(zip(TRIPLE, (triples.sv, triples.pov1, triples.pov2), strict=True))
+    ids = recording.vehicle_id
+    hits = _ask_all(recording, questions, questions.triples, vehicles, start, cut.end, lanes, tally)
+    for k, asked, places in hits:
+        for p, unsure in places:
+            sv, pov, pov2 = (int(ids[x[p]]) for x in (triples.sv, triples.pov1, triples.pov2))
+            lane = _lane_name(recording, lanes[LANE][p])
+            frames = (int(start[p]), int(cut.end[k][p]))
+            yield Match(sv, pov, pov2, lane, *frames, k, asked.set_name, asked.number, unsure)
+
+
+def _ask_all(
+    recording: Recording,
+    questions: Questions,
+    monitors: tuple[Monitor[MonitorKey], ...],
+    vehicles: Mapping[str, Integers],
+    start: Integers,
+    ends: tuple[Integers, ...],
+    lanes: Mapping[str, Integers],
+    tally: _Tally,
+) -> Iterator[tuple[int, MonitorKey, list[tuple[int, bool]]]]:
+    """For each minDanger and question the traces that satisfy it, each cut at its own end.
+
+    With each, whether that depends on less than places may be off.
+    """
+    last = np.max(ends, axis=0)
+    signals = [signal for monitor in monitors for signal in monitor.signals]
+    batch = gather(recording, vehicles, start, last, signals, lanes, questions.lane_atoms)
+    seen: Observation | None = None
+    for k, (monitor, end) in enumerate(zip(monitors, ends, strict=True)):
+        seen = monitor.observe(batch, known=seen)
+        arises = end >= 0
+        lengths = np.where(arises, end - start + 1, batch.lengths)
+        for asked, true in tally.ask(monitor, seen.cut(lengths), arises).items():
+            hits = np.flatnonzero(true)
+            there = Asked(
+                monitor.formulas[asked],
+                {name: index[hits] for name, index in vehicles.items()},
+                start[hits],
+                end[hits],
+                {name: index[hits] for name, index in lanes.items()},
+                questions.lane_atoms,
+                questions.settings.convention,
+            )
+            yield k, asked, list(zip(hits.tolist(), uncertain(recording, there).tolist(), strict=True))
+
+
+def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:
+    lane: Integers = recording.lane[recording.start[vehicle] + frame - recording.first_frame[vehicle]]
+    return lane
+
+
+def _lane_name(recording: Recording, index: int) -> str:
+    """Empty for the centre of a box that is on no lane."""
+    return recording.lanes[index].name if index >= 0 else ""
+
+
+def _traces(recording: Recording, questions: Questions, found: Disturbances) -> Iterator[Trace]:
+    pairs, ids = found.pairs, recording.vehicle_id
+    known = np.flatnonzero(found.start != NEVER)
+    sectors = _sectors_at(recording, questions, pairs.choose(known), found.start[known])
+    within = {int(p): tuple(name for name, there in sectors.items() if there[k]) for k, p in enumerate(known)}
+    first_lane, second_lane = np.full(len(pairs), -1), np.full(len(pairs), -1)
+    for lane, vehicle in ((first_lane, pairs.first), (second_lane, pairs.second)):
+        lane[known] = _lane_at(recording, vehicle[known], found.start[known])
+    for p in range(len(pairs)):
+        for k, end in enumerate(found.end):
+            if end[p] >= 0:
+                yield Trace(
+                    int(ids[pairs.first[p]]),
+                    int(ids[pairs.second[p]]),
+                    k,
+                    int(found.start[p]),
+                    int(end[p]),
+                    _lane_name(recording, int(first_lane[p])),
+                    _lane_name(recording, int(second_lane[p])),
+                    within[p],
+                )
+
+
+def _sectors_at(
+    recording: Recording, questions: Questions, pairs: Pairs, frame: Integers
+) -> dict[str, Bools]:
+    """For each road sector that can be met which of the pairs are in it at ``frame``."""
+    everywhere = np.ones(len(pairs), bool)
+    if not len(pairs):
+        return {x.name: everywhere for x in questions.sectors}
+    vehicles = dict(zip(PAIR, (pairs.first, pairs.second), strict=True))
+    asked = questions.where
+    batch = gather(recording, vehicles, frame, frame, asked.signals, None, questions.lane_atoms)
+    answers = asked.evaluate(batch).answers
+    return {x.name: answers[x].true if x in answers else everywhere for x in questions.sectors}

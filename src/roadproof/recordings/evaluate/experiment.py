@@ -1,0 +1,203 @@
+"""The highD experiment over many recordings: resumable, and in memory one recording a process."""
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from roadproof.errors import InputError, SharedError
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_windows
+from roadproof.recordings.evaluate.questions import Questions, Settings, ask
+from roadproof.recordings.evaluate.results import (
+    Totals,
+    fingerprint,
+    load_findings,
+    question_mark,
+    save_findings,
+    write_results,
+)
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.source import RecordingSource
+from roadproof.recordings.formats.sources import copies_among, find_sources
+from roadproof.recordings.formats.windows import Divided
+from roadproof.runtime.dispatch import answers_of
+from roadproof.runtime.executors import Hands
+from roadproof.runtime.memory import keep_freed_memory
+from roadproof.runtime.process_pool import Lost, is_worker
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Where the recordings are, where results go, and what is asked."""
+
+    recordings: Path
+    out: Path
+    settings: Settings
+    hands: Hands = field(default_factory=lambda: Hands(1))
+    keep_going: bool = False
+
+
+@dataclass(frozen=True)
+class ExperimentOutcome:
+    """The totals, the recordings that could not be used, and why, and what marks the results of each.
+
+    ``lost`` are those among them whose process ended twice, which may be the machine's fault.
+    """
+
+    totals: Totals
+    failed: dict[str, str]
+    marks: Mapping[str, str]
+    lost: tuple[str, ...] = ()
+
+
+def run_experiment(
+    experiment: Experiment, tell: Callable[[str], None] = lambda line: None
+) -> ExperimentOutcome:
+    """Evaluate every recording that has no valid result yet, then write the results of all.
+
+    ``tell`` gets a line for each recording that is done. Raises ``InputError`` for the first
+    recording that cannot be evaluated, unless ``keep_going``: then it is left out, and said so. One of
+    several runs that divide the recordings raises ``SharedError`` when its share is done.
+    """
+    sources = find_sources(experiment.recordings)
+    shard = experiment.hands.shard
+    if shard is not None:
+        sources = tuple(shard.among(sources))
+    question = question_mark(experiment.settings)
+    with ThreadPoolExecutor(experiment.hands.processes or os.cpu_count() or 1) as threads:
+        found = threads.map(RecordingSource.digests, sources)
+        digests = {source.name: each for source, each in zip(sources, found, strict=True)}
+    marks = {name: fingerprint(question, each) for name, each in digests.items()}
+    failed = copies_among(sources, digests)
+    waiting = [s for s in sources if s.name not in failed and not _is_kept(experiment, s, marks[s.name])]
+    kept = len(sources) - len(failed) - len(waiting)
+    if kept:
+        tell(f"{kept} of {len(sources)} recordings are already evaluated")
+    for copy in failed.values():
+        if not experiment.keep_going:
+            raise InputError(copy)
+        tell(f"left out: {copy}")
+    lost: list[str] = []
+    for done, (source, error) in enumerate(_evaluate_all(experiment, question, marks, waiting), start=1):
+        if isinstance(error, Lost):
+            lost.append(source.name)
+            error = error.reason
+        elif error is not None and not experiment.keep_going:
+            raise InputError(error)
+        if error is not None:
+            failed[source.name] = error
+        tell(f"[{done}/{len(waiting)}] {source.name}" + (f": left out: {error}" if error else ""))
+    if shard is not None:
+        raise SharedError(
+            f"shard {shard} is done: {len(sources) - len(failed)} of {len(sources)} recordings evaluated. "
+            "When the other runs are done, ask once more without --shard for the whole"
+        )
+    if len(failed) == len(sources):
+        raise InputError(
+            f"recordings={experiment.recordings}: none could be used; " + "; ".join(failed.values())
+        )
+
+    def findings() -> Iterator[Findings]:
+        for source in sources:
+            found = None if source.name in failed else _known(experiment, source, marks[source.name])
+            if found is None and source.name not in failed:
+                raise InputError(f"recording {source.name}: its results changed while they were used")
+            if found is not None:
+                yield found
+
+    in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
+    totals = write_results(experiment.out, experiment.settings, findings(), in_order)
+    return ExperimentOutcome(totals, in_order, marks, tuple(lost))
+
+
+def saved_findings(
+    experiment: Experiment, outcome: ExperimentOutcome
+) -> Iterator[tuple[RecordingSource, Findings]]:
+    """What an experiment that is done has saved of each recording, in order."""
+    for source in find_sources(experiment.recordings):
+        if source.name in outcome.marks and source.name not in outcome.failed:
+            found = _known(experiment, source, outcome.marks[source.name])
+            if found is not None:
+                yield source, found
+
+
+def _path(out: Path, source: RecordingSource) -> Path:
+    return out / "recordings" / f"{source.name}.json"
+
+
+def _is_kept(experiment: Experiment, source: RecordingSource, mark: str) -> bool:
+    return _known(experiment, source, mark) is not None
+
+
+def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findings | None:
+    return load_findings(_path(experiment.out, source), mark)
+
+
+def _evaluate_all(
+    experiment: Experiment, question: str, marks: Mapping[str, str], sources: list[RecordingSource]
+) -> Iterator[tuple[RecordingSource, str | Lost | None]]:
+    """Evaluate and save each; the second part is why a recording could not be used."""
+    jobs = [_Job(experiment.settings, question, experiment.out, s, marks[s.name]) for s in sources]
+    hands = experiment.hands
+    if (hands.cluster is None and hands.processes == 1) or len(sources) < 2:
+        for job in jobs:
+            yield job.source, _evaluate(job)
+        return
+    # The threads of polars may hold locks while a process forks: where it has run, workers start afresh.
+    with closing(answers_of(_evaluate, jobs, hands, fresh="polars" in sys.modules)) as answers:
+        for place, error in answers:
+            yield sources[place], error
+
+
+@dataclass(frozen=True)
+class _Job:
+    """One recording to evaluate: ``question`` marks the settings, ``mark`` the results."""
+
+    settings: Settings
+    question: str
+    out: Path
+    source: RecordingSource
+    mark: str
+
+
+def _evaluate(job: _Job) -> str | None:
+    """Read, evaluate and save; why the recording cannot be used, where it is the files' fault."""
+    if is_worker():
+        keep_freed_memory()
+    try:
+        divided = job.source.divided()
+    except InputError as error:
+        return str(error)
+    try:
+        questions = questions_for(job.settings, job.question, divided)
+    except InputError as error:
+        return f"{job.source.place_of_rate(divided.rate)}: {error}"
+    try:
+        findings = evaluate_windows(divided.windows(), questions)
+    except InputError as error:
+        told, file = str(error), str(job.source.files[-1])
+        return told if told.startswith(file) else f"{file}: {told}"
+    except Exception as error:
+        raise RuntimeError(f"recording {job.source.name}: {type(error).__name__}: {error}") from error
+    save_findings(_path(job.out, job.source), findings, job.mark)
+    return None
+
+
+_MOST_ASKED = 4
+_asked: dict[tuple[str, int, tuple[str, ...]], Questions] = {}
+
+
+def questions_for(settings: Settings, question: str, recording: Recording | Divided) -> Questions:
+    """Compiled once a process for recordings of one rate and the same zones.
+
+    ``question`` is the settings' mark, which tells settings apart, as they come as copies.
+    """
+    key = question, recording.rate, recording.zone_names
+    if key not in _asked:
+        if len(_asked) >= _MOST_ASKED:
+            _asked.clear()
+        _asked[key] = ask(settings, recording.rate, recording.zone_names)
+    return _asked[key]

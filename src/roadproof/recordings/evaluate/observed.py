@@ -1,0 +1,148 @@
+"""What a formula is on one trace: verdict, margin, and when each named part of it is true."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from roadproof.evidence.answers.monitor import Truth, View
+from roadproof.logic.formula import Formula, Named, nesting
+from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.robust import robustness
+from roadproof.semantics.exact.truth import TruthSet
+from roadproof.semantics.sampled.answers import Convention, Margin, TruthArrays
+from roadproof.semantics.sampled.batch import Batch
+from roadproof.semantics.sampled.compiled import compile
+from roadproof.world.drive import Drive
+
+Spans: TypeAlias = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Strip:
+    """When a part is true, and when that depends on what comes after the trace; seconds, ends included.
+
+    ``exact`` tells the same with open and closed ends where the view is dense; ``depth``: in how many others
+    the part is. ``margins``: at each sample, None where it depends on what comes later or lanes alone decide.
+    """
+
+    name: str
+    true: Spans
+    undecided: Spans = ()
+    exact: str = ""
+    depth: int = 0
+    margins: tuple[float | None, ...] = field(default=(), compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Observed:
+    """An answer at the first sample (time 0). ``margin`` bounds the robustness; infinite where only
+    lanes decide. ``other`` is the answer under the other convention for the end of a trace."""
+
+    formula: str
+    view: View
+    verdict: Truth
+    margin: tuple[float, float]
+    seconds: float
+    dt: Fraction
+    strips: tuple[Strip, ...]
+    convention: Convention | None = None
+    other: Truth | None = None
+
+
+def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> Observed:
+    """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
+    monitor = compile({"asked": formula})
+    other: Convention = "clip" if convention == "truncated" else "truncated"
+    seen = monitor.observe(batch)
+    verdicts = monitor.evaluate(seen, convention, named=True)
+    margins = monitor.measure(batch, convention, at="all", named=True)
+    margin = margins.margins["asked"]
+    dt = float(batch.dt)
+    spans = _spans(monitor.evaluate(seen, convention, at="all").answers["asked"], dt)
+    whole = Strip(text, *spans, margins=_sampled(margin))
+    return Observed(
+        text,
+        "recorded",
+        _said(verdicts.answers["asked"]),
+        (float(margin.low[0, 0]), float(margin.high[0, 0])),
+        float((batch.samples - 1) * batch.dt),
+        batch.dt,
+        (whole, *_strips(formula, verdicts.named, margins.named, dt)),
+        convention,
+        _said(monitor.evaluate(seen, other).answers["asked"]),
+    )
+
+
+def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction) -> Observed:
+    """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt.
+
+    Raises ``InputError`` and ``UsageError``.
+    """
+    judgement = judge(formula, drive)
+    margin = robustness(formula, drive, dt, int(horizon / dt) * dt).value
+    strips = [_exact_strip(text, judgement.truth(formula))]
+    depths = _depths(formula)
+    named = [(part, truth) for part, truth in judgement.named() if part != formula]
+    strips += [replace(_exact_strip(name_of(part), truth), depth=depths[part]) for part, truth in named]
+    verdict: Truth = "true" if judgement.holds else "false"
+    return Observed(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
+
+
+def name_of(part: Named) -> str:
+    """An application of a definition as a user writes it."""
+    return f"{part.name}({', '.join(part.arguments)})"
+
+
+def margins_of(formula: Formula, batch: Batch) -> tuple[float | None, ...]:
+    """The margin of a formula at each sample of the one trace of ``batch``. Raises ``InputError``."""
+    return _sampled(compile({"asked": formula}).measure(batch, "clip", at="all").margins["asked"])
+
+
+def _sampled(margin: Margin) -> tuple[float | None, ...]:
+    pairs = zip(margin.low[:, 0].tolist(), margin.high[:, 0].tolist(), strict=True)
+    return tuple(low if low == high and np.isfinite(low) else None for low, high in pairs)
+
+
+def _strips(
+    formula: Formula, named: Mapping[Named, TruthArrays], margins: Mapping[Named, Margin], dt: float
+) -> Iterator[Strip]:
+    depths = _depths(formula)
+    for part, answer in named.items():
+        if part != formula:
+            yield Strip(name_of(part), *_spans(answer, dt), "", depths[part], _sampled(margins[part]))
+
+
+def _depths(formula: Formula) -> dict[Named, int]:
+    """In how many others each part is, below the formula as a whole."""
+    below = 0 if isinstance(formula, Named) else 1
+    return {part: depth + below for part, depth in nesting(formula).items()}
+
+
+def _spans(answer: TruthArrays, dt: float) -> tuple[Spans, Spans]:
+    true, false = answer.true[:, 0], answer.false[:, 0]
+    return _runs(true, dt), _runs(~true & ~false, dt)
+
+
+def _runs(truth: Any, dt: float) -> Spans:
+    """First and last time of each run of true samples."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], truth.astype(np.int8), [0]))))
+    return tuple(
+        (round(int(begin) * dt, 9), round((int(end) - 1) * dt, 9))
+        for begin, end in zip(edges[::2], edges[1::2], strict=True)
+    )
+
+
+def _exact_strip(name: str, truth: TruthSet) -> Strip:
+    spans = tuple(
+        (approximate(span.begin.point), float("inf") if span.end is None else approximate(span.end.point))
+        for span in truth.spans()
+    )
+    return Strip(name, spans, (), str(truth))
+
+
+def _said(answer: TruthArrays) -> Truth:
+    return "true" if answer.true[0] else "false" if answer.false[0] else "undecided"

@@ -1,0 +1,348 @@
+"""One trace to monitor: samples of a few vehicles on one road, from whatever file they came.
+
+Where a file is one trace, it has for every time one row a vehicle, in equal steps.
+"""
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence, Sized
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.library.bind import occupies
+from roadproof.library.scenarios import roles
+from roadproof.logic.custom_names import code_of, own_of
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import signals_of, with_values
+from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather, refuse_missing
+from roadproof.recordings.formats import openscenario
+from roadproof.recordings.formats.pairs import row_of
+from roadproof.recordings.formats.recording import Bools, Integers, Recording, kind_called, own_numbers
+from roadproof.recordings.formats.samples import (
+    DIRECTION,
+    HEADER,
+    LABEL,
+    ROAD_ENDING,
+    doubts_in,
+    own_columns,
+    read_columns,
+)
+from roadproof.recordings.formats.source import beside
+from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.formats.straight import of_road, whole
+from roadproof.recordings.formats.table import Table
+from roadproof.semantics.sampled.batch import Array, Batch
+from roadproof.world.drive import Drive, value_at
+from roadproof.world.models import load_recorded_road, load_road
+from roadproof.world.motion import state_at
+from roadproof.world.road import Lanelet, Road
+from roadproof.world.signals import FIXED, RECORDED, SIGNALS, SIZES, Kind, SignalName, SizeName
+
+_PAIR = re.compile(r"(?P<path>.+):(?P<ids>\d{1,9}(?:,\d{1,9}){0,2})")
+
+
+@dataclass(frozen=True)
+class OneTrace:
+    """A batch of one trace, its road, and the lane of each vehicle's centre at the start ("" for none).
+
+    ``first`` is the time of the first sample as the source counts it: seconds, or a frame. ``notes``: what is
+    odd in the recording that it is from.
+    """
+
+    source: str
+    batch: Batch
+    road: Road
+    lanes: Mapping[str, str]
+    first: str
+    notes: tuple[str, ...] = ()
+
+
+def is_pair(text: str) -> bool:
+    """Whether ``text`` names vehicles of a recording, as ``highd/01_tracks.csv:12,15`` does."""
+    return _PAIR.fullmatch(text) is not None
+
+
+def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -> OneTrace:
+    """Vehicles of a recording on their common frames, or on those of ``frames`` (first, last).
+
+    The first id is SV, the others are POV, or POV1 and POV2. Raises ``InputError`` for files that are
+    no recording, vehicles that are not there or drive in different directions, and no frames.
+    """
+    named = _PAIR.fullmatch(text)
+    if named is None:
+        raise InputError(f"{text}: name a pair as highd/01_tracks.csv:12,15, or three vehicles")
+    ids = [int(x) for x in named["ids"].split(",")]
+    recording = find_source(Path(named["path"])).read()
+    index = [_find(recording, number, text) for number in ids]
+    if len(set(ids)) < len(ids):
+        raise InputError(f"{text}: each vehicle may be named once")
+    if len({int(recording.direction[v]) for v in index}) > 1:
+        raise InputError(f"{text}: the vehicles drive in different directions; name some of one direction")
+    low = max(int(recording.first_frame[v]) for v in index)
+    high = min(int(recording.last_frame[v]) for v in index)
+    wanted = (low if frames[0] is None else frames[0], high if frames[1] is None else frames[1])
+    if low > high or not low <= wanted[0] <= wanted[1] <= high:
+        have = f"they share the frames {low} to {high}" if low <= high else "they share no frame"
+        raise InputError(f"{text}, frames {wanted[0]} to {wanted[1]}: {have}")
+    made = cut_trace(recording, text, dict(zip(roles(len(ids)), index, strict=True)), wanted)
+    return replace(made, notes=(*made.notes, *_overlaps(made)))
+
+
+def _overlaps(trace: OneTrace) -> Iterator[str]:
+    """A line for each two vehicles whose boxes overlap with positive area, as evaluations have one."""
+    signals, sizes, count = trace.batch.signals, trace.batch.sizes, int(trace.batch.lengths[0])
+    axes: tuple[tuple[SignalName, SizeName], ...] = (("s", "length"), ("d", "width"))
+    for one, other in combinations(trace.lanes, 2):
+        depth = np.full(count, np.inf)
+        for place, size in axes:
+            first, second = signals[place, one][:count, 0], signals[place, other][:count, 0]
+            rear = np.maximum(first - sizes[size, one][0], second - sizes[size, other][0])
+            depth = np.minimum(depth, np.round(np.minimum(first, second) - rear, 6))
+        frames = int(np.count_nonzero(depth > 0))
+        if frames:
+            yield f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth.max():.2f} m"
+
+
+def _find(recording: Recording, number: int, text: str) -> int:
+    place = np.flatnonzero(recording.vehicle_id == number)
+    if not len(place):
+        known = f"{recording.vehicle_id.min()} to {recording.vehicle_id.max()}"
+        raise InputError(f"{text}: recording {recording.name} has no vehicle {number}; ids are {known}")
+    return int(place[0])
+
+
+def cut_trace(
+    recording: Recording, source: str, vehicles: Mapping[str, int], frames: tuple[int, int]
+) -> OneTrace:
+    """Vehicles of a recording (indices by name), of one direction, from the first frame to the last.
+
+    Lane predicates are decided by the recording, as in an evaluation.
+    """
+
+    def one(value: int) -> Integers:
+        return np.array([value])
+
+    way = int(recording.direction[next(iter(vehicles.values()))])
+    road = _road_of(recording, way)
+    made = gather(
+        recording, {n: one(v) for n, v in vehicles.items()}, one(frames[0]), one(frames[1]), RECORDED
+    )
+    given: dict[Formula, Array] = {}
+    own: dict[str, dict[str, Array]] = {}
+    lanes = {}
+    for name, v in vehicles.items():
+        begin = int(row_of(recording, one(v), one(frames[0]))[0])
+        rows = slice(begin, begin + frames[1] - frames[0] + 1)
+        for lanelet, inside in _lanelets(recording, way, rows):
+            given[with_values(occupies(name, lanelet), {})] = inside[:, None]
+        at = int(recording.lane[begin])
+        lanes[name] = recording.lanes[at].name if at >= 0 else ""
+        for column, values in recording.own.items():
+            own.setdefault(column, {})[name] = values[rows, None]
+    signals = {**made.signals, **dict(by_vehicle(own))}
+    batch = Batch(made.dt, made.lengths, signals, made.sizes, given, source)
+    return OneTrace(source, batch, road, lanes, f"frame {frames[0]}", recording.notes)
+
+
+def _lanelets(recording: Recording, way: int, rows: slice) -> Iterator[tuple[Lanelet, Bools]]:
+    """The lanelets of a direction, and at which of some samples the box is in each."""
+    ways = {lane.name: lane.direction for lane in recording.lanes}
+    for j, lanelet in enumerate(recording.lanelets):
+        if ways[lanelet.lane] == way:
+            yield lanelet, recording.inside[rows, j]
+    for k, lane in enumerate(recording.lanes if not recording.lanelets else ()):
+        if lane.direction == way:
+            yield whole(lane), (recording.occupancy[rows] >> np.uint32(k)) & 1 != 0
+
+
+def _road_of(recording: Recording, way: int) -> Road:
+    """The lanes of one direction."""
+    lanelets = tuple(lanelet for lanelet, _ in _lanelets(recording, way, slice(0)))
+    names = {x.lane for x in lanelets}
+    beside = frozenset(pair for pair in recording.beside if pair <= names)
+    return Road(f"recording {recording.name}, direction {way}", lanelets, beside)
+
+
+def sample_drive(drive: Drive, road: Road, horizon: Fraction, dt: Fraction, source: str) -> OneTrace:
+    """A drive as a recording of it would have it: samples every ``dt`` s from 0 up to ``horizon``."""
+    if dt <= 0:
+        raise InputError(f"dt={dt}: the time between samples must be greater than zero")
+    times = [k * dt for k in range(int(horizon / dt) + 1)]
+    columns: dict[tuple[str, str], list[float]] = {}
+    for name, motion in drive.vehicles.items():
+        states = [state_at(motion, time) for time in times]
+        columns |= {(x, name): [float(getattr(state, x)) for state in states] for x in SIGNALS}
+    sizes: dict[tuple[SizeName, str], float] = {
+        (x, n): float(getattr(m, x)) for n, m in drive.vehicles.items() for x in SIZES
+    }
+    kinds = {n: m.kind for n, m in drive.vehicles.items() if m.kind is not None}
+    own = {key: [float(value_at(course, time)) for time in times] for key, course in drive.own.items()}
+    return _one_trace(source, dt, columns, {**sizes, **_codes(kinds)}, road, "0 s", own)
+
+
+def _codes(kinds: Mapping[str, Kind]) -> dict[tuple[SizeName, str], float]:
+    return {(KIND, name): float(code_of(kind)) for name, kind in kinds.items()}
+
+
+def refuse_unmeasured(trace: OneTrace, formula: Formula) -> None:
+    """Raise ``InputError`` where a trace lacks a signal that a formula speaks of."""
+    for name in signals_of([formula]):
+        if not any((name, vehicle) in trace.batch.signals for vehicle in trace.lanes):
+            raise InputError(
+                f"{trace.source}: no recording has the signal {name}, which the formula needs: ask that of a "
+                "drive"
+            )
+    refuse_missing(((x.name, x.vehicle) for x in own_of([formula])), trace.batch.signals, trace.source)
+
+
+def read_samples(path: Path, road: Road | None = None) -> OneTrace:
+    """The trace of a file in which every vehicle is seen all the time: CSV, Parquet, OpenSCENARIO.
+
+    ``road``: by default that which the file names or that beside it, or else main-2. ``notes`` of the
+    trace say in what the file contradicts itself. Raises ``InputError`` with file, row, column, value and
+    rule, also where it contradicts itself too much.
+    """
+    if path.suffix == ".xosc":
+        table, named, _ = openscenario.read_columns(path)
+        road = road or named
+    else:
+        table = read_columns(path)
+    if road is None:
+        known = beside(path, ROAD_ENDING)
+        road = load_recorded_road(known[0])[0] if known else load_road("main-2")
+    made = of_columns(_lists(table), road, str(path))
+    doubts = doubts_in(table, of_road(road, DIRECTION, path))
+    return replace(made, notes=(*doubts, *_overlaps(made)))
+
+
+def _is_column(values: object, rows: int) -> bool:
+    """Whether something beside the columns that are asked for is a column too."""
+    return isinstance(values, Sized) and not isinstance(values, str) and len(values) == rows
+
+
+def _lists(table: Table) -> dict[str, list[object]]:
+    return {name: values.tolist() for name, values in table.columns.items()}
+
+
+def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
+    """The trace of columns named as in ``HEADER``: arrays, or a frame with such columns, in any order.
+
+    There may be ``kind``, a class that makes every vehicle a car where it is missing, and own signals.
+    Times are numbers of seconds, taken as the decimals that they are shown as (nine places). Raises
+    ``InputError`` with column, row, value and rule.
+    """
+    missing = [name for name in HEADER if name not in columns]
+    if missing:
+        raise InputError(
+            f"{source}: there is no column {', '.join(missing)}; columns are {', '.join(HEADER)}"
+        )
+    rows = len(list(columns[HEADER[0]]))
+    own = [name for name in own_columns(columns) if _is_column(columns[name], rows)]
+    kind = [next(name for name in (LABEL, "kind") if name in columns)] if "kind" in columns else []
+    read = {name: list(columns[name]) for name in (*HEADER, *kind, *own)}
+    lengths = {name: len(values) for name, values in read.items()}
+    if len(set(lengths.values())) > 1:
+        told = ", ".join(f"{name} {length}" for name, length in lengths.items())
+        raise InputError(f"{source}: columns must be equally long, but have {told} rows")
+    keys = [
+        (Fraction(repr(round(_finite(source, k, "time", time), 9))), str(name))
+        for k, (time, name) in enumerate(zip(read["time"], read["vehicle"], strict=True))
+    ]
+    cells: list[dict[str, float]] = [
+        {x: _finite(source, k, x, read[x][k]) for x in (*RECORDED, *SIZES)} for k in range(len(keys))
+    ]
+    for name in own:
+        for cell, value in zip(cells, own_numbers(read[name]), strict=True):
+            cell[name] = float(value)
+    for k, cell in enumerate(cells):
+        cell[KIND] = float(code_of(kind_called(str(read[kind[0]][k]) if kind else "car")))
+    return _of_rows(source, keys, cells, own, road)
+
+
+def _of_rows(
+    source: str,
+    keys: Sequence[tuple[Fraction, str]],
+    cells: Sequence[Mapping[str, float]],
+    own: Sequence[str],
+    road: Road,
+) -> OneTrace:
+    """The trace of rows, each with its time and vehicle. Raises ``InputError`` where they are no table."""
+    names = list(dict.fromkeys(name for _, name in keys))
+    times = list(dict.fromkeys(time for time, _ in keys))
+    if len(times) < 2:
+        raise InputError(f"{source}: {len(times)} times; at least two samples are needed")
+    dt = times[1] - times[0]
+    for k, time in enumerate(times):
+        if time != times[0] + k * dt or dt <= 0:
+            shown = f"{float(time):g}"
+            raise InputError(f"{source}: time={shown} breaks the step of {float(dt):g} s; use equal steps")
+    if sorted(keys) != sorted((time, name) for time in times for name in names):
+        raise InputError(
+            f"{source}: {len(keys)} rows for {len(times)} times and {len(names)} vehicles: every vehicle "
+            "needs exactly one row at every time"
+        )
+    said = (*RECORDED, *FIXED, *own)
+    columns: dict[tuple[str, str], list[float]] = {(x, n): [] for x in said for n in names}
+    for (_, name), row in sorted(zip(keys, cells, strict=True), key=lambda x: x[0][0]):
+        for x in said:
+            columns[x, name].append(row[x])
+    sizes: dict[tuple[SizeName, str], float] = {}
+    for name in names:
+        for size in FIXED:
+            values = columns.pop((size, name))
+            if len(set(values)) > 1:
+                what = "class" if size == KIND else "size"
+                raise InputError(
+                    f"{source}: {size} of {name} changes; the {what} of a vehicle stays the same"
+                )
+            sizes[size, name] = values[0]
+    measured = {x: {n: np.array(columns.pop((x, n))) for n in names} for x in own}
+    made = {key: values.tolist() for key, values in by_vehicle(measured)}
+    return _one_trace(source, dt, columns, sizes, road, f"{float(times[0]):g} s", made)
+
+
+def _finite(source: str, row: int, column: str, value: object) -> float:
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        found = math.nan
+    if not math.isfinite(found):
+        raise InputError(f"{source}, row {row}, column {column}={value!r}: a finite number is needed")
+    return found
+
+
+def _one_trace(
+    source: str,
+    dt: Fraction,
+    columns: Mapping[tuple[str, str], Sequence[float]],
+    sizes: Mapping[tuple[SizeName, str], float],
+    road: Road,
+    first: str,
+    own: Mapping[tuple[str, str], Sequence[float]],
+) -> OneTrace:
+    length = len(next(iter(columns.values())))
+    batch = Batch(
+        dt,
+        np.array([length]),
+        {key: np.array(values)[:, None] for key, values in {**columns, **own}.items()},
+        {key: np.array([value]) for key, value in sizes.items()},
+        source=source,
+    )
+    names = dict.fromkeys(name for _, name in columns)
+    lanes = {n: _lane_of(road, columns["s", n][0], columns["d", n][0], sizes["width", n]) for n in names}
+    return OneTrace(source, batch, road, lanes, first)
+
+
+def _lane_of(road: Road, s: float, d: float, width: float) -> str:
+    """The lane that holds the middle of the box's front; "" for none."""
+    for lanelet in road.lanelets:
+        low, high = lanelet.s
+        right, left = lanelet.d
+        if right <= d - width / 2 < left and (low is None or s >= low) and (high is None or s < high):
+            return lanelet.lane
+    return ""

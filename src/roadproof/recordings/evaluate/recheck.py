@@ -1,0 +1,186 @@
+"""Answers of an evaluation asked once more, one by one, of the plain recursive evaluator."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from roadproof.library.scenarios import LANE, PAIR, TRIPLE, endangered
+from roadproof.logic.formula import Formula, transform
+from roadproof.logic.terms import Own
+from roadproof.recordings.evaluate.courses import BEGINS
+from roadproof.recordings.evaluate.evaluate import Findings
+from roadproof.recordings.evaluate.foretelling import LABELS
+from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE, LaneAtom
+from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.questions import Danger, MonitorKey, Questions, of_three
+from roadproof.recordings.evaluate.traces import gather
+from roadproof.recordings.formats.recording import Integers, Recording
+from roadproof.semantics.sampled.batch import Batch
+from roadproof.semantics.sampled.compiled import Monitor
+from roadproof.semantics.sampled.recursive import ReadAs, Reading, Trace
+from roadproof.world.signals import SignalName
+
+
+def recheck(recording: Recording, questions: Questions, findings: Findings) -> Iterator[str]:
+    """One line for each answer that the recursive evaluator denies; of nothing denied, none.
+
+    Pairs are asked every question again, so that a match that was missed shows as well as one too
+    many; of triples only the matches are asked. What is taken over from the evaluation is where
+    traces start and end.
+    """
+    pairs, triples = _shared(questions.pairs), _shared(questions.triples)
+    matched = set(findings.matches)
+    place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
+    names = [lane.name for lane in recording.lanes]
+    for t in findings.traces if questions.pairs else ():
+        lanes = {LANE: t.first_lane, OTHER_LANE: t.second_lane}
+        reading = _read(
+            recording,
+            questions,
+            {PAIR[0]: place[t.first], PAIR[1]: place[t.second]},
+            {name: names.index(lane) if lane else -1 for name, lane in lanes.items()},
+            (t.start_frame, t.end_frame),
+        )
+        for asked, formula in pairs[t.min_danger].items():
+            sv, pov = (t.first, t.second) if asked.sv == "first" else (t.second, t.first)
+            lane = lanes[asked.lane]
+            match = Match(
+                sv, pov, None, lane, t.start_frame, t.end_frame, t.min_danger, asked.set_name, asked.number
+            )
+            if reading.holds(formula, 0, _view(questions)) != (match in matched):
+                yield _line(recording, match, match in matched)
+    for match in findings.matches:
+        if match.pov2 is not None:
+            formula = triples[match.min_danger][of_three(match.set_name, match.scenario)]
+            if not _holds_for_three(recording, questions, match, formula, place, names):
+                yield _line(recording, match, True)
+        if match.labels:
+            begun, labels = _foretold(recording, questions, match, place)
+            if (begun, labels) != (match.begun, match.labels):
+                yield (
+                    f"{_about(recording, match)}: found {_told(match.begun, match.labels)}, but the "
+                    f"recursive evaluator has {_told(begun, labels)}"
+                )
+
+
+def _foretold(
+    recording: Recording, questions: Questions, match: Match, place: Mapping[int, int]
+) -> tuple[int | None, tuple[str, ...]]:
+    """When the manoeuvre of a match begins, sample by sample, and its labels there."""
+    course = next(x for x in questions.courses if match.scenario in x.scenarios)
+    ids = [match.sv, match.pov] if match.pov2 is None else [match.sv, match.pov, match.pov2]
+    vehicles = dict(zip(course.vehicles, (place[x] for x in ids), strict=True))
+    frames = match.start_frame, match.end_frame
+    signals = (*course.begins.signals, *course.collides.signals)
+    reading = _reading(recording, vehicles, frames, signals)
+    pair = dict(zip(PAIR, (vehicles[x] for x in endangered(course.vehicles)), strict=True))
+    near = _reading(recording, pair, frames, questions.danger.signals)
+    danger = questions.danger.formulas[Danger(match.min_danger)]
+    for k in range(frames[1] - frames[0] + 1):
+        if reading.holds(course.begins.formulas[BEGINS], k, "strong"):
+            labels = (
+                LABELS[reading.holds(course.collides.formulas[x], k, "strong")]
+                if x in course.collides.formulas
+                else ""
+                for x in questions.settings.drivers
+            )
+            return frames[0] + k, tuple(labels)
+        if near.holds(danger, k, "strong"):
+            break
+    return None, tuple(LABELS[2] if x in course.collides.formulas else "" for x in questions.settings.drivers)
+
+
+def _told(begun: int | None, labels: Iterable[str]) -> str:
+    return f"{', '.join(x or 'nothing' for x in labels)}" + ("" if begun is None else f" at frame {begun}")
+
+
+def _shared(monitors: Iterable[Monitor[MonitorKey]]) -> list[dict[MonitorKey, Formula]]:
+    """The formulas as they were given, equal parts being one object: they are then found quickly."""
+    known: dict[Formula, Formula] = {}
+    return [
+        {asked: transform(x, lambda part: known.setdefault(part, part)) for asked, x in m.formulas.items()}
+        for m in monitors
+    ]
+
+
+def _holds_for_three(
+    recording: Recording,
+    questions: Questions,
+    match: Match,
+    formula: Formula,
+    place: Mapping[int, int],
+    names: list[str],
+) -> bool:
+    assert match.pov2 is not None
+    vehicles = dict(zip(TRIPLE, (place[x] for x in (match.sv, match.pov, match.pov2)), strict=True))
+    lanes = {LANE: names.index(match.lane)}
+    reading = _read(recording, questions, vehicles, lanes, (match.start_frame, match.end_frame))
+    return reading.holds(formula, 0, _view(questions))
+
+
+def _read(
+    recording: Recording,
+    questions: Questions,
+    vehicles: Mapping[str, int],
+    lanes: Mapping[str, int],
+    frames: tuple[int, int],
+) -> Reading:
+    signals = [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals]
+    return _reading(recording, vehicles, frames, signals, lanes, questions.lane_atoms)
+
+
+def _reading(
+    recording: Recording,
+    vehicles: Mapping[str, int],
+    frames: tuple[int, int],
+    signals: Iterable[SignalName | Own],
+    lanes: Mapping[str, int] = MappingProxyType({}),
+    atoms: Mapping[Formula, LaneAtom] = MappingProxyType({}),
+) -> Reading:
+    def one(value: int) -> Integers:
+        return np.array([value])
+
+    batch = gather(
+        recording,
+        {name: one(k) for name, k in vehicles.items()},
+        one(frames[0]),
+        one(frames[1]),
+        signals,
+        {name: one(k) for name, k in lanes.items()},
+        atoms,
+    )
+    return Reading(trace_of(batch))
+
+
+def trace_of(batch: Batch) -> Trace:
+    """The only trace of a batch as the recursive evaluator wants it."""
+    length = int(batch.lengths[0])
+    return Trace(
+        batch.dt,
+        length,
+        {key: values[:length, 0].tolist() for key, values in batch.signals.items()},
+        {key: float(values[0]) for key, values in batch.sizes.items()},
+        {key: values[:length, 0].tolist() for key, values in batch.given.items()},
+    )
+
+
+def _view(questions: Questions) -> ReadAs:
+    return "clip" if questions.settings.convention == "clip" else "strong"
+
+
+def _line(recording: Recording, match: Match, found: bool) -> str:
+    said = (
+        "found, but the recursive evaluator denies it"
+        if found
+        else "missed, but the recursive evaluator has it"
+    )
+    return f"{_about(recording, match)}: {said}"
+
+
+def _about(recording: Recording, match: Match) -> str:
+    who = ", ".join(str(x) for x in (match.sv, match.pov, match.pov2) if x is not None)
+    return (
+        f"recording {recording.name}, vehicles {who}, frames {match.start_frame} to {match.end_frame}, "
+        f"{match.set_name}, scenario {match.scenario}"
+    )

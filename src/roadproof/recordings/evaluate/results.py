@@ -1,0 +1,482 @@
+"""What an evaluation writes: one file a recording, so that a killed run resumes, then the whole.
+
+Every file appears whole or not at all, and the whole is made from the files of the recordings alone:
+a run that was killed and started again ends with the same bytes as one that was not.
+"""
+
+import csv
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from importlib.metadata import version
+from io import TextIOWrapper
+from itertools import product
+from pathlib import Path
+from typing import Any, NamedTuple, TextIO
+
+from roadproof.drivers.models import MODELS, course_in
+from roadproof.evidence.answers import traffic as kept
+from roadproof.evidence.codec import write
+from roadproof.evidence.heading import heading
+from roadproof.library.scenarios import MIN_DANGER
+from roadproof.library.words import Called, called_in
+from roadproof.recordings.evaluate.counting import Counted, Repeat, without_repeats
+from roadproof.recordings.evaluate.detectors import Detection
+from roadproof.recordings.evaluate.evaluate import Findings, Trace
+from roadproof.recordings.evaluate.foretelling import LABELS
+from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.questions import Settings
+from roadproof.recordings.evaluate.sectors import Sector, sectors_of
+from roadproof.recordings.formats.repeats import Seen
+from roadproof.runtime.files import make_folder, whole_file
+
+RECORDING_SCHEMA = "roadproof/recording-findings/4"
+MATCH_COLUMNS = tuple(
+    "recording sv pov pov2 lane start_frame end_frame min_danger set scenario title uncertain".split()  # noqa: SIM905
+)
+PAIR_COLUMNS = tuple(
+    "recording first second min_danger start_frame end_frame first_lane second_lane sectors violating".split()  # noqa: SIM905
+)
+
+
+def question_mark(settings: Settings) -> str:
+    """Changes whenever the settings, the specification or the version of this program do."""
+    told = {
+        "schema": RECORDING_SCHEMA,
+        "version": version("roadproof"),
+        "settings": write(_kept_settings(settings)),
+        "specification": {name: source.text for name, source in sorted(settings.library.sources.items())},
+    }
+    return _digest(told)
+
+
+def fingerprint(question: str, digests: Sequence[str]) -> str:
+    """Changes whenever the question's mark or the content of a file of the recording does."""
+    return _digest([question, *digests])
+
+
+def _digest(told: object) -> str:
+    return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def _kept_settings(settings: Settings) -> kept.Settings:
+    return kept.Settings(
+        sets=settings.sets,
+        min_danger=tuple(map(str, settings.min_danger)),
+        scenarios=settings.scenarios,
+        classes=settings.classes,
+        convention=settings.convention,
+        detectors=settings.detectors,
+        options=dict(sorted(settings.options.items())),
+        parameters={k: str(v) for k, v in sorted(settings.values.items()) if k != MIN_DANGER},
+        drivers=settings.drivers,
+    )
+
+
+def save_findings(path: Path, findings: Findings, mark: str) -> None:
+    """Write the findings of one recording; ``mark`` is their fingerprint."""
+    found: dict[str, Any] = {**vars(findings)}
+    for name in _ROWS:
+        found[name] = [_saved(row) for row in found[name]]
+    found["seen"] = [list(vars(pair).values()) for pair in findings.seen]
+    told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "seal": seal(mark, found), "findings": found}
+    with whole_text(path) as file:
+        file.write(json.dumps(told) + "\n")
+
+
+def _saved(row: Match | Trace | Detection) -> list[Any]:
+    """The fields of a row; those about driver models where there are any."""
+    fields = vars(row)
+    if isinstance(row, Match) and not row.labels:
+        fields = {name: value for name, value in fields.items() if name not in ("begun", "labels")}
+    return list(fields.values())
+
+
+def seal(mark: str, found: Mapping[str, Any]) -> str:
+    """What findings that were saved must still have: a digest of them and their fingerprint."""
+    return _digest([mark, found])
+
+
+def load_findings(path: Path, mark: str) -> Findings | None:
+    """Findings that were saved under the same fingerprint and not changed since, else None."""
+    try:
+        told = json.loads(path.read_text())
+        found = told["findings"]
+        if told["schema"] != RECORDING_SCHEMA or told["fingerprint"] != mark:
+            return None
+        if told["seal"] != seal(mark, found):
+            return None
+        made = {name: tuple(kind(*row) for row in found[name]) for name, kind in _ROWS.items()}
+        made["traces"] = tuple(replace(x, sectors=tuple(x.sectors)) for x in made["traces"])
+        made["violating"] = tuple((one, other) for one, other in found["violating"])
+        made["matches"] = tuple(replace(x, labels=tuple(x.labels)) for x in made["matches"])
+        seen = tuple(Seen(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
+        return Findings(**{**found, **made, **_texts(found, "notes", "sectors"), "seen": seen})
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _texts(found: Mapping[str, Any], *names: str) -> dict[str, tuple[str, ...]]:
+    return {name: tuple(found[name]) for name in names}
+
+
+_ROWS: Mapping[str, Callable[..., Any]] = {"traces": Trace, "matches": Match, "detections": Detection}
+
+
+@contextmanager
+def whole_text(path: Path) -> Iterator[TextIO]:
+    """A text file that appears whole or not at all; its folder is made. Raises ``InputError``."""
+    make_folder(path.parent)
+    with whole_file(path) as file:
+        text = TextIOWrapper(file, "utf-8", newline="")
+        try:
+            yield text
+        finally:
+            text.detach()
+
+
+@dataclass
+class Row:
+    """One row of a results table (paper, Table of results): a spec set under one minDanger, in a sector.
+
+    Counts are of unordered pairs whose trace begins in the sector. ``matching`` is by scenarios of two cars,
+    as in the paper; ``matching_with_three`` counts those of three cars too, ``several`` those of these that
+    match more than one scenario. ``together`` counts how many traces match two scenarios at once.
+    ``matching_violating`` counts the pairs among all violating ones that match a scenario of two cars here.
+    """
+
+    sector: Sector
+    min_danger: Fraction
+    set_name: str
+    traces: int = 0
+    matching: int = 0
+    matching_with_three: int = 0
+    matching_violating: int = 0
+    scenarios: Counter[int] = field(default_factory=Counter)
+    several: int = 0
+    together: Counter[tuple[int, int]] = field(default_factory=Counter)
+
+    @property
+    def recall(self) -> float | None:
+        """Matching traces by traces; None where there are none."""
+        return self.matching / self.traces if self.traces else None
+
+
+class Foretold(NamedTuple):
+    """What driver models say of matches: ``min_danger`` is an index into the settings'."""
+
+    min_danger: int
+    set_name: str
+    scenario: int
+    driver: str
+    label: str
+
+
+@dataclass
+class Totals:
+    """Everything that the tables need, added up recording by recording.
+
+    ``tables``: the rows of each road sector by its name, the first being the paper's main road unless it is
+    not asked for; ``met``: the sectors that a road of the recordings has. ``foretold`` counts the labels that
+    driver models give to matches.
+
+    The following count in all road sectors together: ``violating`` the pairs with an rssViolation in some
+    frame; ``traces`` the disturbance traces by minDanger (an index); by minDanger and set, ``matching`` the
+    traces and ``matching_violating`` the violating pairs that match a scenario of two cars.
+    """
+
+    settings: Settings
+    tables: Mapping[str, list[Row]]
+    met: set[str] = field(default_factory=set)
+    recordings: int = 0
+    vehicles: int = 0
+    samples: int = 0
+    violating: int = 0
+    traces: Counter[int] = field(default_factory=Counter)
+    matching: Counter[tuple[int, str]] = field(default_factory=Counter)
+    matching_violating: Counter[tuple[int, str]] = field(default_factory=Counter)
+    asked: int = 0
+    undecided: int = 0
+    differing: int = 0
+    detected: Counter[str] = field(default_factory=Counter)
+    unequal_3_4: list[tuple[str, int, int, str]] = field(default_factory=list)
+    broken: list[str] = field(default_factory=list)
+    notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    repeats: list[Repeat] = field(default_factory=list)
+    foretold: Counter[Foretold] = field(default_factory=Counter)
+
+    @property
+    def rows(self) -> list[Row]:
+        """Those of the first sector."""
+        return next(iter(self.tables.values()))
+
+    @property
+    def shown(self) -> dict[str, list[Row]]:
+        """The tables of the first sector, and of the others that a road of the recordings has."""
+        return {name: rows for k, (name, rows) in enumerate(self.tables.items()) if not k or name in self.met}
+
+    @property
+    def repeated(self) -> int:
+        """How many traces are left out because an earlier recording has them too."""
+        return sum(x.what == "trace" for x in self.repeats)
+
+
+def begin_totals(settings: Settings) -> Totals:
+    """No recordings yet."""
+    sectors = sectors_of(settings.library.select(settings.sets[0], settings.options), settings.scenarios)
+    each = [(m, s) for m in settings.min_danger for s in settings.sets]
+    return Totals(settings, {sector.name: [Row(sector, *x) for x in each] for sector in sectors})
+
+
+def add_findings(totals: Totals, findings: Findings) -> None:
+    """Count one recording, and check the facts of semantics §6 on it."""
+    totals.recordings += 1
+    for name in ("vehicles", "samples", "asked", "undecided", "differing"):
+        setattr(totals, name, getattr(totals, name) + getattr(findings, name))
+    violating = {*findings.violating}
+    totals.violating += len(violating)
+    totals.traces.update(x.min_danger for x in findings.traces)
+    totals.detected.update(name for name, _ in {(x.detector, x.pair) for x in findings.detections})
+    totals.met.update(findings.sectors)
+    for match in findings.matches:
+        for driver, label in zip(totals.settings.drivers, match.labels, strict=bool(match.labels)):
+            if label:
+                of = (match.min_danger, match.set_name, match.scenario)
+                totals.foretold[Foretold(*of, driver, label)] += 1
+    for place, (k, set_name) in enumerate(
+        product(range(len(totals.settings.min_danger)), totals.settings.sets)
+    ):
+        traces = {(t.first, t.second): t for t in findings.traces if t.min_danger == k}
+        matches = [x for x in findings.matches if x.min_danger == k and x.set_name == set_name]
+        for rows in totals.tables.values():
+            _count(rows[place], traces.values(), matches, violating)
+        of_two = {x.pair for x in matches if x.pov2 is None}
+        totals.matching[k, set_name] += len(of_two & traces.keys())
+        totals.matching_violating[k, set_name] += len(of_two & violating)
+        _check(totals, findings, traces, _scenarios_by_pair(matches), k, set_name)
+
+
+def _scenarios_by_pair(matches: Iterable[Match]) -> dict[tuple[int, int], set[int]]:
+    """The scenarios of each pair that matches some."""
+    matched: dict[tuple[int, int], set[int]] = {}
+    for match in matches:
+        matched.setdefault(match.pair, set()).add(match.scenario)
+    return matched
+
+
+def _count(
+    row: Row, traces: Iterable[Trace], matches: Iterable[Match], violating: Set[tuple[int, int]]
+) -> None:
+    """Add what was found in the sector of a row."""
+    ours = [x for x in matches if x.scenario in row.sector.scenarios]
+    matched = _scenarios_by_pair(ours)
+    row.traces += sum(row.sector.name in x.sectors for x in traces)
+    row.matching_with_three += len(matched)
+    of_two = {x.pair for x in ours if x.pov2 is None}
+    row.matching += len(of_two)
+    row.matching_violating += len(of_two & violating)
+    for numbers in matched.values():
+        row.scenarios.update(numbers)
+        row.several += len(numbers) > 1
+        row.together.update((i, j) for i in numbers for j in numbers if i < j)
+
+
+def _check(
+    totals: Totals,
+    findings: Findings,
+    traces: Mapping[tuple[int, int], Trace],
+    matched: Mapping[tuple[int, int], set[int]],
+    k: int,
+    set_name: str,
+) -> None:
+    """semantics §6: matches are disturbances; a set matches all that the one before it does; s3 = s4."""
+    where = f"recording {findings.recording}, minDanger {totals.settings.min_danger[k]}, {set_name}"
+    totals.broken += [
+        f"{where}: {pair} matches but is no disturbance" for pair in matched if pair not in traces
+    ]
+    wider = {"base": "extA", "extA": "ext"}.get(set_name)
+    if wider in totals.settings.sets:
+        theirs = (x for x in findings.matches if x.min_danger == k and x.set_name == wider)
+        other = _scenarios_by_pair(theirs)
+        lost = [p for p, numbers in matched.items() if not numbers <= other.get(p, set())]
+        totals.broken += [f"{where}: {pair} does not match as much in {wider}" for pair in lost]
+    if set_name == "base" and {3, 4} <= set(totals.settings.scenarios):
+        for pair, numbers in matched.items():
+            if (3 in numbers) != (4 in numbers):
+                straddles = traces[pair].first_lane != traces[pair].second_lane
+                totals.unequal_3_4.append((findings.recording, *pair, str(totals.settings.min_danger[k])))
+                totals.broken += (
+                    [] if straddles else [f"{where}: {pair} matches only one of scenarios 3 and 4"]
+                )
+
+
+def write_results(
+    folder: Path, settings: Settings, findings: Iterable[Findings], failed: Mapping[str, str]
+) -> Totals:
+    """Write matches.csv, pairs.csv and results.json; ``findings`` gives the recordings in order.
+
+    Recordings are taken one at a time, and what an earlier one shows too is left out. ``failed`` says which
+    recordings are left out and why.
+    """
+    totals = begin_totals(settings)
+    counted = Counted(repeats=totals.repeats)
+    words = words_in(settings)
+    with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
+        match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
+        match_rows.writerow((*MATCH_COLUMNS, *driver_columns(settings)))
+        pair_rows.writerow((*PAIR_COLUMNS, *settings.detectors, *settings.sets))
+        for all_found in findings:
+            found = without_repeats(all_found, counted)
+            add_findings(totals, found)
+            match_rows.writerows(_match_rows(settings, words, found))
+            pair_rows.writerows(_pair_rows(settings, found))
+            if found.notes:
+                totals.notes[found.recording] = found.notes
+    with whole_text(folder / "results.json") as file:
+        file.write(json.dumps(as_json(totals, failed), indent=1) + "\n")
+    return totals
+
+
+def as_json(totals: Totals, failed: Mapping[str, str]) -> dict[str, Any]:
+    """The totals as plain data; ``failed``: which recordings are left out, and why."""
+    answer = kept.Answer(
+        **heading(kept.SCHEMA, totals.settings.library),
+        settings=_kept_settings(totals.settings),
+        recordings=totals.recordings,
+        vehicles=totals.vehicles,
+        samples=totals.samples,
+        violating=totals.violating,
+        asked=totals.asked,
+        undecided=totals.undecided,
+        differing=totals.differing,
+        table=tuple(_kept_row(row, totals) for rows in totals.shown.values() for row in rows),
+        words=tuple(words_in(totals.settings).values()),
+        detectors={name: totals.detected[name] for name in totals.settings.detectors},
+        checks=kept.Checks(broken=tuple(totals.broken), unequal_3_4=tuple(totals.unequal_3_4)),
+        repeats=tuple(_kept_repeat(x, totals) for x in totals.repeats),
+        notes=totals.notes,
+        failed=failed,
+        drivers=_predictions(totals) if totals.settings.drivers else None,
+    )
+    return write(answer)
+
+
+def _kept_row(row: Row, totals: Totals) -> kept.Row:
+    return kept.Row(
+        sector=row.sector.name,
+        min_danger=str(row.min_danger),
+        set=row.set_name,
+        traces=row.traces,
+        matching=row.matching,
+        matching_with_three_cars=row.matching_with_three,
+        recall=row.recall,
+        recall_without_init_safe=row.matching_violating / totals.violating if totals.violating else None,
+        scenarios={str(i): row.scenarios[i] for i in row.sector.scenarios},
+        matching_several=row.several,
+        together={f"{i}-{j}": n for (i, j), n in sorted(row.together.items())},
+    )
+
+
+def _kept_repeat(repeat: Repeat, totals: Totals) -> kept.Repeat:
+    return kept.Repeat(
+        recording=repeat.recording,
+        pair=(repeat.first, repeat.second),
+        what=repeat.what,
+        min_danger=None if repeat.min_danger is None else str(totals.settings.min_danger[repeat.min_danger]),
+        shown_in=repeat.shown_in,
+    )
+
+
+def foretold_rows(totals: Totals) -> Iterator[tuple[Fraction, str, int, str, tuple[int, ...]]]:
+    """For each minDanger, set, scenario and model that speaks of it how many matches have each of LABELS.
+
+    Scenarios of road sectors that no road has are left out.
+    """
+    settings = totals.settings
+    asked = [i for rows in totals.shown.values() for i in rows[0].sector.scenarios]
+    for (k, danger), set_name in product(enumerate(settings.min_danger), settings.sets):
+        for number, driver in product(asked, settings.drivers):
+            if course_in(number) in MODELS[driver].manoeuvres:
+                of = (k, set_name, number, driver)
+                counts = tuple(totals.foretold[Foretold(*of, label)] for label in LABELS)
+                yield danger, set_name, number, driver, counts
+
+
+def _predictions(totals: Totals) -> tuple[kept.Prediction, ...]:
+    return tuple(
+        kept.Prediction(
+            min_danger=str(danger),
+            set=set_name,
+            scenario=number,
+            driver=driver,
+            preventable=preventable,
+            unpreventable=unpreventable,
+            not_foreseen=not_foreseen,
+        )
+        for danger, set_name, number, driver, counts in foretold_rows(totals)
+        for preventable, unpreventable, not_foreseen in (counts,)
+    )
+
+
+def driver_columns(settings: Settings) -> list[str]:
+    """What the columns about driver models are called in matches.csv: a label, and the frame it is about."""
+    return [column for name in settings.drivers for column in (name, f"{name}_frame")]
+
+
+def driver_cells(settings: Settings, match: Match) -> list[str | int | None]:
+    """Their values for a match; None where a model says nothing of the scenario."""
+    cells: list[str | int | None] = []
+    for label in match.labels or ("",) * len(settings.drivers):
+        cells += [label or None, match.begun if label else None]
+    return cells
+
+
+def words_in(settings: Settings) -> Called:
+    """What the scenarios of an evaluation are called."""
+    home = settings.library.select(settings.sets[0], settings.options)
+    return called_in(home, settings.sets, settings.scenarios)
+
+
+def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[list[object]]:
+    dangers = [_decimal(x) for x in settings.min_danger]
+    for m in found.matches:
+        pov2 = "" if m.pov2 is None else m.pov2
+        frames = (m.start_frame, m.end_frame, dangers[m.min_danger])
+        happens = (m.set_name, m.scenario, words[m.scenario].title)
+        models = driver_cells(settings, m)
+        yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, *happens, int(m.uncertain), *models]
+
+
+def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
+    """A row for each trace, and one without a trace for each other pair that violates or is detected."""
+    dangers = [_decimal(x) for x in settings.min_danger]
+    matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
+    violating = {*found.violating}
+    detected = {(x.detector, x.pair) for x in found.detections}
+
+    def of_pair(pair: tuple[int, int]) -> list[int]:
+        return [int(pair in violating), *(int((name, pair) in detected) for name in settings.detectors)]
+
+    rows: dict[tuple[int, int], list[list[object]]] = {}
+    for t in found.traces:
+        pair = t.first, t.second
+        hits = [int((pair, t.min_danger, s) in matched) for s in settings.sets]
+        frames = (dangers[t.min_danger], t.start_frame, t.end_frame, t.first_lane, t.second_lane)
+        row = [found.recording, *pair, *frames, "; ".join(t.sectors), *of_pair(pair), *hits]
+        rows.setdefault((min(pair), max(pair)), []).append(row)
+    for pair in sorted(violating | {pair for _, pair in detected}):
+        if pair not in rows:
+            none = [""] * len(settings.sets)
+            rows[pair] = [[found.recording, *pair, "", "", "", "", "", "", *of_pair(pair), *none]]
+    for _, each in sorted(rows.items()):
+        yield from each
+
+
+def _decimal(value: Fraction) -> str:
+    """0.6 for 3/5; a fraction that is no short decimal stays one."""
+    text = f"{float(value):g}"
+    return text if Fraction(text) == value else str(value)

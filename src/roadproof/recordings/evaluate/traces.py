@@ -1,0 +1,147 @@
+"""Vehicles of a recording as traces for the monitor: time-major arrays, lane predicates decided."""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from fractions import Fraction
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.logic.formula import Formula
+from roadproof.logic.terms import Own
+from roadproof.recordings.evaluate.lane_atoms import LaneAtom
+from roadproof.recordings.formats.pairs import row_of
+from roadproof.recordings.formats.recording import ZONES, Bools, Integers, Recording
+from roadproof.semantics.sampled.batch import Array, Batch
+from roadproof.world.signals import RECORDED, SIGNALS, SIZES, SignalName, SizeName
+
+KIND: SizeName = "kind"
+
+
+def gather(
+    recording: Recording,
+    vehicles: Mapping[str, Integers],
+    low: Integers,
+    high: Integers,
+    signals: Iterable[SignalName | Own],
+    lanes: Mapping[str, Integers] | None = None,
+    atoms: Mapping[Formula, LaneAtom] | None = None,
+) -> Batch:
+    """A batch with one trace for each entry of the arrays, from frame ``low`` to ``high``.
+
+    ``vehicles`` gives vehicle indices by name. ``lanes`` gives, by name, the index of a lane (-1:
+    none, which nobody occupies) for each trace; ``atoms`` are decided for the vehicles and lanes
+    that are there. Raises ``InputError`` for signals that recordings do not have.
+    """
+    rows = {name: rows_of(recording, index, low, high) for name, index in vehicles.items()}
+    return gather_rows(recording, vehicles, rows, high - low + 1, signals, lanes, atoms)
+
+
+def gather_rows(
+    recording: Recording,
+    vehicles: Mapping[str, Integers],
+    rows: Mapping[str, Integers],
+    lengths: Integers,
+    signals: Iterable[SignalName | Own],
+    lanes: Mapping[str, Integers] | None = None,
+    atoms: Mapping[Formula, LaneAtom] | None = None,
+) -> Batch:
+    """As ``gather``, of the samples at ``rows`` (time, traces) of each vehicle, in order of time."""
+    asked = tuple(dict.fromkeys(signals))
+    own = [signal for signal in asked if isinstance(signal, Own)]
+    wanted = [signal for signal in asked if not isinstance(signal, Own)]
+    for signal in wanted:
+        if signal not in RECORDED:
+            raise InputError(f"no recording has the signal {signal}, which a formula needs")
+    columns = {name: recording.own[name] for name in (x.name for x in own) if name in recording.own}
+    own_signals = dict(by_vehicle({x: {v: c[at] for v, at in rows.items()} for x, c in columns.items()}))
+    for x in own:
+        whose = rows if x.vehicle else ("",)
+        refuse_missing([(x.name, v) for v in whose], own_signals, f"recording {recording.name}")
+    return Batch(
+        dt=Fraction(1, recording.rate),
+        lengths=lengths,
+        signals={
+            **{(x, name): getattr(recording, x)[at] for name, at in rows.items() for x in wanted},
+            **own_signals,
+        },
+        sizes={
+            **{(x, name): getattr(recording, x)[index] for name, index in vehicles.items() for x in SIZES},
+            **{(KIND, name): recording.kind_code[index] for name, index in vehicles.items()},
+        },
+        given=dict(_decide(recording, rows, lanes or {}, atoms or {})),
+        source=f"recording {recording.name}",
+    )
+
+
+def by_vehicle(columns: Mapping[str, Mapping[str, Array]]) -> Iterator[tuple[tuple[str, str], Array]]:
+    """Columns of own signals, by name and vehicle, as signals of a batch.
+
+    One that is the same for all vehicles at every instant is a signal of no vehicle ('') too.
+    """
+    for name, values in columns.items():
+        for vehicle, column in values.items():
+            yield (name, vehicle), column
+        first, *others = values.values()
+        if all(np.array_equal(first, other, equal_nan=True) for other in others):
+            yield (name, ""), first
+
+
+def refuse_missing(
+    wanted: Iterable[tuple[str, str]], there: Collection[tuple[str, str]], source: str
+) -> None:
+    """Raise ``InputError`` for an own signal of which there is no column, or not one for all vehicles."""
+    for name, vehicle in wanted:
+        if (name, vehicle) in there:
+            continue
+        if any(name == known for known, _ in there):
+            raise InputError(
+                f"{source}: column {name} is not the same for all vehicles at every instant, but signal "
+                f"{name} is of no vehicle; declare it of one: signal {name}(a: vehicle): …"
+            )
+        known = ", ".join(dict.fromkeys(x for x, _ in there if x not in SIGNALS))
+        raise InputError(
+            f"{source}: there is no column {name}, which signal {name} is read from; "
+            f"{f'of own signals there are {known}' if known else 'there is none of any own signal'}. CSV, "
+            "Parquet and frames may have such columns; or say what it is: signal … derived by …"
+        )
+
+
+def blocks(low: Integers, high: Integers, cells: int) -> Iterator[Integers]:
+    """Indices of traces in blocks of similar lengths, each of about so many samples."""
+    counts = high - low + 1
+    order = np.argsort(counts, kind="stable")[::-1]
+    begin = 0
+    while begin < len(order):
+        size = max(64, cells // int(counts[order[begin]]))
+        yield order[begin : begin + size]
+        begin += size
+
+
+def rows_of(recording: Recording, vehicle: Integers, low: Integers, high: Integers) -> Integers:
+    """Sample rows, shape (time, traces); after its end a trace repeats its last sample."""
+    counts = high - low
+    first = row_of(recording, vehicle, low)
+    rows: Integers = first + np.minimum(np.arange(int(counts.max()) + 1)[:, None], counts)
+    return rows
+
+
+def _decide(
+    recording: Recording,
+    rows: Mapping[str, Integers],
+    lanes: Mapping[str, Integers],
+    atoms: Mapping[Formula, LaneAtom],
+) -> Iterator[tuple[Formula, Bools]]:
+    occupied = {name: recording.occupancy[at] for name, at in rows.items()}
+    masks: dict[tuple[str, str], Array] = {}
+    own = np.array([1 << k for k in range(len(recording.lanes))] + [0], np.uint32)
+    beside = np.array([recording.beside_mask(k) for k in range(len(recording.lanes))] + [0], np.uint32)
+    for name, index in lanes.items():
+        masks["at", name], masks["beside", name] = own[index], beside[index]
+    for formula, atom in atoms.items():
+        if atom.vehicle not in rows:
+            continue
+        if atom.kind == "zone":
+            zone = np.uint32(1 << ZONES.index(atom.of))
+            yield formula, (recording.zones[rows[atom.vehicle]] & zone) != 0
+        elif (atom.kind, atom.of) in masks:
+            yield formula, (occupied[atom.vehicle] & masks[atom.kind, atom.of]) != 0

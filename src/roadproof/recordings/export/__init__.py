@@ -1,0 +1,1 @@
+"""Drives in the formats of other tools: OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV."""

@@ -1,0 +1,182 @@
+"""A drive in CommonRoad XML, version 2020a: lanelets with their types and neighbours, vehicles as obstacles.
+
+A vehicle's reference point is the centre of its box, which is aligned with the road as it was judged:
+``velocity`` and ``acceleration`` are along the box and so along the road, ``velocityY`` is to its left. The
+format has no place for the acceleration across.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.library.scenarios import SUBJECT
+from roadproof.recordings.export.layout import Layout, Section, together
+from roadproof.recordings.export.points import centre
+from roadproof.recordings.export.subject import WRITTEN, Subject, kind_of
+from roadproof.recordings.export.xml import Element, decimal, document, element
+from roadproof.world.drive import Motion
+from roadproof.world.motion import State
+from roadproof.world.road import Attribute, Lanelet
+from roadproof.world.signals import Kind
+
+_TYPES: Mapping[Attribute, str] = {"main": "mainCarriageWay", "merge": "accessRamp", "departure": "exitRamp"}
+MOTORCYCLE_WIDTH = Fraction(6, 5)
+"""A vehicle as narrow as that (m) is a motorcycle: cars are 1.4 m wide or more."""
+FIRST_LANELET, PROBLEM = 1001, 9001
+"""Ids: vehicles count from 1, lanelets from 1001; ids differ among all of them."""
+
+# Kinds that CommonRoad calls otherwise.
+_OBSTACLES: Mapping[Kind, str] = {"other": "unknown"}
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A lanelet within one section."""
+
+    id: int
+    lanelet: Lanelet
+    section: Section
+
+
+def files(subject: Subject) -> dict[str, bytes]:
+    """NAME.xml. Raises ``InputError`` for roads that have no lanes side by side."""
+    layout = subject.layout
+    root = element(
+        "commonRoad",
+        _location(),
+        element("scenarioTags", element("highway"), element("simulated")),
+        *_lanelets(layout),
+        *(_obstacle(subject, name, motion) for name, motion in subject.vehicles.items()),
+        _problem(subject),
+        commonRoadVersion="2020a",
+        benchmarkID=f"ZAM_Roadproof-{subject.number}_1_T-1",
+        date=WRITTEN,
+        author="roadproof",
+        affiliation="roadproof",
+        source=subject.said,
+        timeStepSize=decimal(Fraction(1, subject.rate)),
+    )
+    return {f"{subject.name}.xml": document(root)}
+
+
+def _location() -> Element:
+    place = {"geoNameId": "-999", "gpsLatitude": "999", "gpsLongitude": "999"}
+    return element("location", *(element(tag, text=text) for tag, text in place.items()))
+
+
+def _lanelets(layout: Layout) -> Iterator[Element]:
+    rows: list[list[_Cell]] = []
+    for section in layout.sections:
+        first = FIRST_LANELET + sum(map(len, rows))
+        rows.append([_Cell(first + k, x, section) for k, x in enumerate(section.lanelets)])
+    for k, row in enumerate(rows):
+        before = {x.lanelet.lane: x.id for x in rows[k - 1]} if k else {}
+        after = {x.lanelet.lane: x.id for x in rows[k + 1]} if k + 1 < len(rows) else {}
+        for place, cell in enumerate(row):
+            left = row[place - 1] if place else None
+            right = row[place + 1] if place + 1 < len(row) else None
+            links = [
+                ("predecessor", before.get(cell.lanelet.lane)),
+                ("successor", after.get(cell.lanelet.lane)),
+            ]
+            refs = [element(tag, ref=str(other)) for tag, other in links if other is not None]
+            sides = {"left": left, "right": right}
+            near = {
+                side: x for side, x in sides.items() if x and together(cell.lanelet, x.lanelet, layout.road)
+            }
+            refs += [
+                element(f"adjacent{side.title()}", ref=str(x.id), drivingDir="same")
+                for side, x in near.items()
+            ]
+            yield element(
+                "lanelet",
+                _bound("leftBound", cell, cell.lanelet.d[1], "left" in near),
+                _bound("rightBound", cell, cell.lanelet.d[0], "right" in near),
+                *refs,
+                element("laneletType", text="highway"),
+                element("laneletType", text=_TYPES[cell.lanelet.attribute]),
+                id=str(cell.id),
+            )
+
+
+def _bound(tag: str, cell: _Cell, across: Fraction, crossed: bool) -> Element:
+    low, high = cell.section.low, cell.section.high
+    points = [_point(s, across) for s in (low, (low + high) / 2, high)]
+    return element(tag, *points, element("lineMarking", text="dashed" if crossed else "solid"))
+
+
+def _point(x: Fraction, y: Fraction) -> Element:
+    return element("point", element("x", text=decimal(x)), element("y", text=decimal(y)))
+
+
+def _obstacle(subject: Subject, name: str, motion: Motion) -> Element:
+    box = element(
+        "rectangle",
+        element("length", text=decimal(motion.length)),
+        element("width", text=decimal(motion.width)),
+    )
+    first, *others = (
+        _state("state" if k else "initialState", k, state, motion)
+        for k, state in enumerate(subject.samples[name])
+    )
+    return element(
+        "dynamicObstacle",
+        element("type", text=_type(motion)),
+        element("shape", box),
+        first,
+        element("trajectory", *others),
+        id=str(subject.ids[name]),
+    )
+
+
+def _type(motion: Motion) -> str:
+    """The type of an obstacle; where a drive says sizes only, no car is as narrow as a motorcycle."""
+    if motion.kind is None and motion.width <= MOTORCYCLE_WIDTH:
+        return "motorcycle"
+    kind = kind_of(motion)
+    return _OBSTACLES.get(kind, kind)
+
+
+def _state(tag: str, step: int, state: State, motion: Motion) -> Element:
+    return element(
+        tag,
+        element("position", _point(*centre(state, motion.length, motion.width))),
+        _exact("orientation", Fraction(0)),
+        _exact("time", Fraction(step)),
+        _exact("velocity", state.v_lon),
+        _exact("velocityY", state.v_lat),
+        _exact("acceleration", state.a_lon),
+    )
+
+
+def _exact(tag: str, value: Fraction) -> Element:
+    return element(tag, element("exact", text=decimal(value)))
+
+
+def _problem(subject: Subject) -> Element:
+    """That of SV: from where it starts to the place and time where it ends (2020a has none without one)."""
+    name = SUBJECT if SUBJECT in subject.vehicles else next(iter(subject.vehicles))
+    motion = subject.vehicles[name]
+    states = subject.samples[name]
+    start, end = states[0], states[-1]
+    initial = element(
+        "initialState",
+        element("position", _point(*centre(start, motion.length, motion.width))),
+        _exact("velocity", start.v_lon),
+        _exact("orientation", Fraction(0)),
+        _exact("yawRate", Fraction(0)),
+        _exact("slipAngle", Fraction(0)),
+        _exact("time", Fraction(0)),
+    )
+    place = element(
+        "rectangle",
+        element("length", text=decimal(motion.length)),
+        element("width", text=decimal(motion.width)),
+        element("orientation", text="0"),
+    )
+    x, y = centre(end, motion.length, motion.width)
+    place.append(element("center", element("x", text=decimal(x)), element("y", text=decimal(y))))
+    steps = len(states) - 1
+    begin, last = element("intervalStart", text=str(steps)), element("intervalEnd", text=str(steps + 1))
+    goal = element("goalState", element("time", begin, last), element("position", place))
+    return element("planningProblem", initial, goal, id=str(PROBLEM))

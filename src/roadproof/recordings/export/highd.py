@@ -1,0 +1,105 @@
+"""A drive as a recording in highD's format, on the lower carriageway; zones of the road as TOML.
+
+The upper carriageway is one lane that nobody drives on, since a recording has two. Places are moved by whole
+metres so that x and y are positive, as they are in highD; frames count from 1.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, floor
+
+import numpy as np
+
+from roadproof.recordings.export.points import upper_left
+from roadproof.recordings.export.road_toml import road_toml
+from roadproof.recordings.export.subject import Subject, class_of
+from roadproof.recordings.formats.highd import LOWER, lanes_of_markings
+from roadproof.recordings.formats.recording import Floats, Recording, beside_by_order, occupy_bands, offsets
+from roadproof.recordings.formats.table import table_bytes
+from roadproof.recordings.formats.write_highd import highd_tables
+from roadproof.world.road import Road
+
+DECIMALS = 9
+_UPPER = (0.0, 4.0)
+_TOP = 8
+"""y of the left edge of the road, below the upper carriageway and a median."""
+
+
+@dataclass(frozen=True)
+class Shift:
+    """Metres that a recording's s and d are greater than the drive's."""
+
+    s: Fraction
+    d: Fraction
+
+
+def files(subject: Subject) -> dict[str, bytes]:
+    """XX_recordingMeta.csv, XX_tracksMeta.csv, XX_tracks.csv, XX being the subject's number; XX_road.toml.
+
+    Raises ``InputError`` for roads that no road file can say.
+    """
+    name, shift = f"{subject.number:02d}", shift_of(subject)
+    tables = highd_tables(recording_of(subject, name, shift), DECIMALS)
+    made = {f"{name}_{table}.csv": table_bytes(columns, DECIMALS) for table, columns in tables.items()}
+    if not _is_plain(subject.file.road):
+        made[f"{name}_road.toml"] = road_toml(subject.file.road, shift.s, shift.d).encode()
+    return made
+
+
+def shift_of(subject: Subject) -> Shift:
+    """So that the rear of the last vehicle and the left edge of the road are where highD begins."""
+    rear = min(x.s - m.length for name, m in subject.vehicles.items() for x in subject.samples[name])
+    left = max(x.d[1] for x in subject.file.road.lanelets)
+    return Shift(Fraction(10 - floor(rear)), Fraction(-_TOP - ceil(left)))
+
+
+def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
+    """The samples of the drive as a recording."""
+    edges = sorted({x + shift.d for lanelet in subject.file.road.lanelets for x in lanelet.d}, reverse=True)
+    lanes = lanes_of_markings(_UPPER, tuple(round(float(-y), DECIMALS) for y in edges))
+    motions = [*subject.vehicles.values()]
+    counts = np.full(len(motions), len(subject.times))
+    length, width = (np.array([float(getattr(m, x)) for m in motions]) for x in ("length", "width"))
+    corners = [
+        upper_left(state, motion.length)
+        for motion, rows in zip(motions, subject.samples.values(), strict=True)
+        for state in rows
+    ]
+    rows = [state for each in subject.samples.values() for state in each]
+    d = _floats([-y + shift.d for _, y in corners])
+    direction = np.full(len(motions), LOWER)
+    occupancy, lane = occupy_bands(lanes, np.repeat(direction, counts), d, np.repeat(width, counts))
+    return Recording(
+        name=name,
+        rate=subject.rate,
+        lanes=lanes,
+        beside=beside_by_order(lanes),
+        vehicle_id=np.array([*subject.ids.values()]),
+        direction=direction,
+        kind=np.array([class_of(m) for m in motions]),
+        length=length,
+        width=width,
+        first_frame=np.ones(len(motions), np.int64),
+        start=offsets(counts),
+        s=_floats([x + shift.s for x, _ in corners]) + np.repeat(length, counts),
+        d=d,
+        v_lon=_floats([x.v_lon for x in rows]),
+        v_lat=_floats([x.v_lat for x in rows]),
+        a_lon=_floats([x.a_lon for x in rows]),
+        a_lat=_floats([x.a_lat for x in rows]),
+        occupancy=occupancy,
+        lane=lane,
+        zones=(occupancy != 0).astype(np.uint32),
+    )
+
+
+def _floats(values: list[Fraction]) -> Floats:
+    return np.array([float(x) for x in values])
+
+
+def _is_plain(road: Road) -> bool:
+    """Whether markings say all of a road: main lanes without end, side by side."""
+    main = all(x.zone == x.attribute == "main" and x.s == (None, None) for x in road.lanelets)
+    edges = sorted(x.d for x in road.lanelets)
+    return main and all(a[1] == b[0] for a, b in pairwise(edges))

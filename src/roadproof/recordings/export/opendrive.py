@@ -1,0 +1,152 @@
+"""A road in OpenDRIVE 1.7: one straight road with a lane section wherever lanelets begin or end.
+
+The reference line is the left edge of the leftmost lanelet, so that all lanes lie to its right and drive
+along it; x = s and y = d. A merge lane is an ``entry`` lane, a departure lane an ``exit`` lane. What
+OpenDRIVE has no word for, the lane and the zone of a lanelet, is in its ``userData``.
+"""
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from math import ceil
+
+from roadproof.recordings.export.layout import Layout, Section, together
+from roadproof.recordings.export.subject import WRITTEN, Subject
+from roadproof.recordings.export.xml import Element, decimal, document, element
+from roadproof.world.motion import monotone_starts, state_at
+from roadproof.world.road import Attribute, Lanelet
+
+_TYPES: Mapping[Attribute, str] = {"main": "driving", "merge": "entry", "departure": "exit"}
+_GAP = "none"
+SPEED = 130
+"""The speed limit in km/h, which our roads do not have: the recommended speed of German motorways."""
+
+
+def files(subject: Subject) -> dict[str, bytes]:
+    """NAME.xodr. Raises ``InputError`` for roads that have no lanes side by side."""
+    return {f"{subject.name}.xodr": road_file(subject)}
+
+
+def road_file(subject: Subject) -> bytes:
+    """The road of the drive, as far as the drive goes."""
+    layout = subject.layout
+    left = max(x.d[1] for x in layout.road.lanelets)
+    right = min(x.d[0] for x in layout.road.lanelets)
+    header = element(
+        "header",
+        revMajor="1",
+        revMinor="7",
+        name=layout.said,
+        version="1",
+        date=f"{WRITTEN}T00:00:00",
+        north=decimal(left),
+        south=decimal(right),
+        east=decimal(layout.high),
+        west=decimal(layout.low),
+        vendor="roadproof",
+    )
+    return document(element("OpenDRIVE", header, _road(layout, left, _limit(subject))))
+
+
+def _limit(subject: Subject) -> int:
+    """km/h: ``SPEED``, or the next ten above the fastest vehicle where one is faster."""
+    horizon = subject.file.horizon
+    speeds = [state_at(x, horizon).v_lon for x in subject.vehicles.values()]
+    for motion in subject.vehicles.values():
+        speeds += [x.v_lon for x in monotone_starts(motion) if x.time <= horizon]
+    return max(SPEED, 10 * ceil(max(speeds) * Fraction(36, 100)))
+
+
+def _road(layout: Layout, left: Fraction, limit: int) -> Element:
+    length = decimal(layout.high - layout.low)
+    line = element("geometry", element("line"), s="0", x=decimal(layout.low), y=decimal(left), hdg="0")
+    line.set("length", length)
+    kind = element("type", element("speed", max=str(limit), unit="km/h"), s="0", type="motorway")
+    sections = list(_sections(layout, left, limit))
+    return element(
+        "road",
+        kind,
+        element("planView", line),
+        element("lanes", *sections),
+        name=layout.road.name,
+        length=length,
+        id="1",
+        junction="-1",
+        rule="RHT",
+    )
+
+
+def _sections(layout: Layout, left: Fraction, limit: int) -> Iterator[Element]:
+    strips = [_strips(section, left) for section in layout.sections]
+    numbers = [{x: -k for k, (x, _) in enumerate(each, 1) if x is not None} for each in strips]
+    linked = [{x.lane: number for x, number in each.items()} for each in numbers]
+    around = [{}, *linked, {}]
+    for k, section in enumerate(layout.sections):
+        lanes = []
+        for place, (lanelet, width) in enumerate(strips[k]):
+            neighbour = strips[k][place + 1][0] if place + 1 < len(strips[k]) else None
+            marked = _mark(lanelet, neighbour, layout)
+            before = None if lanelet is None else around[k].get(lanelet.lane)
+            after = None if lanelet is None else around[k + 2].get(lanelet.lane)
+            lanes.append(_lane(-place - 1, lanelet, width, marked, (before, after), limit))
+        first = strips[k][0][0]
+        middle = element(
+            "lane", _line("none" if first is None else "solid"), id="0", type="none", level="false"
+        )
+        yield element(
+            "laneSection",
+            element("center", middle),
+            element("right", *lanes),
+            s=decimal(section.low - layout.low),
+        )
+
+
+def _strips(section: Section, left: Fraction) -> list[tuple[Lanelet | None, Fraction]]:
+    """Lanelets from the reference line to the right with their widths, None for what lies between them."""
+    strips: list[tuple[Lanelet | None, Fraction]] = []
+    edge = left
+    for lanelet in section.lanelets:
+        if lanelet.d[1] < edge:
+            strips.append((None, edge - lanelet.d[1]))
+        strips.append((lanelet, lanelet.d[1] - lanelet.d[0]))
+        edge = lanelet.d[0]
+    return strips
+
+
+def _mark(lanelet: Lanelet | None, right: Lanelet | None, layout: Layout) -> str:
+    """The marking on the right of a strip."""
+    if lanelet is None and right is None:
+        return "none"
+    if lanelet is None or right is None:
+        return "solid"
+    return "broken" if together(lanelet, right, layout.road) else "solid"
+
+
+def _line(kind: str) -> Element:
+    if kind == "none":
+        return element("roadMark", sOffset="0", type="none", color="standard", laneChange="none")
+    change = "both" if kind == "broken" else "none"
+    mark = {"type": kind, "weight": "standard", "color": "standard", "width": "0.15", "laneChange": change}
+    return element("roadMark", sOffset="0", **mark)
+
+
+def _lane(
+    number: int,
+    lanelet: Lanelet | None,
+    width: Fraction,
+    marked: str,
+    links: tuple[int | None, int | None],
+    limit: int,
+) -> Element:
+    parts = []
+    ends = zip(("predecessor", "successor"), links, strict=True)
+    linked = [element(tag, id=str(end)) for tag, end in ends if end is not None]
+    if linked:
+        parts.append(element("link", *linked))
+    parts.append(element("width", sOffset="0", a=decimal(width), b="0", c="0", d="0"))
+    parts.append(_line(marked))
+    if lanelet is not None:
+        parts.append(element("speed", sOffset="0", max=str(limit), unit="km/h"))
+        said = {"lane": lanelet.lane, "zone": lanelet.zone}
+        parts += [element("userData", code=f"roadproof:{code}", value=x) for code, x in said.items()]
+    kind = _GAP if lanelet is None else _TYPES[lanelet.attribute]
+    return element("lane", *parts, id=str(number), type=kind, level="false")

@@ -1,0 +1,15 @@
+"""The formats that drives can be exported to; a new one is a file and a line here."""
+
+from collections.abc import Callable, Mapping
+
+from roadproof.recordings.export import commonroad, csv_table, highd, opendrive, openscenario
+from roadproof.recordings.export.subject import Subject
+
+FORMATS: Mapping[str, Callable[[Subject], dict[str, bytes]]] = {
+    "openscenario": openscenario.files,
+    "opendrive": opendrive.files,
+    "commonroad": commonroad.files,
+    "highd": highd.files,
+    "csv": csv_table.files,
+}
+"""By name, what makes the files of a drive: their contents by name. Each raises ``InputError``."""

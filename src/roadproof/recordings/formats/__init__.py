@@ -1,0 +1,1 @@
+"""Recordings in foreign formats as samples on lanes, checked for plausibility."""

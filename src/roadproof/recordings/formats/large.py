@@ -1,0 +1,280 @@
+"""Files of samples that are larger than memory: kept as converted recordings, some vehicles at a time.
+
+The file is gone through twice: for its vehicles and its clock, and to put its rows into files of some
+vehicles each. These are read, checked and placed one after the other, as a whole file is.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.recordings.formats import windows
+from roadproof.recordings.formats.contradictions import noted_doubts, noted_nowhere
+from roadproof.recordings.formats.converted import (
+    HEAD,
+    SAMPLES,
+    divide_converted,
+    frame_of_samples,
+    head_of,
+    same_frame,
+)
+from roadproof.recordings.formats.plausible import Doubting, Implausible, of_those_on_road, on_road
+from roadproof.recordings.formats.recording import Integers, Recording, offsets
+from roadproof.recordings.formats.samples import (
+    ORDER,
+    Clock,
+    by_vehicle,
+    clock_of,
+    column_pieces,
+    count_samples,
+    number_vehicles,
+    road_beside,
+    vehicles_of,
+)
+from roadproof.recordings.formats.source import Files
+from roadproof.recordings.formats.straight import StraightRoad
+from roadproof.recordings.formats.table import Table, polars_module, require_unchanged, stamp_of
+from roadproof.recordings.formats.windows import Divided, Window
+from roadproof.runtime.files import write_json
+from roadproof.world.signals import RECORDED
+
+_LEAST = 24
+"""Bytes of a row of a CSV file, at least."""
+_PLACE = "place in the file"
+
+
+def is_large(path: Path) -> bool:
+    """Whether a file of samples has more than are read as a whole. Raises ``InputError``."""
+    if path.suffix != ".parquet" and path.stat().st_size < _LEAST * windows.MOST_SAMPLES:
+        return False
+    return count_samples(path) > windows.MOST_SAMPLES
+
+
+def divide_large(files: Files) -> Divided | None:
+    """A file of samples in windows of time, None where it is small. Raises ``InputError``.
+
+    It is converted into a temporary folder, which is gone when the windows are.
+    """
+    path = files[-1]
+    if not path.is_file() or not is_large(path):
+        return None
+    folder = tempfile.TemporaryDirectory()
+    made = divide_converted(write_large(path, Path(folder.name), {}, ""), checked=True)
+    assert made is not None
+
+    def read() -> Iterator[Window]:
+        with folder:
+            yield from made.windows()
+
+    return replace(made, windows=read)
+
+
+def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str) -> Path:
+    """Write a file of samples as ``converted.write_converted`` does, and return the path of its head.
+
+    ``digests`` of what it is made of, in the format called ``form``. Raises ``InputError``.
+    """
+    road = road_beside(path)
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".") as temporary:
+        stamp = stamp_of(path)
+        survey = _survey(path)
+        require_unchanged(path, stamp)
+        groups = _divide_rows(path, survey, Path(temporary))
+        require_unchanged(path, stamp)
+        read = _Reading(path, road, survey, groups)
+        doubting = Doubting(survey.clock.rate, road.lanes)
+        heads, placed, parts = [], [], []
+        for number in range(len(groups)):
+            recording = read.recording(number)
+            doubting.add(recording)
+            placed.append(on_road(recording))
+            part = Path(temporary) / f"{number}{SAMPLES}"
+            frame_of_samples(recording).write_parquet(part, compression="zstd", statistics=False)
+            parts.append(part)
+            heads.append(_without_samples(recording))
+        whole = _joined(heads)
+        doubts = doubting.doubts()
+        off = of_those_on_road(np.concatenate(placed))
+        notes = (
+            *survey.notes,
+            *survey.clock.notes,
+            *noted_doubts(path, doubts, read.place_of),
+            *noted_nowhere(path, off, whole.start, read.vehicle_at, "lanelet of the road"),
+        )
+        table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
+        head.unlink(missing_ok=True)  # it is there when the samples are
+        _join(parts, Path(temporary) / "whole", table)
+        with table.open("rb") as file:
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
+        write_json(head, head_of(replace(whole, notes=notes), form, digests, survey.rows, digest))
+    return head
+
+
+@dataclass(frozen=True)
+class _Survey:
+    """What vehicles a file has, in the order of their numbers, and its clock.
+
+    ``index`` gives the place of each name; ``counts`` how many rows each has.
+    """
+
+    rows: int
+    names: list[str]
+    index: Mapping[str, int]
+    numbers: Integers
+    counts: Integers
+    clock: Clock
+    notes: tuple[str, ...]
+
+
+def _survey(path: Path) -> _Survey:
+    last: dict[str, float] = {}
+    counts: dict[str, int] = {}
+    steps: dict[float, int] = {}
+    begin, rows = np.inf, 0
+    for table in column_pieces(path):
+        names, index = _named(table)
+        ordered, codes = by_vehicle(table, index)
+        time = ordered["time"]
+        first = np.flatnonzero(np.diff(codes, prepend=-1) != 0)
+        before = np.concatenate(([np.nan], time[:-1]))
+        before[first] = [last.get(name, np.nan) for name in names]
+        ahead = time - before
+        ordered.require(np.isnan(before) | (ahead > 0), "time", ORDER)
+        for step, count in zip(*np.unique(ahead[~np.isnan(before)], return_counts=True), strict=True):
+            steps[float(step)] = steps.get(float(step), 0) + int(count)
+        ends = np.append(first[1:], len(time)) - 1
+        for name, count, end in zip(names, np.diff(np.append(first, len(time))), ends, strict=True):
+            counts[name] = counts.get(name, 0) + int(count)
+            last[name] = float(time[end])
+        begin, rows = min(begin, float(time.min())), rows + table.rows
+    unordered = np.array(sorted(counts))
+    numbers, notes = number_vehicles(unordered)
+    order = np.argsort(numbers, kind="stable")
+    known = [str(name) for name in unordered[order]]
+    found = np.array(sorted(steps)), np.array([steps[x] for x in sorted(steps)], np.int64)
+    return _Survey(
+        rows,
+        known,
+        {name: k for k, name in enumerate(known)},
+        numbers[order],
+        np.array([counts[name] for name in known]),
+        clock_of(path, begin, *found),
+        notes,
+    )
+
+
+def _named(table: Table) -> tuple[list[str], Integers]:
+    """The names of the vehicles in some rows, in order, and the place of each row's among them."""
+    each = [str(name) for name in table["vehicle"].tolist()]
+    names = sorted({*each})
+    place = {name: k for k, name in enumerate(names)}
+    return names, np.fromiter(map(place.__getitem__, each), np.int64, len(each))
+
+
+def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
+    """Folders with the rows of some vehicles each, in order of vehicles, in files in order of the rows."""
+    pl = polars_module()
+    group = (offsets(survey.counts)[:-1] // windows.MOST_SAMPLES).astype(np.int64)
+    group = np.unique(group, return_inverse=True)[1]
+    groups = [folder / str(number) for number in range(int(group[-1]) + 1)]
+    for each in groups:
+        each.mkdir()
+    for number, table in enumerate(column_pieces(path)):
+        places = np.arange(table.rows) if table.places is None else table.places
+        names, index = _named(table)
+        if not survey.index.keys() >= {*names}:
+            raise InputError(f"{path}: the file changed while it was read; ask again when it is whole")
+        vehicle = np.array([survey.index[name] for name in names])[index]
+        where = group[vehicle]
+        columns = {name: pl.Series(name, values) for name, values in table.columns.items()}
+        columns |= {"vehicle": pl.Series(vehicle), _PLACE: pl.Series(places)}
+        frame = pl.DataFrame(columns)
+        for k in np.unique(where).tolist():
+            frame.filter(pl.Series(where == k)).write_parquet(groups[k] / f"{number:06d}", compression="lz4")
+    return groups
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """The recordings of groups of vehicles."""
+
+    path: Path
+    road: StraightRoad
+    survey: _Survey
+    groups: list[Path]
+
+    def table(self, number: int) -> tuple[Table, Integers]:
+        """The rows of a group by vehicle, and the number of each row's vehicle.
+
+        The column ``vehicle`` has its place in the survey.
+        """
+        pl = polars_module()
+        frame = pl.concat(
+            [pl.read_parquet(part, glob=False) for part in sorted(self.groups[number].iterdir())]
+        )
+        columns = {name: frame[name].to_numpy() for name in frame.columns}
+        places = columns.pop(_PLACE)
+        table = Table(self.path, columns, frame.height, places)
+        return by_vehicle(table, self.survey.numbers[columns["vehicle"]])
+
+    def recording(self, number: int) -> Recording:
+        table, ids = self.table(number)
+        return vehicles_of(table, ids, self.survey.clock, self.road, self.path.stem)
+
+    def cell(self, row: int, column: str) -> tuple[str, str]:
+        """The cell in a row of the whole, in order of vehicles, in words; and the name of its vehicle."""
+        for number in range(len(self.groups)):
+            table, _ = self.table(number)
+            if row < table.rows:
+                name = self.survey.names[int(table["vehicle"][row])]
+                value = name if column == "vehicle" else table[column][row]
+                assert table.places is not None
+                found = Table(self.path, {column: np.array([value])}, 1, table.places[row : row + 1])
+                return found.cell(0, column), name
+            row -= table.rows
+        raise IndexError(row)
+
+    def place_of(self, doubt: Implausible) -> str:
+        cell, vehicle = self.cell(doubt.row, doubt.signal)
+        return f"{cell} of vehicle {vehicle}"
+
+    def vehicle_at(self, row: int) -> str:
+        return self.cell(row, "vehicle")[0]
+
+
+def _without_samples(recording: Recording) -> Recording:
+    """What a recording says once, or of vehicles."""
+    nothing = np.zeros(0)
+    signals = dict.fromkeys(RECORDED, nothing)
+    masks = {"occupancy": nothing, "lane": nothing, "zones": nothing, "inside": np.zeros((0, 0), np.bool_)}
+    return replace(recording, **signals, **masks, own={})  # type: ignore[arg-type]
+
+
+def _joined(parts: list[Recording]) -> Recording:
+    """Recordings without samples, whose vehicles follow each other, as one."""
+    names = ("vehicle_id", "direction", "kind", "length", "width", "first_frame", "label")
+    joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    counts = np.concatenate([np.diff(part.start) for part in parts])
+    return replace(parts[0], **joined, start=offsets(counts))  # type: ignore[arg-type]
+
+
+def _join(parts: list[Path], temporary: Path, table: Path) -> None:
+    """One Parquet file of several, which is read again and compared."""
+    pl = polars_module()
+    pl.scan_parquet(parts, glob=False).sink_parquet(
+        temporary, compression="zstd", statistics=False, maintain_order=True
+    )
+    begin = 0
+    for part in parts:
+        expected = pl.read_parquet(part, glob=False)
+        found = pl.scan_parquet(temporary, glob=False).slice(begin, expected.height).collect()
+        if not same_frame(found, expected):
+            raise RuntimeError(f"the samples of {table} do not come back")
+        begin += expected.height
+    os.replace(temporary, table)

@@ -1,0 +1,284 @@
+"""Scenarios in OpenSCENARIO XML (ASAM, 1.0 to 1.3) in which every vehicle follows a polyline in time.
+
+The road is the straight one in OpenDRIVE that the file names. Between vertices places are interpolated by
+cubics through them with the speeds that three vertices in a row have, which is exact where accelerations are
+constant across them. Speeds and accelerations are those of the cubics. A box is aligned with the road; its
+centre is where that of the file's box is.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.recordings.formats.recording import Floats, Recording
+from roadproof.recordings.formats.samples import DIRECTION, LABEL, recording_of
+from roadproof.recordings.formats.source import Files, Format, with_suffix
+from roadproof.recordings.formats.straight import of_road
+from roadproof.recordings.formats.table import Table
+from roadproof.runtime.xml_reader import Element, number_in, read_xml
+from roadproof.world.models import load_road
+from roadproof.world.opendrive import origin_of
+from roadproof.world.road import Road
+from roadproof.world.signals import RECORDED, SIZES
+
+RATE = 25
+"""Samples a second."""
+_KINDS = {
+    "car": "Car",
+    "van": "Car",
+    "truck": "Truck",
+    "semitrailer": "Truck",
+    "trailer": "Truck",
+    "bus": "Truck",
+    "motorbike": "Motorcycle",
+}
+_PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
+
+
+@dataclass(frozen=True)
+class Box:
+    """A vehicle's class, what the file calls it, and its box.
+
+    ``centre`` is that of the box, ahead and left of the reference point (m).
+    """
+
+    kind: str
+    label: str
+    length: float
+    width: float
+    centre: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Way:
+    """Vertices of the centre of a box in road coordinates, by time (s, m)."""
+
+    time: Floats
+    s: Floats
+    d: Floats
+
+
+class Samples(Table):
+    """Samples whose place is said by vehicle and time, as the file has vertices in place of rows."""
+
+    def cell(self, row: int, column: str) -> str:
+        vehicle, time = self.columns["vehicle"][row], self.columns["time"][row]
+        return f"vehicle {vehicle} at {time:g} s, {column}={self.columns[column][row]:g}"
+
+
+def read_columns(path: Path) -> tuple[Table, Road, Path]:
+    """Samples of all vehicles, RATE a second, and the road with its file.
+
+    Raises ``InputError`` that names element and rule.
+    """
+    root = read_xml(path, "OpenSCENARIO")
+    road = path.parent / _text(path, root.find("RoadNetwork/LogicFile"), "filepath", "a LogicFile")
+    if road.suffix != ".xodr":
+        raise InputError(f"{path}: LogicFile filepath={road.name}: a road in OpenDRIVE (.xodr) is needed")
+    boxes = dict(_boxes(path, root))
+    ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
+    for name in boxes:
+        if name not in ways:
+            raise InputError(f"{path}: ScenarioObject {name} follows no trajectory; each vehicle needs one")
+    return _sampled(path, boxes, ways), load_road(road), road
+
+
+def read_recording(path: Path) -> Recording:
+    """The vehicles of a file as a recording. Raises ``InputError``."""
+    table, road, road_path = read_columns(path)
+    note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
+    return recording_of(table, of_road(road, DIRECTION, road_path), path.stem, (note,))
+
+
+def _text(path: Path, node: Element | None, attribute: str, what: str) -> str:
+    value = None if node is None else node.get(attribute)
+    if not value:
+        raise InputError(f"{path}: {what} with {attribute} is needed")
+    if "$" in value:
+        raise InputError(
+            f"{path}: {what} has {attribute}={value}: parameters are not supported; write it out"
+        )
+    return value
+
+
+def _number(path: Path, node: Element | None, attribute: str, what: str) -> float:
+    return number_in(path, _text(path, node, attribute, what), f"{attribute} of {what}")
+
+
+def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
+    seen: set[str] = set()
+    for node in root.findall("Entities/ScenarioObject"):
+        name = _text(path, node, "name", "a ScenarioObject")
+        if name in seen:
+            raise InputError(f"{path}: two ScenarioObjects are called {name}")
+        seen.add(name)
+        told = f"ScenarioObject {name}"
+        vehicle = node.find("Vehicle")
+        if vehicle is None:
+            raise InputError(f"{path}: {told} is no Vehicle that is written out; catalogues are not read")
+        category = vehicle.get("vehicleCategory", "car")
+        if category not in _KINDS:
+            raise InputError(f"{path}: {told}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
+        size, centre = vehicle.find("BoundingBox/Dimensions"), vehicle.find("BoundingBox/Center")
+        length, width = (_number(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
+        ahead, left = (_number(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
+        yield name, Box(_KINDS[category], category, length, width, (ahead, left))
+    if not seen:
+        raise InputError(f"{path}: there is no ScenarioObject")
+
+
+def _vertices(path: Path, root: Element, boxes: dict[str, Box]) -> Iterator[tuple[str, Floats]]:
+    """By vehicle, rows of time, x, y and heading."""
+    seen: set[str] = set()
+    acts = root.findall("Storyboard/Story/Act")
+    for act, group in ((x, y) for x in acts for y in x.findall("ManeuverGroup")):
+        actors = [_text(path, x, "entityRef", "an EntityRef") for x in group.findall("Actors/EntityRef")]
+        for event, action in ((x, y) for x in group.findall("Maneuver/Event") for y in x.findall("Action")):
+            told = f"Action {action.get('name')} of {', '.join(actors)}"
+            follow = action.find(_PLACES)
+            if follow is None:
+                raise InputError(f"{path}: {told} is no FollowTrajectoryAction; only these are read")
+            found = _polyline(path, follow, told)
+            for begun in (act, event):
+                _check_begin(path, begun, found[0, 0], told)
+            for name in actors:
+                if name not in boxes:
+                    raise InputError(f"{path}: {told}: there is no ScenarioObject {name}")
+                if name in seen:
+                    raise InputError(f"{path}: {name} follows two trajectories; one is needed")
+                seen.add(name)
+                yield name, found
+
+
+def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
+    """Raise ``InputError`` where an act or event may begin after ``first`` (s), when the first vertex is."""
+
+    def in_time(condition: Element) -> bool:
+        clock = condition.find("ByValueCondition/SimulationTimeCondition")
+        if clock is None or clock.get("rule") not in ("greaterThan", "greaterOrEqual"):
+            return False
+        begin = _number(path, clock, "value", f"a StartTrigger of {told}")
+        delay = (
+            _number(path, condition, "delay", f"a StartTrigger of {told}") if condition.get("delay") else 0.0
+        )
+        return begin + delay <= first
+
+    groups = node.findall("StartTrigger/ConditionGroup")
+    if groups and not any(all(map(in_time, group.findall("Condition"))) for group in groups):
+        rule = f"a SimulationTimeCondition that is met at time {first:g} is needed, that of the first Vertex"
+        raise InputError(f"{path}: {told}: StartTrigger of the {node.tag}: {rule}")
+
+
+def _check_exact(path: Path, follow: Element, told: str) -> None:
+    """Raise ``InputError`` where vehicles need not be on the vertices at their times."""
+    mode = follow.find("TrajectoryFollowingMode")
+    if mode is not None and mode.get("followingMode") != "position":
+        raise InputError(f"{path}: {told}: followingMode={mode.get('followingMode')}: position is needed")
+    offset = "initialDistanceOffset"
+    if follow.get(offset) and _number(path, follow, offset, told) != 0:
+        raise InputError(f"{path}: {told}: {offset}={follow.get(offset)}: begin at the first Vertex")
+    if any(x.get("closed") in ("true", "1") for x in follow.iter("Trajectory")):
+        raise InputError(f"{path}: {told}: closed=true: write out the way back as vertices with times")
+
+
+def _polyline(path: Path, follow: Element, told: str) -> Floats:
+    _check_exact(path, follow, told)
+    timing = follow.find("TimeReference/Timing")
+    if timing is None or timing.get("domainAbsoluteRelative") != "absolute":
+        raise InputError(f"{path}: {told}: a Timing with domainAbsoluteRelative=absolute is needed")
+    scale, offset = (_number(path, timing, x, f"the Timing of {told}") for x in ("scale", "offset"))
+    shape = next((x for x in follow.iter("Shape")), None)
+    shapes = [] if shape is None else [x.tag for x in shape]
+    if shape is None or shapes != ["Polyline"]:
+        raise InputError(f"{path}: {told}: Shape {' and '.join(shapes) or 'missing'}; a Polyline is needed")
+    rows = []
+    for number, vertex in enumerate(shape.findall("Polyline/Vertex"), 1):
+        at = f"Vertex {number} of {told}"
+        place = vertex.find("Position/WorldPosition")
+        if place is None:
+            raise InputError(f"{path}: {at}: a WorldPosition is needed")
+        time = _number(path, vertex, "time", at) * scale + offset
+        heading = _number(path, place, "h", at) if place.get("h") else 0.0
+        rows.append((time, *(_number(path, place, x, at) for x in ("x", "y")), heading))
+    found = np.array(rows).reshape(-1, 4)
+    if len(found) < 2 or not (np.diff(found[:, 0]) > 0).all():
+        raise InputError(f"{path}: {told}: at least two vertices are needed, each later than the one before")
+    return found
+
+
+def _in_road(vertices: Floats, box: Box, road: Path) -> Way:
+    """The centre of the box, along and beside the reference line of a straight road."""
+    x0, y0, along = origin_of(road)
+    time, x, y, heading = vertices.T
+    ahead, left = box.centre
+    x = x + ahead * np.cos(heading) - left * np.sin(heading) - x0
+    y = y + ahead * np.sin(heading) + left * np.cos(heading) - y0
+    turn = math.cos(along), math.sin(along)
+    return Way(time, x * turn[0] + y * turn[1], y * turn[0] - x * turn[1])
+
+
+def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, Way]) -> Table:
+    columns: dict[str, list[Floats]] = {}
+    for name, way in ways.items():
+        box = boxes[name]
+        first, last = math.ceil(way.time[0] * RATE - 1e-6), math.floor(way.time[-1] * RATE + 1e-6)
+        times = np.clip(np.arange(first, last + 1) / RATE, way.time[0], way.time[-1])
+        s, v_lon, a_lon = _curve(way.time, way.s, times)
+        d, v_lat, a_lat = _curve(way.time, way.d, times)
+        moving = (s + box.length / 2, d + box.width / 2, v_lon, v_lat, a_lon, a_lat)
+        told = {
+            "time": np.arange(first, last + 1) / RATE,
+            "vehicle": np.full(len(times), name),
+            "kind": np.full(len(times), box.kind),
+            LABEL: np.full(len(times), box.label),
+        }
+        told |= zip(map(str, RECORDED), moving, strict=True)
+        told |= {str(x): np.full(len(times), getattr(box, x)) for x in SIZES}
+        for column, values in told.items():
+            columns.setdefault(column, []).append(values)
+    joined = {column: np.concatenate(values) for column, values in columns.items()}
+    return Samples(path, joined, len(joined["time"]))
+
+
+def _curve(knots: Floats, places: Floats, times: Floats) -> tuple[Floats, Floats, Floats]:
+    """Place, speed and acceleration at ``times`` on the cubics through ``places``."""
+    speeds = _speeds(knots, places)
+    k = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
+    step = knots[k + 1] - knots[k]
+    x = (times - knots[k]) / step
+    rise = places[k + 1] - places[k]
+    low, high = speeds[k] * step, speeds[k + 1] * step
+    square, cube = 3 * rise - 2 * low - high, low + high - 2 * rise
+    place = places[k] + x * (low + x * (square + x * cube))
+    return place, (low + x * (2 * square + 3 * x * cube)) / step, (2 * square + 6 * x * cube) / step**2
+
+
+def _speeds(knots: Floats, places: Floats) -> Floats:
+    """At each knot the speed of the parabola through it and its neighbours."""
+    means = np.diff(places) / np.diff(knots)
+    if len(means) == 1:
+        return np.repeat(means, 2)
+    before, after = np.diff(knots)[:-1], np.diff(knots)[1:]
+    inside = (after * means[:-1] + before * means[1:]) / (before + after)
+    return np.concatenate(([2 * means[0] - inside[0]], inside, [2 * means[-1] - inside[-1]]))
+
+
+def _find(path: Path) -> dict[str, Files]:
+    return {x.stem: (x,) for x in with_suffix(path, ".xosc")}
+
+
+def _read(files: Files) -> Recording:
+    return read_recording(files[-1])
+
+
+def _rate_at(files: Files, rate: int) -> str:
+    return f"{files[-1]}, sampled {rate} times a second"
+
+
+FORMAT = Format(
+    "OpenSCENARIO", "NAME.xosc, in which all vehicles follow polylines in time", _find, _read, _rate_at
+)

@@ -1,0 +1,383 @@
+"""Whether a recording contradicts itself: motion against positions, sizes against classes and lanes.
+
+Each rule is asked of many samples or vehicles. Above a stated share of broken ones the recording is
+refused, below it the rule is a note. The constants are argued for in docs/highd.md.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from roadproof.recordings.formats.blockwise import blocks_of, blockwise
+from roadproof.recordings.formats.median import Median
+from roadproof.recordings.formats.recording import Bools, Floats, Integers, Lane, Recording
+from roadproof.recordings.formats.scale import Scale, integrate
+from roadproof.recordings.formats.windows import MOST_SAMPLES
+from roadproof.world.signals import SignalName, SizeName
+
+LARGEST_SPEED = 250.0
+LARGEST_ACCELERATION = 100.0
+LARGEST_SIZE = 50.0
+LARGEST_STEP = 100.0
+"""m/s, m/s², m, and m from one frame to the next: beyond that there is no vehicle; one cell is refused."""
+
+SHARE = 0.1
+"""Above this share of broken seconds of motion, or of vehicles, a recording is refused."""
+SHARE_OF_JUMPS = 0.05
+"""Above this share of steps between frames that jump a recording is refused."""
+FEWEST = 5
+"""So many must break a rule before a recording is refused for their share."""
+FEWEST_VEHICLES = 10
+"""So many of one direction are needed to say where in their lanes vehicles drive."""
+OFF_CENTRE = (0.3, 0.5)
+"""Half vehicle widths beside the middle of the lane, in the median, that are noted, and refused."""
+SIZES = {"Car": ((2.0, 8.0), (1.0, 3.0)), "Truck": ((4.0, 30.0), (1.4, 3.5))}
+"""Usual lengths and widths of the classes (m)."""
+
+
+@dataclass(frozen=True)
+class Implausible:
+    """A rule of which ``broken`` of ``asked`` places break it, first at sample ``row``.
+
+    ``signal`` is what the cell there says; ``refused`` where there are too many.
+    """
+
+    rule: str
+    signal: SignalName | SizeName
+    row: int
+    broken: int
+    asked: int
+    unit: str
+    refused: bool
+
+    @property
+    def told(self) -> str:
+        """The rule, and how often it is broken."""
+        return f"{self.rule} ({self.broken} of {self.asked} {self.unit})"
+
+
+def find_doubts(recording: Recording) -> list[Implausible]:
+    """Everything in which ``recording`` contradicts itself, the gravest first."""
+    found = Doubting(recording.rate, recording.lanes)
+    found.add(recording)
+    return found.doubts()
+
+
+@dataclass(frozen=True)
+class OffRoad:
+    """How many vehicles are on no lane at any time, the first of them, and whether they are too many."""
+
+    vehicle: int
+    count: int
+    refused: bool
+
+
+def off_road(recording: Recording) -> OffRoad | None:
+    """The vehicles that are never on a lane; None where there are none."""
+    return of_those_on_road(on_road(recording))
+
+
+def on_road(recording: Recording) -> Bools:
+    """For each vehicle whether it is ever on a lane."""
+    found: Bools = np.logical_or.reduceat(recording.occupancy != 0, recording.start[:-1])
+    return found
+
+
+def of_those_on_road(on_road: Bools) -> OffRoad | None:
+    """The others, if there are any."""
+    count = int(np.count_nonzero(~on_road))
+    return OffRoad(int(np.argmin(on_road)), count, count > SHARE * len(on_road)) if count else None
+
+
+@dataclass(frozen=True)
+class _Rate:
+    """A signal and what its rate of change is said to be; a window moves where either changes by ``least``.
+
+    The two may differ by ``share`` of the greater and ``slack``.
+    """
+
+    signal: SignalName
+    rate: SignalName
+    least: float
+    share: float
+    slack: float
+    what: str
+
+
+_RATES = (
+    _Rate("s", "v_lon", 1.0, 0.1, 0.2, "velocities along the road and positions"),
+    _Rate("d", "v_lat", 0.3, 0.5, 0.1, "velocities across the road and positions"),
+    _Rate("v_lon", "a_lon", 0.5, 0.5, 0.25, "accelerations along the road and velocities"),
+)
+_FACTORS = ((-1.0, "the sign is turned"), (0.0, "zero"), (3.6, "km/h?"), (2.237, "miles an hour?"))
+
+
+@dataclass
+class _Motion:
+    """What a signal changes by in a second against the sum of its rate, five times a second.
+
+    The sum goes on from vehicle to vehicle, so that parts of a recording come to what the whole does.
+    """
+
+    rule: _Rate
+    broken: int = 0
+    asked: int = 0
+    row: int = 0
+    factors: list[Floats] = field(default_factory=list)
+    last: tuple[float, float] | None = None
+
+    def add(self, recording: Recording, before: int, windows: tuple[Integers, Integers]) -> None:
+        """``before``: how many rows there were already; ``windows``: the first and last rows of seconds."""
+        signal, rate = getattr(recording, self.rule.signal), getattr(recording, self.rule.rate)
+        total = integrate(rate, recording.rate, self.last)
+        self.last = float(total[-1]), float(rate[-1])
+        begin, end = windows
+        change, told = signal[end] - signal[begin], total[end] - total[begin]
+        greater = np.maximum(np.abs(change), np.abs(told))
+        moved = greater > self.rule.least
+        wrong = moved & (np.abs(change - told) > self.rule.share * greater + self.rule.slack)
+        if wrong.any() and not self.broken:
+            first = int(np.argmax(wrong))
+            self.row = before + _worst(signal, total, int(begin[first]), int(end[first]))
+        self.broken += int(np.count_nonzero(wrong))
+        self.asked += int(np.count_nonzero(moved))
+        self.factors.append(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong]))
+
+    def doubts(self) -> Iterator[Implausible]:
+        if self.broken:
+            factor = float(np.median(np.concatenate(self.factors)))
+            refused = _too_many(self.broken, self.asked, SHARE)
+            text = f"{self.rule.what} contradict each other{_hint(factor) if refused else ''}"
+            yield Implausible(
+                text, self.rule.rate, self.row, self.broken, self.asked, "moving seconds", refused
+            )
+
+
+def _hint(factor: float) -> str:
+    """What such a factor between what is told and what is so may come from."""
+    if not np.isfinite(factor):
+        return ""
+    cause = next((f": {name}" for x, name in _FACTORS if abs(factor - x) < 0.05 * max(1, abs(x))), "")
+    return f", by a factor of {factor:.3g}{cause}"
+
+
+def _seconds(recording: Recording, before: int) -> tuple[Integers, Integers]:
+    """The first and last sample of windows of a second, every fifth of a second, within one vehicle."""
+    every = max(1, recording.rate // 5)
+    rows = np.arange(-before % every, len(recording.s) - recording.rate, every)
+    vehicle = recording.row_vehicle
+    rows = rows[vehicle[rows] == vehicle[rows + recording.rate]]
+    return rows, rows + recording.rate
+
+
+def _worst(signal: Floats, total: Floats, begin: int, end: int) -> int:
+    """The sample of a window before which the two differ most."""
+    apart = np.abs(np.diff(signal[begin : end + 1]) - np.diff(total[begin : end + 1]))
+    return begin + 1 + int(np.argmax(apart))
+
+
+@dataclass
+class _Jumps:
+    """What no vehicle does from one frame to the next, of which ``most`` of all may be."""
+
+    rule: str
+    signal: SignalName
+    most: float = SHARE_OF_JUMPS
+    broken: int = 0
+    asked: int = 0
+    row: int = 0
+
+    def add(self, broken: Bools, first: int, asked: int) -> None:
+        """``broken`` has an entry a row from row ``first`` on; of ``asked`` steps."""
+        if broken.any() and not self.broken:
+            self.row = first + int(np.argmax(broken))
+        self.broken += int(np.count_nonzero(broken))
+        self.asked += asked
+
+    def doubts(self) -> Iterator[Implausible]:
+        if self.broken:
+            refused = self.broken > self.most * self.asked and (self.broken >= FEWEST or self.most == 0)
+            yield Implausible(self.rule, self.signal, self.row, self.broken, self.asked, "steps", refused)
+
+
+class _Steps:
+    """The rules about steps from one frame to the next."""
+
+    def __init__(self, rate: int) -> None:
+        self.step = step = 1 / rate
+        moves = f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next"
+        differ = "a position and the velocity differ by more than {:g} m from one frame to the next"
+        changes = "a velocity changes by more than {:.2g} m/s from one frame to the next"
+        along, across = 30 * step + 0.5, 10 * step + 0.5
+        self.ways: tuple[tuple[SignalName, SignalName, float, _Jumps, _Jumps], ...] = (
+            ("s", "v_lon", 1.0, _Jumps(moves, "s", 0), _Jumps(differ.format(1.0), "s")),
+            ("d", "v_lat", 0.5, _Jumps(moves, "d", 0), _Jumps(differ.format(0.5), "d")),
+        )
+        self.speeds = (
+            (along, _Jumps(changes.format(along), "v_lon")),
+            (across, _Jumps(changes.format(across), "v_lat")),
+        )
+        self.hard = _Jumps("an acceleration is above 15 m/s²", "a_lon")
+
+    def add(self, recording: Recording, before: int) -> None:
+        inner = np.ones(max(0, len(recording.s) - 1), bool)
+        inner[recording.start[1:-1] - 1] = False
+        asked = int(np.count_nonzero(inner))
+        for name, along, most, far, apart in self.ways:
+            place, speed = getattr(recording, name), getattr(recording, along)
+            jumps, differ = np.empty(len(inner), bool), np.empty(len(inner), bool)
+            for part in blocks_of(len(place), overlap=1):
+                steps = slice(part.start, part.stop - 1)
+                way, velocity = np.diff(place[part]), speed[part]
+                jumps[steps] = inner[steps] & (np.abs(way) > LARGEST_STEP)
+                way -= (velocity[1:] + velocity[:-1]) * (self.step / 2)
+                differ[steps] = inner[steps] & (np.abs(way) > most)
+            far.add(jumps, before + 1, asked)
+            apart.add(differ, before + 1, asked)
+        for most, rule in self.speeds:
+            speed, broken = getattr(recording, rule.signal), np.empty(len(inner), bool)
+            for part in blocks_of(len(speed), overlap=1):
+                steps = slice(part.start, part.stop - 1)
+                broken[steps] = inner[steps] & (np.abs(np.diff(speed[part])) > most)
+            rule.add(broken, before + 1, asked)
+        first = 0 if before else 1  # the first of all is no step
+        hard = blockwise(lambda a_lon: np.abs(a_lon) > 15, recording.a_lon[first:])
+        self.hard.add(hard, before + first, asked)
+
+    def doubts(self) -> Iterator[Implausible]:
+        for *_, far, apart in self.ways:
+            yield from far.doubts()
+            yield from apart.doubts()
+        for _, rule in self.speeds:
+            yield from rule.doubts()
+        yield from self.hard.doubts()
+
+
+@dataclass(frozen=True)
+class _Vehicles:
+    """What is said once of vehicles; ``start`` is the first row of each."""
+
+    length: Floats
+    width: Floats
+    kind: npt.NDArray[np.str_]
+    direction: Integers
+    start: Integers
+
+
+def _sizes(vehicles: _Vehicles, lanes: tuple[Lane, ...]) -> Iterator[Implausible]:
+    """Sizes that do not fit the class, that are wider than long, or wider than any lane."""
+    length, width, kind = vehicles.length, vehicles.width, vehicles.kind
+    yield from _vehicles(vehicles, "a vehicle is wider than it is long", "width", width > length)
+    widths = [lane.d[1] - lane.d[0] for lane in lanes if lane.d is not None]
+    if widths:
+        yield from _vehicles(vehicles, "a vehicle is wider than every lane", "width", width > max(widths))
+    for name, (lengths, across) in SIZES.items():
+        sizes: tuple[tuple[SizeName, Floats, tuple[float, float]], ...] = (
+            ("length", length, lengths),
+            ("width", width, across),
+        )
+        for signal, value, (low, high) in sizes:
+            broken = (kind == name) & ((value < low) | (value > high))
+            rule = f"a {name} is usually {low:g} to {high:g} m {'long' if signal == 'length' else 'wide'}"
+            yield from _vehicles(vehicles, rule, signal, broken)
+
+
+def _vehicles(vehicles: _Vehicles, rule: str, signal: SizeName, broken: Bools) -> Iterator[Implausible]:
+    count, of = int(np.count_nonzero(broken)), len(vehicles.length)
+    if count:
+        row, refused = int(vehicles.start[np.argmax(broken)]), _too_many(count, of, SHARE)
+        yield Implausible(rule, signal, row, count, of, "vehicles", refused)
+
+
+def _too_many(broken: int, asked: int, share: float) -> bool:
+    return broken >= FEWEST and broken > share * asked
+
+
+class _Places:
+    """Vehicles of one direction that all drive beside the middle of their lanes, so no corner is tracked."""
+
+    def __init__(self, lanes: tuple[Lane, ...]) -> None:
+        bands = [lane.d for lane in lanes if lane.d is not None]
+        self.straight = len(bands) == len(lanes)
+        self.middle = np.array([(right + left) / 2 for right, left in bands] + [0.0])
+        self.beside: dict[int, Median] = {}
+        self.rows: dict[int, int] = {}
+        self.off: dict[int, Integers] = {}
+
+    def add(self, recording: Recording, before: int) -> None:
+        if not self.straight:
+            return
+        counts = np.diff(recording.start)
+        half, direction = np.repeat(recording.width / 2, counts), np.repeat(recording.direction, counts)
+        beside = blockwise(
+            lambda d, half, lane: (d - half - self.middle[lane]) / half, recording.d, half, recording.lane
+        )
+        for way in np.unique(recording.direction).tolist():
+            ours = (direction == way) & (recording.lane >= 0)
+            self.beside.setdefault(way, Median(MOST_SAMPLES)).add(beside[ours])
+            left, right = ours & (beside > OFF_CENTRE[0]), ours & (beside < -OFF_CENTRE[0])
+            off = left | right
+            if off.any():
+                self.rows.setdefault(way, before + int(np.argmax(off)))
+            counts = np.array([np.count_nonzero(left), np.count_nonzero(right)])
+            self.off[way] = self.off.get(way, np.zeros(2, np.int64)) + counts
+
+    def doubts(self, vehicles: _Vehicles) -> Iterator[Implausible]:
+        for way, beside in sorted(self.beside.items()):
+            many = int(np.count_nonzero(vehicles.direction == way))
+            if many < FEWEST_VEHICLES or not beside.count:
+                continue
+            if 2 * self.off[way].max() + 2 < beside.count:
+                continue  # more than half are in the middle, and so is the median
+            median = beside.value()
+            if abs(median) > OFF_CENTRE[0]:
+                side = "left" if median > 0 else "right"
+                rule = (
+                    f"vehicles of direction {way} drive {abs(median):.2f} half widths {side} of the middle "
+                    "of their lanes: is a position the upper-left corner of the box?"
+                )
+                refused = abs(median) > OFF_CENTRE[1]
+                yield Implausible(rule, "d", self.rows[way], many, many, "vehicles", refused)
+
+
+class Doubting:
+    """What a recording contradicts itself in, whose vehicles are added one after the other, each whole."""
+
+    def __init__(self, rate: int, lanes: tuple[Lane, ...]) -> None:
+        self.lanes = lanes
+        self.motion = [_Motion(rule) for rule in _RATES]
+        self.scale = Scale()
+        self.steps = _Steps(rate)
+        self.places = _Places(lanes)
+        self.vehicles: list[_Vehicles] = []
+        self.rows = 0
+
+    def add(self, recording: Recording) -> None:
+        """The vehicles that follow those that were added, in the order of the whole."""
+        if not len(recording.s):
+            return
+        windows = _seconds(recording, self.rows)
+        for rule in self.motion:
+            rule.add(recording, self.rows, windows)
+        self.scale.add(recording, self.rows)
+        self.steps.add(recording, self.rows)
+        self.places.add(recording, self.rows)
+        of = (recording.length, recording.width, recording.kind, recording.direction)
+        self.vehicles.append(_Vehicles(*of, recording.start[:-1] + self.rows))
+        self.rows += len(recording.s)
+
+    def doubts(self) -> list[Implausible]:
+        """Everything that was found, the gravest first."""
+        if not self.rows:
+            return []
+        names = _Vehicles.__dataclass_fields__
+        whole = _Vehicles(*(np.concatenate([getattr(x, name) for x in self.vehicles]) for name in names))
+        found = [doubt for rule in self.motion for doubt in rule.doubts()]
+        scale = self.scale.told()
+        if scale is not None:
+            counts = self.scale.vehicles, len(whole.length)
+            found.append(Implausible(scale, "v_lon", self.scale.row, *counts, "vehicles", False))
+        found += [*self.steps.doubts(), *_sizes(whole, self.lanes), *self.places.doubts(whole)]
+        return sorted(found, key=lambda doubt: not doubt.refused)

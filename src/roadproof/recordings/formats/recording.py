@@ -1,0 +1,280 @@
+"""A recording of traffic as plain arrays, whatever file it came from.
+
+Coordinates are those of semantics §2: s along the road in driving direction (front of the box), d across
+it to the left (left side of the box), in metres, metres per second and metres per second squared.
+Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
+``start[v]:start[v + 1]``, and its row of frame f is ``start[v] + f - first_frame[v]``.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from roadproof.recordings.formats.blockwise import blocks_of
+from roadproof.world.road import Lanelet, Zone
+from roadproof.world.signals import KINDS, RECORDED, Kind
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+Integers: TypeAlias = npt.NDArray[np.int64]
+Masks: TypeAlias = npt.NDArray[np.uint32]
+Bools: TypeAlias = npt.NDArray[np.bool_]
+
+_TRUTHS = {"true": 1.0, "false": 0.0}
+# What highD, exiD, CommonRoad and OpenSCENARIO call the kinds that have a name of their own.
+_CLASSES: Mapping[str, Kind] = {
+    "car": "car",
+    "taxi": "car",
+    "truck": "truck",
+    "bus": "bus",
+    "motorcycle": "motorcycle",
+    "motorbike": "motorcycle",
+}
+ZONES: tuple[Zone, ...] = ("main", "merge", "depart")
+
+
+@dataclass(frozen=True)
+class Lane:
+    """A lane of one driving direction; ``d`` is (right, left) where it is a straight band, else None."""
+
+    name: str
+    direction: int
+    d: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Slack:
+    """By how much places along a measured road may be off; an entry a sample.
+
+    ``along``, ``across`` (m): ends and sides of the box as it stands in the plane, against s, d and its size;
+    infinite where it heads more than 45 degrees away from the road. ``turn`` (rad): how much the road has
+    turned up to there, to both sides together. ``off`` (m): the side of the box that is farthest from the
+    line that s is measured on.
+    """
+
+    along: Floats
+    across: Floats
+    turn: Floats
+    off: Floats
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Traffic on one road for some minutes.
+
+    Per vehicle, in order of ``vehicle_id``: ``vehicle_id``, ``direction``, ``kind`` (a class such as
+    Car or Truck), ``length``, ``width``, ``first_frame``, and ``start`` (one entry more than vehicles).
+    Per sample: the RECORDED signals, ``occupancy`` (bit k: the box overlaps ``lanes[k]`` with positive
+    area, semantics §4), ``lane`` (index of the lane that holds the centre of the box, -1 for none) and
+    ``zones`` (bit k: the box occupies a lanelet of zone ZONES[k]).
+    ``beside`` holds unordered pairs of names of adjacent lanes. ``notes`` says what is odd but usable.
+    ``moments``: where other recordings may show the same, a number a sample that says so (repeats.py).
+    ``lanelets``: where lanes are more than bands without end, what they consist of, and ``inside``, of shape
+    (samples, lanelets), whether the box overlaps each with positive area. On a curved road their bounds only
+    tell them apart. ``slack``: what projecting a measured road on a line does to places; None where s and d
+    are measured themselves. ``own``: columns that are no signals of the list, an entry a sample: true and
+    false as 1 and 0, NaN where there is no number. ``label``: what the file calls each vehicle, where
+    ``kind`` puts several together.
+    """
+
+    name: str
+    rate: int
+    lanes: tuple[Lane, ...]
+    beside: frozenset[frozenset[str]]
+    vehicle_id: Integers
+    direction: Integers
+    kind: npt.NDArray[np.str_]
+    length: Floats
+    width: Floats
+    first_frame: Integers
+    start: Integers
+    s: Floats
+    d: Floats
+    v_lon: Floats
+    v_lat: Floats
+    a_lon: Floats
+    a_lat: Floats
+    occupancy: Masks
+    lane: Integers
+    zones: Masks
+    notes: tuple[str, ...] = ()
+    moments: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
+    lanelets: tuple[Lanelet, ...] = ()
+    inside: Bools = field(default_factory=lambda: np.zeros((0, 0), np.bool_))
+    slack: Slack | None = None
+    own: Mapping[str, Floats] = field(default_factory=dict)
+    label: npt.NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, np.str_))
+
+    @cached_property
+    def kind_code(self) -> Integers:
+        """What kind each vehicle is of, as terms hold it (``signals.KINDS``)."""
+        names, index = np.unique(self.label if len(self.label) else self.kind, return_inverse=True)
+        codes: Integers = np.array([KINDS.index(kind_called(str(name))) + 1 for name in names], np.int64)
+        return codes[index]
+
+    @property
+    def vehicles(self) -> int:
+        """How many vehicles there are."""
+        return len(self.vehicle_id)
+
+    @property
+    def last_frame(self) -> Integers:
+        """The last frame of each vehicle."""
+        last: Integers = self.first_frame + np.diff(self.start) - 1
+        return last
+
+    @property
+    def row_vehicle(self) -> Integers:
+        """For each sample, the index of its vehicle."""
+        return np.repeat(np.arange(self.vehicles), np.diff(self.start))
+
+    @property
+    def row_frame(self) -> Integers:
+        """For each sample, its frame."""
+        within: Integers = np.arange(self.start[-1]) - np.repeat(self.start[:-1], np.diff(self.start))
+        return within + np.repeat(self.first_frame, np.diff(self.start))
+
+    @property
+    def zone_names(self) -> tuple[Zone, ...]:
+        """The zones that some vehicle is in at some time, in the order of ZONES."""
+        return zones_in([int(np.bitwise_or.reduce(self.zones, initial=0))])
+
+    def beside_mask(self, lane: int) -> int:
+        """The lanes adjacent to ``lanes[lane]``, as bits of ``occupancy``."""
+        name = self.lanes[lane].name
+        return sum(1 << k for k, x in enumerate(self.lanes) if frozenset((x.name, name)) in self.beside)
+
+
+def zones_in(masks: Iterable[int]) -> tuple[Zone, ...]:
+    """The zones that are in some of the ``masks``, in the order of ZONES."""
+    met = [*masks]
+    return tuple(zone for k, zone in enumerate(ZONES) if any(mask >> k & 1 for mask in met))
+
+
+def kind_called(name: str) -> Kind:
+    """The kind that recordings call by this name: Car, truck, motorbike; what they call otherwise is other.
+
+    >>> kind_called("Truck"), kind_called("bicycle")
+    ('truck', 'other')
+    """
+    return _CLASSES.get(name.lower(), "other")
+
+
+def own_numbers(values: Iterable[object]) -> Floats:
+    """A column as numbers: true and false as 1 and 0, NaN for what is no finite number."""
+    return np.array([_own_number(value) for value in values], np.float64)
+
+
+def _own_number(value: object) -> float:
+    if isinstance(value, str):
+        value = _TRUTHS.get(value.strip().lower(), value)
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return math.nan
+    return found if math.isfinite(found) else math.nan
+
+
+def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
+    """The recording with only the vehicles for which ``wanted`` (one entry a vehicle) is true."""
+    rows = np.repeat(wanted, np.diff(recording.start))
+    counts = np.diff(recording.start)[wanted]
+    changed: dict[str, Any] = {
+        name: getattr(recording, name)[wanted]
+        for name in ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
+    }
+    changed |= {name: getattr(recording, name)[rows] for name in (*RECORDED, "occupancy", "lane", "zones")}
+    if len(recording.moments):
+        changed["moments"] = recording.moments[rows]
+    if recording.lanelets:
+        changed["inside"] = recording.inside[rows]
+    if len(recording.label):
+        changed["label"] = recording.label[wanted]
+    if recording.own:
+        changed["own"] = {name: values[rows] for name, values in recording.own.items()}
+    if recording.slack is not None:
+        changed["slack"] = Slack(*(values[rows] for values in vars(recording.slack).values()))
+    return _replace(recording, changed | {"start": offsets(counts)})
+
+
+def join_vehicles(recording: Recording, guests: Recording) -> Recording:
+    """The recording with the vehicles of ``guests``, whose ids must all be greater, added at the end.
+
+    Both must have the same rate, lanes and lanelets.
+    """
+    ours, theirs = ((x.rate, x.lanes, x.lanelets) for x in (recording, guests))
+    if ours != theirs:
+        raise ValueError("recordings of different roads or rates cannot be joined")
+    if recording.slack is not None or guests.slack is not None:
+        raise ValueError("recordings of measured roads cannot be joined")
+    if len(recording.moments) or len(guests.moments):
+        raise ValueError("recordings whose moments others may show cannot be joined")
+    if any(x.own or len(x.label) for x in (recording, guests)):
+        raise ValueError("recordings with own signals or labels cannot be joined")
+    if recording.vehicles and guests.vehicle_id.min() <= recording.vehicle_id.max():
+        raise ValueError("the ids of the guests must be greater than those of the recording")
+    per_vehicle = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
+    changed: dict[str, Any] = {
+        name: np.concatenate((getattr(recording, name), getattr(guests, name)))
+        for name in (*per_vehicle, *RECORDED, "occupancy", "lane", "zones", "inside")
+    }
+    changed["start"] = np.concatenate((recording.start, recording.start[-1] + guests.start[1:]))
+    return _replace(recording, changed)
+
+
+def with_notes(recording: Recording, notes: Iterable[str]) -> Recording:
+    """The recording with more notes."""
+    return _replace(recording, {"notes": (*recording.notes, *notes)})
+
+
+def offsets(counts: npt.NDArray[Any]) -> Integers:
+    """0 and the running sums of ``counts``.
+
+    >>> offsets(np.array([2, 3])).tolist()
+    [0, 2, 5]
+    """
+    return np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+
+
+def beside_by_order(lanes: tuple[Lane, ...]) -> frozenset[frozenset[str]]:
+    """``Recording.beside`` where the lanes of a direction follow each other across the road."""
+    neighbours = pairwise(lanes)
+    return frozenset(frozenset((a.name, b.name)) for a, b in neighbours if a.direction == b.direction)
+
+
+def occupy_bands(
+    lanes: tuple[Lane, ...], direction: Integers, d: Floats, width: Floats
+) -> tuple[Masks, Integers]:
+    """Occupancy bits and lane of the centre for boxes on straight bands (semantics §4).
+
+    All arrays have one entry a sample; metres are compared to the micrometre, so that a box which
+    touches a marking in the decimals of the file does so here. A centre on a marking is in the band
+    to the left of it.
+    """
+    if any(band.d is None for band in lanes):
+        name = next(band.name for band in lanes if band.d is None)
+        raise ValueError(f"lane {name} is no straight band")
+    occupancy = np.zeros(len(d), np.uint32)
+    lane = np.full(len(d), -1, np.int64)
+    for part in blocks_of(len(d)):
+        way, left = direction[part], d[part]
+        right = np.round(left - width[part], 6)
+        centre = np.round(left - width[part] / 2, 6)
+        for k, band in enumerate(lanes):
+            assert band.d is not None
+            low, high = band.d
+            ours = way == band.direction
+            occupancy[part] |= (ours & (left > low) & (right < high)).astype(np.uint32) << np.uint32(k)
+            lane[part][ours & (low <= centre) & (centre < high)] = k
+    return occupancy, lane
+
+
+def _replace(recording: Recording, changed: Mapping[str, Any]) -> Recording:
+    return Recording(
+        **{**{name: getattr(recording, name) for name in Recording.__dataclass_fields__}, **changed}
+    )

@@ -1,0 +1,267 @@
+"""Samples of vehicles in road coordinates, as CSV or Parquet: a recording, or one trace.
+
+A file has the columns ``HEADER``, and may have ``kind`` (a class such as Car, which is the default, or
+Truck), and columns of users' own signals; SI units and coordinates are those of semantics §2.
+NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, says where its lanes are.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from roadproof.errors import InputError
+from roadproof.library.scenarios import vehicle_order
+from roadproof.recordings.formats.contradictions import contradictions, nowhere
+from roadproof.recordings.formats.parquet import count_rows, parquet_pieces, read_parquet
+from roadproof.recordings.formats.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_SIZE,
+    LARGEST_SPEED,
+    Implausible,
+)
+from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
+from roadproof.recordings.formats.source import first_line
+from roadproof.recordings.formats.straight import StraightRoad, of_road, place
+from roadproof.recordings.formats.table import Kind, Table, count_lines, read_pieces, read_table
+from roadproof.world.models import load_recorded_road
+from roadproof.world.signals import RECORDED, SIGNALS, SIZES
+
+HEADER = ("time", "vehicle", *RECORDED, *SIZES)
+ROAD_ENDING = "_road.toml"
+CONVERTED = ".samples.parquet"
+"""How the files of recordings that were converted end; they are none of these."""
+LABEL = "vehicle category"
+"""What a file calls a vehicle, where ``kind`` puts several together; no file of samples has it."""
+DIRECTION = 1
+"""The only driving direction of such a file."""
+LARGEST_PLACE = 1_000_000.0
+LARGEST_RATE = 1000
+_UNEVEN = 0.01  # by so much a step may differ from a whole number of samples a second
+_ROUNDING = 0.00101
+"""s: two times with three decimals are this far from what they stand for, together."""
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
+_KINDS: dict[str, Kind] = {name: "text" if name == "vehicle" else "number" for name in HEADER}
+
+
+def read_columns(path: Path) -> Table:
+    """The columns of a file, with ``kind`` and own signals where it has them. Raises ``InputError``."""
+    if path.suffix == ".parquet":
+        return read_parquet(path, _KINDS, {"kind": "text"}, others="list")
+    return read_table(path, *_header_of(path))
+
+
+def column_pieces(path: Path) -> Iterator[Table]:
+    """The same in pieces, of which one at a time is in memory. Raises ``InputError``."""
+    if path.suffix == ".parquet":
+        return parquet_pieces(path, _KINDS, {"kind": "text"}, others="list")
+    return read_pieces(path, *_header_of(path))
+
+
+def count_samples(path: Path) -> int:
+    """How many rows a file has. Raises ``InputError``."""
+    return count_rows(path) if path.suffix == ".parquet" else count_lines(path) - 1
+
+
+def _header_of(path: Path) -> tuple[tuple[str, ...], dict[str, Kind]]:
+    names = tuple(first_line(path).split(","))
+    more = names[len(HEADER) :] if names[: len(HEADER)] == HEADER else ()
+    if len({*names}) < len(names) or not all(_NAME.fullmatch(name) for name in more):
+        more = ()
+    kinds: dict[str, Kind] = {name: "text" if name == "kind" else "list" for name in more}
+    return (*HEADER, *more), {**_KINDS, **kinds}
+
+
+def own_columns(names: Iterable[str]) -> tuple[str, ...]:
+    """Those of the columns that may be own signals, which none is of the list of signals."""
+    return tuple(name for name in names if name not in (*HEADER, *SIGNALS, "kind", LABEL))
+
+
+def read_recording(path: Path) -> Recording:
+    """The recording of a file, on the road beside it. Raises ``InputError``.
+
+    Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
+    """
+    columns = read_columns(path)
+    return recording_of(columns, road_beside(path), path.stem)
+
+
+def road_beside(path: Path) -> StraightRoad:
+    """The road beside a file of samples. Raises ``InputError``."""
+    road_file = path.with_name(f"{path.stem}{ROAD_ENDING}")
+    if not road_file.is_file():
+        raise InputError(f"{path}: {road_file.name} is missing beside it, which says where the lanes are")
+    return of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
+
+
+def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = ()) -> Recording:
+    """The recording of columns called as in ``HEADER``, and ``kind``, on a road. Raises ``InputError``."""
+    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
+    number, numbered = number_vehicles(names)
+    table, ids = by_vehicle(columns, number[index])
+    clock = _read_clock(table, ids)
+    recording = vehicles_of(table, ids, clock, road, name)
+    told = with_notes(recording, (*notes, *numbered, *clock.notes))
+    return with_notes(told, _check_plausible(table, recording))
+
+
+def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
+    """Notes on what samples contradict themselves in, as a recording of them has.
+
+    Samples that are not a whole number a second have one note: that nothing was compared. Raises
+    ``InputError`` where the contradictions are too large or too many.
+    """
+    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
+    table, ids = by_vehicle(columns, number_vehicles(names)[0][index])
+    clock = _read_clock(table, ids)
+    if abs(clock.rate * clock.step - 1) > _UNEVEN:
+        return (
+            f"samples are {clock.step:g} s apart, not a whole number a second: places, speeds and "
+            "accelerations were not compared with each other",
+        )
+    recording = vehicles_of(table, ids, clock, road, columns.path.stem)
+    return tuple(_check_plausible(table, recording))
+
+
+def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad, name: str) -> Recording:
+    """The recording of rows by vehicle, whose numbers are ``ids``, without notes. Raises ``InputError``."""
+    first = np.flatnonzero(np.diff(ids, prepend=-1) != 0)
+    start = np.append(first, table.rows)
+    frames = _frames(table, ids, clock)
+    _check_cells(table, start)
+    counts = np.diff(start)
+    kind = table["kind"].astype(np.str_) if "kind" in table.columns else np.full(table.rows, "Car")
+    table.require(kind == np.repeat(kind[first], counts), "kind", "the class of a vehicle stays the same")
+    placed = place(
+        road, np.full(table.rows, DIRECTION), *(table[x] for x in ("s", "d")), *(table[x] for x in SIZES)
+    )
+    return Recording(
+        name=name,
+        rate=clock.rate,
+        lanes=road.lanes,
+        beside=road.beside,
+        vehicle_id=ids[first],
+        direction=np.full(len(first), DIRECTION),
+        kind=kind[first],
+        length=table["length"][first],
+        width=table["width"][first],
+        first_frame=frames[first],
+        start=start,
+        s=table["s"],
+        d=table["d"],
+        v_lon=table["v_lon"],
+        v_lat=table["v_lat"],
+        a_lon=table["a_lon"],
+        a_lat=table["a_lat"],
+        occupancy=placed.occupancy,
+        lane=placed.lane,
+        zones=placed.zones,
+        lanelets=road.lanelets,
+        inside=placed.inside,
+        label=table[LABEL].astype(np.str_)[first] if LABEL in table.columns else np.zeros(0, np.str_),
+        own={name: own_numbers(table[name].tolist()) for name in own_columns(table.columns)},
+    )
+
+
+def number_vehicles(names: npt.NDArray[np.str_]) -> tuple[Integers, tuple[str, ...]]:
+    """The number of each vehicle, and a note where names are no numbers: then SV is 1, as in all exports."""
+    if all(name.isdecimal() and name[0] != "0" and len(name) < 10 for name in names):
+        return names.astype(np.int64), ()
+    known = {name: k for k, name in enumerate(vehicle_order(names.tolist()), 1)}
+    number = np.array([known[name] for name in names.tolist()])
+    shown = ", ".join(f"{name} is {k}" for name, k in [*known.items()][:12])
+    return number, (f"vehicles are numbered: {shown}{', …' if len(names) > 12 else ''}",)
+
+
+def by_vehicle(table: Table, ids: Integers) -> tuple[Table, Integers]:
+    """The rows by vehicle, in the order of the file, and the number of each row's vehicle."""
+    order = np.argsort(ids, kind="stable")
+    columns = {name: values[order] for name, values in table.columns.items()}
+    places = order if table.places is None else table.places[order]
+    return replace(table, columns=columns, places=places), ids[order]
+
+
+@dataclass(frozen=True)
+class Clock:
+    """``begin`` (s) is the time of frame 0, ``step`` (s) what times go on by, ``rate`` so many a second."""
+
+    begin: float
+    step: float
+    rate: int
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What frame 0 is, where it is not time 0."""
+        return (f"frame 0 is time {self.begin:g} s",) if self.begin else ()
+
+
+def _read_clock(table: Table, ids: Integers) -> Clock:
+    time = table["time"]
+    same = np.diff(ids, prepend=-1) == 0
+    ahead = np.diff(time, prepend=0.0)
+    table.require(~same | (ahead > 0), "time", ORDER)
+    steps, counts = np.unique(ahead[same], return_counts=True)
+    return clock_of(table.path, float(time.min()), steps, counts)
+
+
+ORDER = "the rows of a vehicle come in order of time, each time once"
+
+
+def clock_of(path: Path, begin: float, steps: Floats, counts: Integers) -> Clock:
+    """The clock by the ``steps`` between samples, each so often, in order. Raises ``InputError``."""
+    if not len(steps):
+        raise InputError(f"{path}: no vehicle has two samples; at least two are needed")
+    near = steps < 1.2 * steps[0]  # gaps left out, rounded times evened out
+    step = float((steps[near] * counts[near]).sum() / counts[near].sum())
+    rate = round(1 / step)
+    if not 1 <= rate <= LARGEST_RATE:
+        raise InputError(f"{path}: time goes on by {step:g} s; 1 to {LARGEST_RATE} samples a second")
+    return Clock(begin, step, rate)
+
+
+def _frames(table: Table, ids: Integers, clock: Clock) -> Integers:
+    """The frame of each row."""
+    time, rate = table["time"], clock.rate
+    same = np.diff(ids, prepend=-1) == 0
+    frames: Integers = np.round((time - clock.begin) * rate).astype(np.int64)
+    told = f"samples are {clock.step:g} s apart, so times are whole multiples of 1/{rate} s"
+    off = np.abs(time - clock.begin - frames / rate)
+    table.require(off <= min(_ROUNDING, 0.1 / rate), "time", told)
+    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told} without gaps")
+    return frames
+
+
+def _check_cells(table: Table, start: Integers) -> None:
+    """No cell may say what no vehicle does, and no vehicle changes its size or drives backwards."""
+    limits: dict[float, tuple[str, ...]] = {
+        LARGEST_PLACE: ("s", "d"),
+        LARGEST_SPEED: ("v_lon", "v_lat"),
+        LARGEST_ACCELERATION: ("a_lon", "a_lat"),
+        LARGEST_SIZE: tuple(SIZES),
+    }
+    for most, columns in limits.items():
+        for column in columns:
+            table.require(np.abs(table[column]) <= most, column, f"must lie between {-most:g} and {most:g}")
+    for column in SIZES:
+        size = table[column]
+        table.require(size > 0, column, "the size of a vehicle is greater than zero")
+        same = size == np.repeat(size[start[:-1]], np.diff(start))
+        table.require(same, column, "the size of a vehicle stays the same")
+    s: Floats = table["s"]
+    backwards = s[start[1:] - 1] - s[start[:-1]] < -table["length"][start[:-1]]
+    ends = np.ones(table.rows, np.bool_)
+    ends[start[1:] - 1] = ~backwards
+    table.require(ends, "s", "a vehicle never ends further back than its length from where it began")
+
+
+def _check_plausible(table: Table, recording: Recording) -> Iterator[str]:
+    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
+
+    def at(doubt: Implausible) -> str:
+        return f"{table.cell(doubt.row, doubt.signal)} of vehicle {table['vehicle'][doubt.row]}"
+
+    yield from contradictions(table.path, recording, at)
+    yield from nowhere(table.path, recording, lambda row: table.cell(row, "vehicle"), "lanelet of the road")

@@ -1,0 +1,100 @@
+"""What a format of recordings is: how its files are found, read, and named in messages."""
+
+import hashlib
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.windows import Divided, undivided
+
+Files: TypeAlias = tuple[Path, ...]
+TRACK_FILES = re.compile(r"(\d+)_(?:recordingMeta|tracksMeta|tracks)\.csv")
+"""The names of the files of highD and exiD, with the name of the recording."""
+
+
+def as_a_whole(files: Files) -> Divided | None:
+    """What a format does that is never read in windows."""
+    return None
+
+
+@dataclass(frozen=True)
+class Format:
+    """A kind of files that recordings are in.
+
+    ``find``: the recordings of this kind, by name, that a folder holds or that a file is of; for each all
+    files that it is read from, that of its samples last. A recording of which files are missing is found,
+    so that reading it is refused. ``read`` raises ``InputError``. ``rate_at``: where the files say how many
+    samples a second there are. ``told``: the files in words. ``divide``: a recording that is
+    too large to be read as a whole, in windows; None for others.
+    """
+
+    name: str
+    told: str
+    find: Callable[[Path], dict[str, Files]]
+    read: Callable[[Files], Recording]
+    rate_at: Callable[[Files, int], str]
+    divide: Callable[[Files], Divided | None] = as_a_whole
+
+
+@dataclass(frozen=True)
+class RecordingSource:
+    """A recording that can be read."""
+
+    format: Format
+    name: str
+    files: Files
+
+    def read(self) -> Recording:
+        """Read and check it. Raises ``InputError``."""
+        return self.format.read(self.files)
+
+    def divided(self) -> Divided:
+        """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
+        return self.format.divide(self.files) or undivided(self.read())
+
+    def digests(self) -> list[str]:
+        """A digest of the content of each file, empty for one that cannot be read."""
+        return [_digest(path) for path in self.files]
+
+    def place_of_rate(self, rate: int) -> str:
+        """Where the files say how many samples a second there are."""
+        return self.format.rate_at(self.files, rate)
+
+
+def with_suffix(path: Path, suffix: str) -> list[Path]:
+    """The files of a folder that end in ``suffix``, in order, or the file itself where it does."""
+    if path.is_dir():
+        return sorted(x for x in path.glob(f"*{suffix}") if x.is_file())
+    return [path] if path.is_file() and path.name.endswith(suffix) else []
+
+
+def first_line(path: Path) -> str:
+    """The first line of a text file, without quotes; empty where it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            line = file.readline(4096).decode("utf-8-sig", "replace").strip()
+            return line.partition("\r")[0].replace('"', "")
+    except OSError:
+        return ""
+
+
+def beside(path: Path, ending: str) -> Files:
+    """The file beside ``path`` that is called as it but for ``ending``, if there is one."""
+    other = path.with_name(f"{path.stem}{ending}")
+    return (other,) if other.is_file() else ()
+
+
+def rate_in_meta(files: Files, rate: int) -> str:
+    """Where a recording in files of highD and exiD says how many samples a second it has."""
+    return f"{files[-3]}, row 2, column frameRate={rate}"
+
+
+def _digest(path: Path) -> str:
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return ""

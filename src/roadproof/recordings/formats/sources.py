@@ -1,0 +1,58 @@
+"""Which recordings a path holds. A new format is a file of this folder and a line here."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from roadproof.errors import InputError
+from roadproof.recordings.formats import commonroad, converted, exid, highd, openscenario, tabular
+from roadproof.recordings.formats.source import Format, RecordingSource
+
+FORMATS: tuple[Format, ...] = (
+    highd.FORMAT,
+    exid.FORMAT,
+    commonroad.FORMAT,
+    openscenario.FORMAT,
+    tabular.CSV,
+    tabular.PARQUET,
+    converted.FORMAT,
+)
+
+
+def find_sources(path: Path) -> tuple[RecordingSource, ...]:
+    """The recordings of a folder, or the one that a file is of. Raises ``InputError``."""
+    if not path.exists():
+        raise InputError(f"recordings={path}: not a folder and not a file; check the path")
+    by_format = {x: found for x in FORMATS if (found := x.find(path))}
+    if not by_format:
+        told = "; ".join(f"{x.name}: {x.told}" for x in FORMATS)
+        what = "no recording in it" if path.is_dir() else "no recording"
+        raise InputError(f"recordings={path}: {what}; recordings are {told}")
+    if len(by_format) > 1:
+        names = " and ".join(x.name for x in by_format)
+        raise InputError(
+            f"recordings={path}: {names} files in one folder; put them into folders of their own"
+        )
+    ((chosen, found),) = by_format.items()
+    return tuple(RecordingSource(chosen, name, files) for name, files in found.items())
+
+
+def find_source(path: Path) -> RecordingSource:
+    """The only recording of a path. Raises ``InputError``."""
+    sources = find_sources(path)
+    if len(sources) > 1:
+        names = ", ".join(str(source.files[-1].name) for source in sources[:3])
+        raise InputError(f"{path}: {len(sources)} recordings; name the file of one, such as {names}")
+    return sources[0]
+
+
+def copies_among(sources: Sequence[RecordingSource], digests: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    """The recordings whose samples are those of an earlier one: evaluated, they would count twice."""
+    first: dict[str, RecordingSource] = {}
+    copies = {}
+    for source in sources:
+        samples = digests[source.name][-1]
+        if samples and samples in first:
+            other = first[samples].files[-1]
+            copies[source.name] = f"{source.files[-1]}: the same content as {other}; remove one of the two"
+        first.setdefault(samples, source)
+    return copies

@@ -1,1 +1,0 @@
-"""Results of any kind as one page that needs no network."""

@@ -1,0 +1,4 @@
+"""Budget, progress, executors, caches, files and package data.
+
+Imports errors only.
+"""

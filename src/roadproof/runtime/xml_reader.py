@@ -1,0 +1,86 @@
+"""The one reader of XML: files from elsewhere that may be broken, or made to hurt."""
+
+import math
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from xml.parsers import expat
+
+from roadproof.errors import InputError
+from roadproof.runtime.file_kind import other_format
+
+Element = ElementTree.Element
+DEEPEST = 100
+"""Elements inside each other; the formats that are read have about ten."""
+
+
+def read_xml(path: Path, root_tag: str) -> Element:
+    """The root of a file, which must be called ``root_tag``.
+
+    A document type is refused before anything of it is read, so that there are no entities to expand or to
+    fetch. Raises ``InputError`` that names the file.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
+    other = other_format(content)
+    if other is not None:
+        raise InputError(f"{path}: the file {other}")
+    try:
+        _refuse_tricks(path, content)
+        root = ElementTree.fromstring(content)
+    except (ElementTree.ParseError, expat.ExpatError, ValueError, LookupError) as error:
+        raise InputError(
+            f"{path}: no well-formed XML ({error}); get the file again from its source"
+        ) from None
+    if root.tag != root_tag:
+        raise InputError(f"{path}: the root is {root.tag}, but {root_tag} is needed")
+    return root
+
+
+def _refuse_tricks(path: Path, content: bytes) -> None:
+    """Raises ``InputError`` for a document type, and for elements that are too deep inside each other."""
+    parser = expat.ParserCreate()
+    depth = 0
+
+    def refuse_type(*_: object) -> None:
+        raise InputError(f"{path}: the file has a document type, which no file of its format has; remove it")
+
+    def begin(name: str, _: object) -> None:
+        nonlocal depth
+        depth += 1
+        if depth > DEEPEST:
+            raise InputError(f"{path}: element {name} is inside {DEEPEST} others; no file of its format is")
+
+    def end(_: str) -> None:
+        nonlocal depth
+        depth -= 1
+
+    parser.StartDoctypeDeclHandler = refuse_type
+    parser.StartElementHandler = begin
+    parser.EndElementHandler = end
+    parser.Parse(content, True)
+
+
+def number_in(path: Path, text: str | None, what: str) -> float:
+    """``text`` as a finite number. Raises ``InputError`` that says ``what`` it is."""
+    try:
+        value = float(text or "")
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{path}: {what} is {text!r}; a finite number is needed")
+    return value
+
+
+def by_id(path: Path, nodes: list[Element]) -> dict[str, Element]:
+    """Elements of one tag by their id. Raises ``InputError`` for one that has none, or that of another."""
+    found: dict[str, Element] = {}
+    for node in nodes:
+        name = node.get("id")
+        if not name:
+            raise InputError(f"{path}: a {node.tag} has no id")
+        if name in found:
+            raise InputError(f"{path}: {node.tag} {name} occurs twice; ids must differ")
+        found[name] = node
+    return found

@@ -1,1 +1,0 @@
-"""Show me a drive where it holds: search, shape, round, and have it judged."""

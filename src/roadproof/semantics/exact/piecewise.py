@@ -1,0 +1,142 @@
+"""Functions of time that are polynomials on pieces, and where they are positive, zero or negative.
+
+A piece holds from its start (included) to the start of the next (excluded), the last for ever. So
+at a knot the value is that of the piece which begins there, and sums, products, maxima and minima
+of such functions are such functions again.
+"""
+
+from collections.abc import Callable
+from functools import lru_cache
+from itertools import pairwise
+from typing import TypeAlias
+
+from roadproof.semantics.exact.algebraic import CLOSED_FORM, Point, Root, real_roots
+from roadproof.semantics.exact.polynomial import Polynomial, add, is_rootless, negate, sign_at
+from roadproof.semantics.exact.truth import START, Cut, TruthSet, from_values
+
+# Ascending (start, polynomial); the first start is 0.
+Pieces: TypeAlias = tuple[tuple[Point, Polynomial], ...]
+
+
+def constant(value: Polynomial) -> Pieces:
+    """One polynomial for all times."""
+    return ((START.point, value),)
+
+
+def apply(change: Callable[[Polynomial], Polynomial], pieces: Pieces) -> Pieces:
+    """``change`` on every piece."""
+    return tuple((start, change(p)) for start, p in pieces)
+
+
+def combine(join: Callable[[Polynomial, Polynomial], Polynomial], left: Pieces, right: Pieces) -> Pieces:
+    """``join`` on every common piece."""
+    return _merged([(start, join(p, q)) for start, p, q in _aligned(left, right)])
+
+
+def greatest(left: Pieces, right: Pieces) -> Pieces:
+    """The larger of two functions at every time; pieces are split where the two cross."""
+    return _chosen(left, right, 1)
+
+
+def least(left: Pieces, right: Pieces) -> Pieces:
+    """The smaller of two functions at every time."""
+    return _chosen(left, right, -1)
+
+
+def subtract(left: Pieces, right: Pieces) -> Pieces:
+    """``left - right``."""
+    return combine(add, left, apply(negate, right))
+
+
+def where_sign(pieces: Pieces, signs: frozenset[int]) -> TruthSet:
+    """Where the sign (-1, 0 or 1) of the function is one of ``signs``."""
+    values: list[tuple[Cut, bool]] = []
+    for (start, p), end in zip(pieces, _ends(pieces), strict=True):
+        for point, at, after in _signs(p, start, end):
+            values.append((Cut(point, False), at in signs))
+            values.append((Cut(point, True), after in signs))
+    return from_values(values)
+
+
+def _chosen(left: Pieces, right: Pieces, sign: int) -> Pieces:
+    """``left`` where ``left - right`` has the given sign, else ``right``."""
+    common = _aligned(left, right)
+    chosen: list[tuple[Point, Polynomial]] = []
+    for (start, p, q), end in zip(common, _ends(tuple((s, p) for s, p, _ in common)), strict=True):
+        # Where the two meet they are equal, so the choice after a point is right at it, too.
+        for point, _, after in _signs(add(p, negate(q)), start, end):
+            chosen.append((point, p if after == sign else q))
+    return _merged(chosen)
+
+
+def _signs(p: Polynomial, start: Point, end: Point | None) -> list[tuple[Point, int, int]]:
+    """(point, sign at it, sign after it) at ``start`` and at every root in (start, end)."""
+    steady = _steady_sign(p.numerators, start, end)
+    if steady:
+        return [(start, steady, steady)]
+    before, changes = _sign_changes(p.numerators)
+    at = after = before
+    found: list[tuple[Point, int, int]] = []
+    for root, following in changes:
+        if root > start:
+            if end is not None and root >= end:
+                break
+            found.append((root, 0, following))
+        else:
+            at, after = (0 if root == start else following), following
+    return [(start, at, after), *found]
+
+
+def _steady_sign(numerators: tuple[int, ...], start: Point, end: Point | None) -> int:
+    """The sign on all of [start, end] where it is quickly seen that there is one, else 0.
+
+    Most pieces have no root; to factor their polynomials would cost a hundred times as much.
+    """
+    if len(numerators) - 1 <= CLOSED_FORM:
+        return 0
+    low = start.low if isinstance(start, Root) else start
+    high = end.high if isinstance(end, Root) else end
+    return sign_at(numerators, low) if is_rootless(numerators, low, high) else 0
+
+
+@lru_cache(maxsize=8192)
+def _sign_changes(numerators: tuple[int, ...]) -> tuple[int, tuple[tuple[Point, int], ...]]:
+    """The sign before all roots, and each root with the sign after it."""
+    if not numerators:
+        return 0, ()
+    sign = first = (1 if numerators[-1] > 0 else -1) * (-1) ** (len(numerators) - 1)
+    changes: list[tuple[Point, int]] = []
+    for root, multiplicity in real_roots(numerators):
+        sign *= (-1) ** multiplicity
+        changes.append((root, sign))
+    return first, tuple(changes)
+
+
+def _aligned(left: Pieces, right: Pieces) -> list[tuple[Point, Polynomial, Polynomial]]:
+    """Both functions on their common pieces."""
+    found: list[tuple[Point, Polynomial, Polynomial]] = []
+    i = j = 0
+    while True:
+        start = max(left[i][0], right[j][0])
+        found.append((start, left[i][1], right[j][1]))
+        ahead = [pieces[k + 1][0] for pieces, k in ((left, i), (right, j)) if k + 1 < len(pieces)]
+        if not ahead:
+            return found
+        following = min(ahead)
+        if i + 1 < len(left) and left[i + 1][0] == following:
+            i += 1
+        if j + 1 < len(right) and right[j + 1][0] == following:
+            j += 1
+
+
+def _ends(pieces: Pieces) -> list[Point | None]:
+    return [*(after for _, (after, _) in pairwise(pieces)), None]
+
+
+def _merged(pieces: list[tuple[Point, Polynomial]]) -> Pieces:
+    """Without starts at which nothing changes."""
+    kept = pieces[:1]
+    for start, p in pieces[1:]:
+        if p != kept[-1][1]:
+            kept.append((start, p))
+    return tuple(kept)

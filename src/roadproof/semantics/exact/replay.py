@@ -1,0 +1,150 @@
+"""A drive replayed exactly: do boxes overlap, does a vehicle leave its limits, and when first.
+
+Both questions are formulas, put to the exact judge.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import combinations
+from typing import Protocol, TypeAlias
+
+from roadproof.errors import UsageError
+from roadproof.logic.box_overlap import boxes_overlap
+from roadproof.logic.formula import Compare, Comparison, Formula, conjunction
+from roadproof.logic.terms import (
+    SIGNAL_DIMENSIONS,
+    Number,
+    Product,
+    Signal,
+    SignalName,
+    Term,
+    number,
+    subtract,
+)
+from roadproof.semantics.exact.algebraic import Point, decimal
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.truth import Cut, TruthSet, complement
+from roadproof.world.drive import Drive
+from roadproof.world.motion import State, state_at
+
+Range: TypeAlias = tuple[Fraction, Fraction]
+
+
+class Limits(Protocol):
+    """What a vehicle can do, in m/s and m/s²; |v_lat| is at most ``lateral_share`` of v_lon."""
+
+    @property
+    def v_lon(self) -> Range: ...
+
+    @property
+    def v_lat(self) -> Range: ...
+
+    @property
+    def a_lon(self) -> Range: ...
+
+    @property
+    def a_lat(self) -> Range: ...
+
+    @property
+    def lateral_share(self) -> Fraction: ...
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """Two boxes overlap with positive area from ``time`` on (not yet at it, where ``after``)."""
+
+    first: str
+    second: str
+    time: Point
+    after: bool
+
+    def __str__(self) -> str:
+        return f"the boxes of {self.first} and {self.second} overlap from {decimal(self.time)} s on"
+
+
+@dataclass(frozen=True)
+class Breach:
+    """A vehicle breaks ``rule`` from ``time`` on (not yet at it, where ``after``)."""
+
+    vehicle: str
+    rule: str
+    time: Point
+    after: bool
+
+    def __str__(self) -> str:
+        return f"{self.vehicle} breaks {self.rule} from {decimal(self.time)} s on"
+
+
+def states_at(drive: Drive, time: Fraction) -> dict[str, State]:
+    """The state of every vehicle at ``time`` >= 0 seconds."""
+    return {name: state_at(motion, time) for name, motion in drive.vehicles.items()}
+
+
+def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
+    """The first overlap of two boxes [s-length, s] × [d-width, d] within [0, horizon] (semantics §2).
+
+    Touching is no overlap. ``horizon`` in s; None is for ever. Raises ``UsageError`` where negative.
+    """
+    found: list[tuple[Cut, str, str]] = []
+    for a, b in combinations(sorted(drive.vehicles), 2):
+        overlapping = boxes_overlap(a, b)
+        begin = _first(judge(overlapping, drive).truth(overlapping), horizon)
+        if begin is not None:
+            found.append((begin, a, b))
+    if not found:
+        return None
+    begin, a, b = min(found)
+    return Overlap(a, b, *begin)
+
+
+def first_breach(drive: Drive, limits: Mapping[str, Limits], horizon: Fraction | None) -> Breach | None:
+    """The first instant within [0, horizon] at which a vehicle leaves its limits, or None.
+
+    Speeds and accelerations in their ranges, no reversing, |v_lat| <= lateral_share·v_lon. Raises
+    ``UsageError`` for a vehicle without limits.
+    """
+    found: list[tuple[Cut, str, str]] = []
+    for name in sorted(drive.vehicles):
+        if name not in limits:
+            raise UsageError(f"vehicle={name} has no limits to be checked against: name its model")
+        for rule, formula in _rules(name, limits[name]):
+            kept = judge(formula, drive).truth(formula)
+            begin = _first(complement(kept), horizon)
+            if begin is not None:
+                found.append((begin, name, rule))
+    if not found:
+        return None
+    begin, name, rule = min(found)
+    return Breach(name, rule, *begin)
+
+
+def _rules(name: str, limits: Limits) -> Iterator[tuple[str, Formula]]:
+    """Every limit in words and as a formula."""
+    zero = number(0, (1, -1))
+    yield from _bounded("v_lon", name, limits.v_lon, "m/s")
+    yield from _bounded("v_lat", name, limits.v_lat, "m/s")
+    yield from _bounded("a_lon", name, limits.a_lon, "m/s²")
+    yield from _bounded("a_lat", name, limits.a_lat, "m/s²")
+    yield "v_lon >= 0 m/s (no reversing)", Compare(Signal("v_lon", name), ">=", zero)
+    share: Term = Product((number(limits.lateral_share), Signal("v_lon", name)))
+    lateral = Signal("v_lat", name)
+    inside = conjunction(Compare(lateral, "<=", share), Compare(subtract(zero, share), "<=", lateral))
+    yield f"|v_lat| <= {limits.lateral_share}·v_lon (heading)", inside
+
+
+def _bounded(signal: SignalName, name: str, limits: Range, unit: str) -> Iterator[tuple[str, Formula]]:
+    bounds: tuple[tuple[Comparison, Fraction], ...] = ((">=", limits[0]), ("<=", limits[1]))
+    for op, limit in bounds:
+        bound = Number(limit, SIGNAL_DIMENSIONS[signal])
+        yield f"{signal} {op} {limit} {unit}", Compare(Signal(signal, name), op, bound)
+
+
+def _first(truth: TruthSet, horizon: Fraction | None) -> Cut | None:
+    """Where ``truth`` begins, if it does so by ``horizon``."""
+    if horizon is not None and horizon < 0:
+        raise UsageError(f"horizon={horizon}: a drive starts at 0; ask for a horizon that is not negative")
+    begin = truth.cuts[0] if truth.cuts else None
+    if begin is None or (horizon is not None and begin > Cut(horizon, False)):
+        return None
+    return begin

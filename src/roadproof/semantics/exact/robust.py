@@ -1,0 +1,207 @@
+"""How robustly a formula holds on a drive: margins at the samples k·dt, by min and max (grid view).
+
+The margin of ``left >= right`` is ``left - right``, of ``left <= right`` the reverse, and strictness
+leaves no trace; ∞ - ∞ is 0 (paper, appendix *Robust Semantics*). Atoms are computed exactly and
+rounded once. A bounded window is always covered: sampling goes on past the horizon for as long as
+windows reach, since a drive does. An unbounded window ends with the last sample.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import inf
+from typing import Any, TypeAlias, assert_never
+
+import numpy as np
+
+from roadproof.errors import InputError, UsageError
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, Interval
+from roadproof.logic.terms import Inverse, Term
+from roadproof.semantics.exact.exact import seconds
+from roadproof.semantics.exact.piecewise import Pieces
+from roadproof.semantics.exact.signals import Courses, DriveSignals
+from roadproof.world.drive import Drive
+
+Array: TypeAlias = np.ndarray[Any, np.dtype[np.float64]]
+MOST_SAMPLES = 1_000_000
+
+
+@dataclass(frozen=True)
+class Robustness:
+    """Margins of a formula and its sub-formulas at times 0, dt, …, horizon, in units of each atom.
+
+    ``sampled_until`` (s) is the last sample that was looked at: the horizon and the reach of bounded
+    windows. ``unbounded`` says that some window has no end and was cut there.
+    """
+
+    formula: Formula
+    dt: Fraction
+    horizon: Fraction
+    sampled_until: Fraction
+    unbounded: bool
+    margins: Mapping[Formula, Array]
+
+    @property
+    def value(self) -> float:
+        """The margin of the whole formula at time 0."""
+        return float(self.margins[self.formula][0])
+
+
+def robustness(formula: Formula, drive: Drive, dt: Fraction, horizon: Fraction) -> Robustness:
+    """Margins of a bound formula on a drive, sampled every ``dt`` s over [0, horizon].
+
+    Raises ``InputError`` for a bound or horizon that is no multiple of dt and for formulas that are
+    not bound, ``UsageError`` for dt <= 0, a negative horizon or a vehicle that the drive lacks.
+    """
+    if dt <= 0 or horizon < 0:
+        raise UsageError(f"dt={dt}, horizon={horizon}: a grid needs dt > 0 and horizon >= 0, in seconds")
+    wanted = steps(horizon, dt, "horizon")
+    last = wanted + _reach(formula, dt)
+    if last >= MOST_SAMPLES:
+        raise UsageError(
+            f"dt={dt}, horizon={horizon}: that makes {last + 1} samples, above {MOST_SAMPLES}: "
+            "choose a larger dt"
+        )
+    sampling = _Sampling(Courses(DriveSignals(drive)), dt, last + 1)
+    sampling.visit(formula)
+    margins = {part: values[: wanted + 1] for part, values in sampling.known.items()}
+    return Robustness(formula, dt, horizon, last * dt, _has_endless_window(formula), margins)
+
+
+def steps(time: Fraction, dt: Fraction, what: str = "interval bound") -> int:
+    """``time`` as a number of samples. Raises ``InputError`` where it is no multiple of ``dt``."""
+    count = time / dt
+    if count.denominator != 1:
+        raise InputError(
+            f"{what}={time} s is no multiple of dt={dt} s: choose a dt that divides it, or another {what}"
+        )
+    return int(count)
+
+
+def _reach(formula: Formula, dt: Fraction) -> int:
+    """How many samples past an instant the margin there needs, unbounded windows at their start."""
+    within = max((_reach(child, dt) for child in f.children(formula)), default=0)
+    for interval in f.intervals(formula):
+        low, high = seconds(interval)
+        steps(low, dt)
+        within += steps(low if high is None else high, dt)
+    return within
+
+
+def _has_endless_window(formula: Formula) -> bool:
+    return any(interval.high is None for part in f.subformulas(formula) for interval in f.intervals(part))
+
+
+@dataclass(frozen=True)
+class _Sampling:
+    """Margins by sample; an array is as long as its values are known, so windows never dangle."""
+
+    courses: Courses
+    dt: Fraction
+    count: int
+    known: dict[Formula, Array] = field(default_factory=dict)
+
+    def visit(self, formula: Formula) -> Array:
+        if formula not in self.known:
+            self.known[formula] = self._visit(formula)
+        return self.known[formula]
+
+    def _visit(self, formula: Formula) -> Array:
+        match formula:
+            case f.Truth(value):
+                return np.full(self.count, inf if value else -inf)
+            case f.Compare(left, op, right):
+                greater, lesser = (left, right) if op in (">", ">=") else (right, left)
+                return _difference(self._values(greater), self._values(lesser))
+            case f.Not(body):
+                return -self.visit(body)
+            case f.And(parts):
+                return _fold(np.minimum, [self.visit(part) for part in parts])
+            case f.Or(parts):
+                return _fold(np.maximum, [self.visit(part) for part in parts])
+            case f.Named(_, _, body):
+                return self.visit(body)
+            case f.Eventually(interval, body):
+                return _greatest_ahead(self.visit(body), *self._steps(interval))
+            case f.Always(interval, body):
+                return -_greatest_ahead(-self.visit(body), *self._steps(interval))
+            case f.Until(left, interval, right):
+                return _until(self.visit(left), *self._steps(interval), self.visit(right))
+            case f.Occupies() | f.Some() | f.Every():
+                raise InputError("a formula over a road's lanes is sampled after it is bound to a road")
+            case _:
+                assert_never(formula)
+
+    def _steps(self, interval: Interval) -> tuple[int, int | None]:
+        low, high = seconds(interval)
+        return steps(low, self.dt), None if high is None else steps(high, self.dt)
+
+    def _values(self, term: Term) -> Array:
+        if isinstance(term, Inverse):
+            inner = self._values(term.term)
+            with np.errstate(divide="ignore", over="ignore"):
+                return np.where(inner == 0, inf, 1 / inner)
+        return _sample(self.courses.of(term), self.dt, self.count)
+
+
+def _sample(pieces: Pieces, dt: Fraction, count: int) -> Array:
+    """The function at k·dt for k < count, each value exact and then rounded."""
+    values = np.empty(count)
+    following = [start for start, _ in pieces[1:]]
+    piece = 0
+    for k in range(count):
+        while piece < len(following) and following[piece] <= k * dt:
+            piece += 1
+        top, bottom = k * dt.numerator, dt.denominator
+        polynomial = pieces[piece][1]
+        value, scale = 0, 1
+        for n in reversed(polynomial.numerators):
+            value = value * top + n * scale
+            scale *= bottom
+        values[k] = _rounded(value * bottom, scale * polynomial.denominator)
+    return values
+
+
+def _rounded(numerator: int, denominator: int) -> float:
+    try:
+        return numerator / denominator
+    except OverflowError:
+        return inf if numerator > 0 else -inf
+
+
+def _difference(left: Array, right: Array) -> Array:
+    with np.errstate(invalid="ignore"):
+        return np.where(left == right, 0.0, left - right)
+
+
+def _fold(join: np.ufunc, arrays: list[Array]) -> Array:
+    shortest = min(len(array) for array in arrays)
+    result: Array = join.reduce([array[:shortest] for array in arrays])
+    return result
+
+
+def _greatest_ahead(body: Array, low: int, high: int | None) -> Array:
+    """max of body[k+low .. k+high], or to the last sample."""
+    if high is None:
+        return np.maximum.accumulate(body[low:][::-1])[::-1]
+    windows = np.lib.stride_tricks.sliding_window_view(body[low:], high - low + 1)
+    result: Array = windows.max(axis=1)
+    return result
+
+
+def _until(left: Array, low: int, high: int | None, right: Array) -> Array:
+    """max over j in [low, high] of min(right[k+j], left[k+low .. k+j-1]) (semantics §1)."""
+    length = min(len(left), len(right)) - low
+    left, right = left[low : low + length], right[low : low + length]
+    if high is None:
+        best = right.copy()
+        for k in range(length - 2, -1, -1):
+            best[k] = max(best[k], min(left[k], best[k + 1]))
+        return best
+    kept = length - (high - low)
+    best, held = right[:kept].copy(), np.full(kept, inf)
+    for j in range(1, high - low + 1):
+        held = np.minimum(held, left[j - 1 : j - 1 + kept])
+        best = np.maximum(best, np.minimum(right[j : j + kept], held))
+    return best

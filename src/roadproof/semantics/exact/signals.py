@@ -1,0 +1,202 @@
+"""Terms as functions of time: what a comparison compares, on a drive or on an abstract trace."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import reduce
+from typing import Protocol, assert_never
+
+from roadproof.errors import InputError, UsageError
+from roadproof.logic import terms as t
+from roadproof.logic.custom_names import code_of, refuse_value
+from roadproof.logic.terms import Own, Signal, Size, Term
+from roadproof.semantics.exact import piecewise
+from roadproof.semantics.exact.piecewise import Pieces
+from roadproof.semantics.exact.polynomial import ONE, Polynomial, add, multiply, polynomial
+from roadproof.world.drive import Drive, Motion
+from roadproof.world.motion import State, starts_of
+
+LARGEST_DEGREE = 24
+
+
+class Signals(Protocol):
+    """Where the judge finds vehicles: signals as pieces, sizes in m, kinds as numbers.
+
+    Both raise ``UsageError`` for vehicles that are not there, ``InputError`` for what is not said of them.
+    """
+
+    def signal(self, signal: Signal | Own) -> Pieces: ...
+
+    def size(self, size: Size) -> Fraction: ...
+
+
+@dataclass(frozen=True)
+class DriveSignals:
+    """The signals of a drive, polynomials in time on each piece: positions of degree 3 at most."""
+
+    drive: Drive
+    _starts: dict[str, tuple[State, ...]] = field(default_factory=dict, repr=False, compare=False)
+
+    def signal(self, signal: Signal | Own) -> Pieces:
+        if isinstance(signal, Own):
+            return self._own(signal)
+        if signal.vehicle not in self._starts:
+            self._starts[signal.vehicle] = starts_of(self._motion(signal.vehicle))
+        return tuple((x.time, _course(signal.name, x)) for x in self._starts[signal.vehicle])
+
+    def _own(self, signal: Own) -> Pieces:
+        """Raises ``InputError`` for a value that the declaration of the signal excludes."""
+        if signal.vehicle:
+            self._motion(signal.vehicle)
+        course = self.drive.own.get((signal.name, signal.vehicle))
+        if course is None:
+            raise InputError(
+                f"the drive says nothing of {signal.told}: derive the signal (signal … derived by …), or "
+                "take a drive that was found for a formula that speaks of it"
+            )
+        for start, value in course:
+            refuse_value(signal, value, f"at {start} s")
+        return tuple((start, polynomial(value)) for start, value in course)
+
+    def size(self, size: Size) -> Fraction:
+        motion = self._motion(size.vehicle)
+        match size.name:
+            case "length":
+                return motion.length
+            case "width":
+                return motion.width
+            case "kind":
+                if motion.kind is None:
+                    raise InputError(
+                        f"the drive does not say what kind of vehicle {size.vehicle} is: add kind to its file"
+                    )
+                return Fraction(code_of(motion.kind))
+            case _:
+                assert_never(size.name)
+
+    def _motion(self, vehicle: str) -> Motion:
+        if vehicle not in self.drive.vehicles:
+            known = ", ".join(sorted(self.drive.vehicles)) or "none"
+            raise UsageError(f"the formula speaks of vehicle={vehicle}, but the drive has {known}: add it")
+        return self.drive.vehicles[vehicle]
+
+
+@dataclass(frozen=True)
+class AbstractSignals:
+    """Signals that are constant on pieces: ascending (start, value), the first start 0."""
+
+    signals: Mapping[Signal | Own, tuple[tuple[Fraction, Fraction], ...]]
+    sizes: Mapping[Size, Fraction]
+
+    def signal(self, signal: Signal | Own) -> Pieces:
+        if signal not in self.signals:
+            of = f" of vehicle={signal.vehicle}" if signal.vehicle else ""
+            raise UsageError(f"the trace has no {signal.name}{of}: add it")
+        if isinstance(signal, Own):
+            for start, value in self.signals[signal]:
+                refuse_value(signal, value, f"at {start} s")
+        return tuple((start, polynomial(value)) for start, value in self.signals[signal])
+
+    def size(self, size: Size) -> Fraction:
+        if size not in self.sizes:
+            raise UsageError(f"the trace has no {size.name} of vehicle={size.vehicle}: add it")
+        return self.sizes[size]
+
+
+@dataclass(frozen=True)
+class Courses:
+    """Terms to pieces, each computed once."""
+
+    signals: Signals
+    _known: dict[Term, Pieces] = field(default_factory=dict, repr=False, compare=False)
+
+    def of(self, term: Term) -> Pieces:
+        """``term`` as a function of time. Raises ``InputError`` for what is not bound or not finite."""
+        if term not in self._known:
+            self._known[term] = self._of(term)
+        return self._known[term]
+
+    def _of(self, term: Term) -> Pieces:
+        match term:
+            case t.Number(value, _):
+                return piecewise.constant(polynomial(value))
+            case t.Signal() | t.Own():
+                return self.signals.signal(term)
+            case t.Size():
+                return piecewise.constant(polynomial(self.signals.size(term)))
+            case t.Sum(terms):
+                return reduce(lambda x, y: piecewise.combine(add, x, y), map(self.of, terms))
+            case t.Product(factors):
+                return reduce(lambda x, y: piecewise.combine(_product, x, y), map(self.of, factors))
+            case t.Power(base, exponent):
+                return piecewise.apply(lambda p: _power(p, exponent), self.of(base))
+            case t.Quotient(numerator, denominator):
+                scale = polynomial(1 / self._divisor(denominator))
+                return piecewise.apply(lambda p: multiply(p, scale), self.of(numerator))
+            case t.Maximum(terms):
+                return reduce(piecewise.greatest, map(self.of, terms))
+            case t.Minimum(terms):
+                return reduce(piecewise.least, map(self.of, terms))
+            case t.Inverse():
+                raise InputError("inverse(…) may only stand alone on one side of a comparison")
+            case t.Parameter(name, _) | t.Variable(name, _):
+                raise InputError(f"'{name}' has no value: a formula is judged after values are put in")
+            case _:
+                assert_never(term)
+
+    def _divisor(self, term: Term) -> Fraction:
+        pieces = self.of(term)
+        if len(pieces) > 1 or len(pieces[0][1].numerators) != 1:
+            raise InputError("a divisor must be a number other than zero, the same at all times")
+        value = pieces[0][1]
+        return Fraction(value.numerators[0], value.denominator)
+
+
+def _course(name: t.SignalName, x: State) -> Polynomial:
+    """A signal on the piece that starts in state ``x``, as a polynomial in time since 0."""
+    begin = x.time
+    match name:
+        case "s":
+            return _from(begin, x.s, x.v_lon, x.a_lon / 2, x.j_lon / 6)
+        case "d":
+            return _from(begin, x.d, x.v_lat, x.a_lat / 2)
+        case "v_lon":
+            return _from(begin, x.v_lon, x.a_lon, x.j_lon / 2)
+        case "v_lat":
+            return _from(begin, x.v_lat, x.a_lat)
+        case "a_lon":
+            return _from(begin, x.a_lon, x.j_lon)
+        case "a_lat":
+            return polynomial(x.a_lat)
+        case "j_lon":
+            return polynomial(x.j_lon)
+        case _:
+            assert_never(name)
+
+
+def _from(begin: Fraction, *coefficients: Fraction) -> Polynomial:
+    """A polynomial in time since 0, from the coefficients of the one in time since ``begin``."""
+    found = list(coefficients)
+    while found and found[-1] == 0:
+        found.pop()
+    # Horner's division by t - (-begin), once for each coefficient: what is left are those of the other one.
+    for lowest in range(len(found) - 1):
+        for k in range(len(found) - 2, lowest - 1, -1):
+            found[k] -= begin * found[k + 1]
+    return polynomial(*found)
+
+
+def _product(left: Polynomial, right: Polynomial) -> Polynomial:
+    degree = len(left.numerators) + len(right.numerators) - 2
+    if degree > LARGEST_DEGREE:
+        raise InputError(
+            f"a term has degree={degree} in time, above the {LARGEST_DEGREE} that can be judged: "
+            "use lower powers"
+        )
+    return multiply(left, right)
+
+
+def _power(p: Polynomial, exponent: int) -> Polynomial:
+    if not 0 <= exponent <= LARGEST_DEGREE:
+        raise InputError(f"a power has exponent={exponent}: it must lie between 0 and {LARGEST_DEGREE}")
+    return reduce(_product, [p] * exponent, ONE)

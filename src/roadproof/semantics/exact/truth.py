@@ -1,0 +1,192 @@
+"""When something is true: sets of instants in [0, ∞) with finitely many switches, and STL on them.
+
+A *cut* lies just before or just after a point. A set is the ascending list of the cuts at which its
+truth changes, being false before the first. So [p, q) is the cuts before p and before q, and the
+single instant p is the cuts before and after p: open and closed ends need no further cases.
+"""
+
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+from roadproof.semantics.exact.algebraic import Point, decimal, moved
+
+
+class Cut(NamedTuple):
+    """Just before ``point`` (``after`` False) or just after it."""
+
+    point: Point
+    after: bool
+
+
+class Span(NamedTuple):
+    """What lies between two cuts; ``end`` None is for ever."""
+
+    begin: Cut
+    end: Cut | None
+
+
+START = Cut(Fraction(0), False)
+
+
+@dataclass(frozen=True)
+class TruthSet:
+    """Ascending, distinct cuts, none before ``START``; equal sets have equal cuts."""
+
+    cuts: tuple[Cut, ...]
+
+    def at(self, time: Point) -> bool:
+        """Whether the set holds the instant ``time`` >= 0."""
+        return bisect_right(self.cuts, Cut(time, False)) % 2 == 1
+
+    def spans(self) -> tuple[Span, ...]:
+        """Maximal intervals, ascending."""
+        ends: list[Cut | None] = [*self.cuts[1::2]]
+        if len(self.cuts) % 2 == 1:
+            ends.append(None)
+        return tuple(Span(*pair) for pair in zip(self.cuts[::2], ends, strict=True))
+
+    def __str__(self) -> str:
+        """The maximal intervals in seconds, as decimals with bounds: ``[0, 1.5) ∪ {2}``."""
+        return " ∪ ".join(show_span(span) for span in self.spans()) or "∅"
+
+
+NEVER = TruthSet(())
+ALWAYS = TruthSet((START,))
+
+
+def show_span(span: Span, places: int = 6) -> str:
+    """One interval of a truth set, in seconds."""
+    begin, end = span
+    if end is None:
+        return f"{'(' if begin.after else '['}{decimal(begin.point, places)}, ∞)"
+    if begin.point == end.point:
+        return f"{{{decimal(begin.point, places)}}}"
+    left, right = "(" if begin.after else "[", "]" if end.after else ")"
+    return f"{left}{decimal(begin.point, places)}, {decimal(end.point, places)}{right}"
+
+
+def from_values(values: Iterable[tuple[Cut, bool]]) -> TruthSet:
+    """From ascending cuts, the first ``START``, each with the truth that holds from it on."""
+    cuts: list[Cut] = []
+    current = False
+    for cut, value in values:
+        if value != current:
+            cuts.append(cut)
+            current = value
+    return TruthSet(tuple(cuts))
+
+
+def from_switches(switches: Iterable[tuple[Point, bool, bool]]) -> TruthSet:
+    """From ascending (point, truth at it, truth after it up to the next); the first point is 0."""
+    return from_values(
+        (cut, value)
+        for point, at, after in switches
+        for cut, value in ((Cut(point, False), at), (Cut(point, True), after))
+    )
+
+
+def interval(low: Point, high: Point | None, closed: str = "[]") -> TruthSet:
+    """One interval of times >= 0; ``closed`` is ``[]``, ``[)``, ``(]`` or ``()``; high None is for ever."""
+    begin = Cut(low, closed[0] == "(")
+    return _covered([Span(begin, None if high is None else Cut(high, closed[1] == "]"))], 1)
+
+
+def complement(truth: TruthSet) -> TruthSet:
+    """Not."""
+    if truth.cuts[:1] == (START,):
+        return TruthSet(truth.cuts[1:])
+    return TruthSet((START, *truth.cuts))
+
+
+def intersection(sets: Iterable[TruthSet]) -> TruthSet:
+    """And; of none it is always."""
+    wanted = tuple(sets)
+    return _covered(_spans(wanted), len(wanted)) if wanted else ALWAYS
+
+
+def union(sets: Iterable[TruthSet]) -> TruthSet:
+    """Or; of none it is never."""
+    return _covered(_spans(tuple(sets)), 1)
+
+
+def eventually(low: Fraction, high: Fraction | None, body: TruthSet) -> TruthSet:
+    """F_[low, high]: some t in [low, high] has body at T+t; high None is unbounded.
+
+    An interval ⟨l, r⟩ of the body makes it true on ⟨l - high, r - low⟩, ends as they are.
+    """
+    return _covered(_reaching(low, high, body.spans()), 1)
+
+
+def always(low: Fraction, high: Fraction | None, body: TruthSet) -> TruthSet:
+    """G_[low, high]: every t in [low, high] has body at T+t."""
+    return complement(eventually(low, high, complement(body)))
+
+
+def until(left: TruthSet, low: Fraction, high: Fraction | None, right: TruthSet) -> TruthSet:
+    """U_[low, high] of semantics §1: some t in [low, high] has right at T+t, and left at T+t' for every
+    t' in [low, t).
+
+    At T it is the until that starts with 0, seen from T + low. That one holds where right does, and,
+    on each maximal interval ⟨p, q⟩ of left, where right comes within high - low at a point of
+    [p, q]: it may come at q itself even if left fails there.
+    """
+    length = None if high is None else high - low
+    found = list(right.spans())
+    for span in left.spans():
+        begin, end = span
+        reach = Span(Cut(begin.point, False), None if end is None else Cut(end.point, True))
+        targets = [met for other in right.spans() if (met := _meet(other, reach)) is not None]
+        for reaching in _reaching(Fraction(0), length, targets):
+            met = _meet(reaching, span)
+            if met is not None:
+                found.append(met)
+    return _covered(_reaching(low, low, _covered(found, 1).spans()), 1)
+
+
+def _reaching(low: Fraction, high: Fraction | None, spans: Iterable[Span]) -> list[Span]:
+    """Each span moved to where it is reached within [low, high], cut off at time 0."""
+    found: list[Span] = []
+    for begin, end in spans:
+        first = START if high is None else max(START, _moved(begin, -high))
+        last = None if end is None else _moved(end, -low)
+        if last is None or first < last:
+            found.append(Span(first, last))
+    return found
+
+
+def _moved(cut: Cut, by: Fraction) -> Cut:
+    return Cut(moved(cut.point, by), cut.after)
+
+
+def _meet(left: Span, right: Span) -> Span | None:
+    begin = max(left.begin, right.begin)
+    ends = [end for end in (left.end, right.end) if end is not None]
+    end = min(ends) if ends else None
+    return None if end is not None and end <= begin else Span(begin, end)
+
+
+def _spans(sets: Iterable[TruthSet]) -> Iterator[Span]:
+    for truth in sets:
+        yield from truth.spans()
+
+
+def _covered(spans: Iterable[Span], times: int) -> TruthSet:
+    """Where at least ``times`` of the spans overlap."""
+    steps: list[tuple[Cut, int]] = []
+    for begin, end in spans:
+        steps.append((begin, 1))
+        if end is not None:
+            steps.append((end, -1))
+    steps.sort(key=lambda step: step[0])
+    cuts: list[Cut] = []
+    depth, inside = 0, False
+    for i, (cut, change) in enumerate(steps):
+        depth += change
+        settled = i + 1 == len(steps) or steps[i + 1][0] != cut
+        if settled and (depth >= times) != inside:
+            inside = not inside
+            cuts.append(cut)
+    return TruthSet(tuple(cuts))

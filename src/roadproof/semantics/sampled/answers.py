@@ -1,0 +1,115 @@
+"""What a monitor answers, and how answers are read off the values of a formula."""
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from typing import Generic, Literal, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadproof.errors import InputError
+from roadproof.logic.formula import Formula, Named
+from roadproof.semantics.sampled.batch import Array, Batch, Integers, inside
+from roadproof.semantics.sampled.boolean import BITS, unpack
+from roadproof.semantics.sampled.semantics import Evaluation, View
+
+Convention: TypeAlias = Literal["truncated", "clip"]
+When: TypeAlias = Literal["start", "all"]
+# What the caller calls a question: a text, or a value that says what is asked.
+Key = TypeVar("Key", bound=Hashable)
+
+
+@dataclass(frozen=True)
+class TruthArrays:
+    """What is known of a formula: ``true`` for every continuation, ``false`` for every, or neither.
+
+    Shape (traces,) at the start of each trace, or (time, traces), where neither holds after the end.
+    """
+
+    true: NDArray[np.bool_]
+    false: NDArray[np.bool_]
+
+    @property
+    def undecided(self) -> NDArray[np.bool_]:
+        return ~(self.true | self.false)
+
+
+@dataclass(frozen=True)
+class Verdicts(Generic[Key]):
+    """Answers by what was asked, and of named sub-formulas at all samples if asked for."""
+
+    convention: Convention
+    answers: Mapping[Key, TruthArrays]
+    named: Mapping[Named, TruthArrays]
+
+
+@dataclass(frozen=True)
+class Margin:
+    """The margin lies in [low, high] whatever comes after the trace; with ``clip`` they are equal.
+
+    Shape as in ``TruthArrays``; NaN after the end of a trace.
+    """
+
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Margins(Generic[Key]):
+    convention: Convention
+    margins: Mapping[Key, Margin]
+    named: Mapping[Named, Margin]
+
+
+def views(convention: Convention) -> tuple[View, View]:
+    """In which view a formula is surely true, and in which it is not surely false."""
+    return (View.CLIP, View.CLIP) if convention == "clip" else (View.STRONG, View.WEAK)
+
+
+def check_starts(starts: Integers | None, lengths: Integers) -> None:
+    """Raise ``InputError`` unless each of ``starts`` is a sample of its trace."""
+    if starts is None:
+        return
+    if starts.shape != lengths.shape or (starts < 0).any() or (starts >= lengths).any():
+        raise InputError("starts must name one sample inside each trace")
+
+
+def read_bits(words: Array, lengths: Integers, when: When, starts: Integers | None) -> NDArray[np.bool_]:
+    """Truth at the start of each trace, or at all samples and false after the end of a trace."""
+    traces = len(lengths)
+    if when == "all":
+        return unpack(words, traces) & inside(lengths, len(words))
+    if starts is None:
+        first: NDArray[np.bool_] = unpack(words[:1], traces)[0]
+        return first
+    index = np.arange(traces)
+    bits = words[starts, index // BITS] >> (index % BITS).astype(np.uint64)
+    return np.asarray(bits & np.uint64(1), dtype=np.bool_)
+
+
+def no_margin(batch: Batch, when: When) -> Margin:
+    """Room for the margins of one formula, NaN until they are known."""
+    shape = (batch.traces,) if when == "start" else (batch.samples, batch.traces)
+    return Margin(np.full(shape, np.nan), np.full(shape, np.nan))
+
+
+def store_margin(
+    margin: Margin,
+    evaluation: Evaluation,
+    formula: Formula,
+    convention: Convention,
+    batch: Batch,
+    columns: slice,
+    when: When,
+    starts: Integers | None,
+) -> None:
+    """Write the margins of the traces in ``columns`` where they belong."""
+    for view, made in zip(views(convention), (margin.low, margin.high), strict=True):
+        values = evaluation.value(formula, view)
+        if when == "all":
+            belongs = inside(batch.lengths[columns], len(values))
+            made[: len(values), columns] = np.where(belongs, values, np.nan)
+        elif starts is None:
+            made[columns] = values[0]
+        else:
+            made[columns] = values[starts, np.arange(values.shape[1])]

@@ -1,0 +1,260 @@
+"""The monitor: formulas compiled once, evaluated over batches of recorded traces.
+
+All formulas of a monitor share what they have in common: sub-formulas are found by structure, not
+by the name of the definition that they come from.
+"""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Generic
+
+import numpy as np
+
+from roadproof.errors import InputError
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.custom_names import own_of
+from roadproof.logic.formula import Compare, Formula, Named
+from roadproof.logic.fragment import intervals_of
+from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_names
+from roadproof.logic.terms import Own
+from roadproof.semantics.sampled.answers import (
+    Convention,
+    Key,
+    Margins,
+    TruthArrays,
+    Verdicts,
+    When,
+    check_starts,
+    no_margin,
+    read_bits,
+    store_margin,
+    views,
+)
+from roadproof.semantics.sampled.arithmetic import Program, margin_program, truth_program
+from roadproof.semantics.sampled.batch import Array, Batch, Integers
+from roadproof.semantics.sampled.boolean import BITS, TRUTH, observe_truth, pack, packed_inside
+from roadproof.semantics.sampled.robustness import (
+    MARGIN,
+    as_margin,
+    margin_inside,
+    observe_margins,
+    trace_blocks,
+)
+from roadproof.semantics.sampled.semantics import Evaluation
+from roadproof.world.signals import SignalName
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Packed truth of state formulas over a batch: all that Boolean evaluation needs of it."""
+
+    dt: Fraction
+    lengths: Integers
+    samples: int
+    leaves: Mapping[Formula, Array]
+
+    def cut(self, lengths: Integers) -> "Observation":
+        """The same traces, each ending after its first ``lengths`` samples."""
+        if lengths.shape != self.lengths.shape or (lengths < 1).any() or (lengths > self.lengths).any():
+            raise InputError("a trace is cut to a length from 1 to the one it has")
+        return replace(self, lengths=lengths)
+
+
+@dataclass(frozen=True)
+class Monitor(Generic[Key]):
+    """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
+
+    ``named``: sub-formulas that have names, and what each is without. ``signals``: what they speak of, of
+    any vehicle; own signals of some vehicle stand for all.
+    """
+
+    formulas: Mapping[Key, Formula]
+    plain: Mapping[Key, Formula]
+    states: frozenset[Formula]
+    signals: tuple[SignalName | Own, ...]
+    programs: dict[tuple[Compare, ...], Program] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def named(self) -> Mapping[Named, Formula]:
+        nodes = [x for x in f.subformulas(*self.formulas.values()) if isinstance(x, Named)]
+        return dict(zip(nodes, f.share(nodes, _unnamed), strict=True))
+
+    def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
+        """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
+        leaves: dict[Formula, Array] = {}
+        if known is not None:
+            if known.dt != batch.dt or not np.array_equal(known.lengths, batch.lengths):
+                raise InputError("an observation is only taken over for traces of the same dt and lengths")
+            leaves |= known.leaves
+        leaves |= {g: pack(values[: batch.samples]) for g, values in _given(batch).items()}
+        comparisons = tuple(self._comparisons(leaves))
+        if comparisons not in self.programs:
+            self.programs[comparisons] = truth_program(comparisons)
+        leaves |= observe_truth(comparisons, self.programs[comparisons], batch, threads)
+        return Observation(batch.dt, batch.lengths, batch.samples, leaves)
+
+    def evaluate(
+        self,
+        batch: Batch | Observation,
+        semantics: Convention = "truncated",
+        at: When = "start",
+        starts: Integers | None = None,
+        named: bool = False,
+        threads: int = 1,
+    ) -> Verdicts[Key]:
+        """The answer to every formula at the start of each trace, or ``at`` all samples.
+
+        ``starts`` gives the sample at which each trace starts (0 if not given). With ``named``,
+        every named sub-formula is answered too, at all samples. Raises ``InputError`` for interval
+        bounds that are no multiple of the step, and for signals and lanes that the batch has not.
+        """
+        seen = self.observe(batch, threads=threads) if isinstance(batch, Batch) else batch
+        check_starts(starts, seen.lengths)
+        shape = (seen.samples, -(-len(seen.lengths) // BITS))
+        end = packed_inside(seen.lengths, seen.samples)
+        evaluation = Evaluation(TRUTH, seen.leaves, end, seen.dt, shape, self.states)
+
+        def answer(formula: Formula, when: When) -> TruthArrays:
+            strong, weak = (evaluation.value(formula, view) for view in views(semantics))
+            true = read_bits(strong, seen.lengths, when, starts)
+            return TruthArrays(true, read_bits(~weak, seen.lengths, when, starts))
+
+        return Verdicts(
+            semantics,
+            {name: answer(formula, at) for name, formula in self.plain.items()},
+            {name: answer(body, "all") for name, body in self.named.items()} if named else {},
+        )
+
+    def measure(
+        self,
+        batch: Batch,
+        semantics: Convention = "truncated",
+        at: When = "start",
+        starts: Integers | None = None,
+        named: bool = False,
+        threads: int = 1,
+        samples_in_block: int = 24_000,
+    ) -> Margins[Key]:
+        """The margin of every formula; arguments and errors as in ``evaluate``."""
+        check_starts(starts, batch.lengths)
+        given = _given(batch)
+        comparisons = tuple(self._comparisons(given))
+        program = margin_program(comparisons)
+        margins = {name: no_margin(batch, at) for name in self.plain}
+        named_margins = {name: no_margin(batch, "all") for name in self.named} if named else {}
+
+        def measure_block(columns: slice) -> None:
+            evaluation = self._margin_evaluation(batch, given, comparisons, program, columns)
+            begin = None if starts is None else starts[columns]
+            for name, formula in self.plain.items():
+                store_margin(margins[name], evaluation, formula, semantics, batch, columns, at, begin)
+            for node, made in named_margins.items():
+                store_margin(made, evaluation, self.named[node], semantics, batch, columns, "all", begin)
+
+        with ThreadPoolExecutor(threads) as pool:
+            for _ in pool.map(measure_block, trace_blocks(batch, samples_in_block)):
+                pass
+        return Margins(semantics, margins, named_margins)
+
+    def rests_on(self, given: Iterable[Formula]) -> bool:
+        """Whether the truth of these state formulas is all that a batch has to say. Raises ``InputError``."""
+        return not any(True for _ in self._comparisons({without_names(formula) for formula in given}))
+
+    def _margin_evaluation(
+        self,
+        batch: Batch,
+        given: Mapping[Formula, Array],
+        comparisons: tuple[Compare, ...],
+        program: Program,
+        columns: slice,
+    ) -> Evaluation:
+        samples = int(batch.lengths[columns].max())
+        leaves: dict[Formula, Array] = {g: as_margin(v[:samples, columns]) for g, v in given.items()}
+        leaves |= observe_margins(comparisons, program, batch, columns)
+        shape = (samples, columns.stop - columns.start)
+        return Evaluation(MARGIN, leaves, margin_inside(batch, columns), batch.dt, shape, self.states)
+
+    def _comparisons(self, given: Collection[Formula]) -> Iterator[Compare]:
+        """Comparisons outside ``given``, each once. Raises ``InputError`` for an unknown lane predicate."""
+        seen: set[Formula] = set()
+        waiting = list(self.plain.values())
+        while waiting:
+            current = waiting.pop()
+            if current in seen or current in given:
+                continue
+            seen.add(current)
+            match current:
+                case Compare():
+                    yield current
+                case f.Occupies() | f.Some() | f.Every():
+                    raise InputError(
+                        f"the batch does not say where {_shown(current)} holds: "
+                        "add it to the given formulas of the batch, or bind the formula to a road"
+                    )
+                case _:
+                    waiting.extend(f.children(current))
+
+
+def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
+    """A monitor for some formulas, by names or values of the caller's choice; mistakes show them as text.
+
+    Every parameter must have its value (``with_values``); lanes may be open where the batch gives
+    the truth of the formulas that speak of them. Raises ``InputError``.
+    """
+    _check_closed(formulas)
+    plain = dict(zip(formulas, f.share(formulas.values(), _unnamed), strict=True))
+    own = {(x.name, not x.vehicle): x for x in own_of(formulas.values())}.values()
+    states = frozenset(x for x in f.subformulas(*plain.values()) if f.is_state(x))
+    return Monitor(dict(formulas), plain, states, (*signals_of(formulas.values()), *own))
+
+
+def _unnamed(formula: Formula) -> Formula:
+    return formula.body if isinstance(formula, Named) else formula
+
+
+def _check_closed(formulas: Mapping[Key, Formula]) -> None:
+    whole = tuple(formulas.values())
+    fine = all(map(_has_value, terms_of(*whole))) and all(
+        map(_is_interval, (bounds_of(x) for part in f.subformulas(*whole) for x in f.intervals(part)))
+    )
+    for name, formula in () if fine else formulas.items():
+        for term in terms_of(formula):
+            for leaf in t.leaves(term):
+                if isinstance(leaf, t.Parameter | t.Variable):
+                    raise InputError(
+                        f"{name}: a monitor needs numbers, but {leaf.name} has no value; substitute one first"
+                    )
+        for low, high in map(bounds_of, intervals_of(formula)):
+            if not _is_interval((low, high)):
+                raise InputError(
+                    f"{name}: the interval [{low}, {high}] s must not start in the past nor be empty"
+                )
+
+
+def _has_value(term: t.Term) -> bool:
+    return not any(isinstance(leaf, t.Parameter | t.Variable) for leaf in t.leaves(term))
+
+
+def _is_interval(bounds: tuple[Fraction, Fraction | None]) -> bool:
+    low, high = bounds
+    return low >= 0 and (high is None or high >= low)
+
+
+def _given(batch: Batch) -> dict[Formula, Array]:
+    return {without_names(formula): values for formula, values in batch.given.items()}
+
+
+def _shown(formula: Formula) -> str:
+    match formula:
+        case f.Occupies(vehicle, lanelet):
+            return f"occ({vehicle}, {lanelet})"
+        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+            return (
+                f"{type(formula).__name__.lower()} {variable} in {domain.kind}({domain.of}): {_shown(body)}"
+            )
+        case _:
+            return "…"
