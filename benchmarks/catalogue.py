@@ -15,7 +15,7 @@ from pathlib import Path
 import roadproof as rp
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.showing import Freedom, show
-from roadproof.frontends.api.cataloguing import Catalogued
+from roadproof.frontends.api.cataloguing import CatalogueAnswer
 
 THOUSAND = 1000
 
@@ -55,11 +55,11 @@ def put(folder: Path, drives: list[Path], count: int = 0) -> Path:
     return folder
 
 
-def catalogued(*folders: Path) -> Catalogued:
+def catalogued(*folders: Path) -> CatalogueAnswer:
     return rp.catalogue(*folders)
 
 
-def told(what: str, folder: Path) -> Catalogued:
+def told(what: str, folder: Path) -> CatalogueAnswer:
     begun = time.monotonic()
     found = catalogued(folder)
     seconds = time.monotonic() - begun

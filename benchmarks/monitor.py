@@ -24,11 +24,11 @@ from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula, Named, subformulas
+from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.semantics.sampled import Batch, Monitor, compile
 from roadproof.semantics.sampled.boolean import unpack
-from roadproof.semantics.sampled.recursive import Reading, Trace, answer
+from roadproof.semantics.sampled.recursive import Trace, TraceReader, answer
 from roadproof.semantics.sampled.semantics import interval_steps
 
 SCENARIOS = (1, 3, 4, 5, 6, 7, 8)
@@ -76,7 +76,7 @@ def random_batch(formulas: dict[str, Formula], traces: int, samples: int, seed: 
     }
     start_lane = in_lane["SV", 1][0]
     given = {}
-    for formula in {x for root in formulas.values() for x in subformulas(root) if isinstance(x, Named)}:
+    for formula in {x for root in formulas.values() for x in subformulas(root) if isinstance(x, Application)}:
         vehicle = formula.arguments[0] if formula.arguments else ""
         if formula.name == "onMainRoad":
             given[formula] = np.ones((samples, traces), dtype=bool)
@@ -88,7 +88,7 @@ def random_batch(formulas: dict[str, Formula], traces: int, samples: int, seed: 
     for formula in {x for root in formulas.values() for x in subformulas(root)}:
         if isinstance(formula, f.Some) and formula.domain.kind == "adjacent":
             inner = formula.body
-            assert isinstance(inner, Named)
+            assert isinstance(inner, Application)
             given[formula] = given[inner]
     lengths = np.full(traces, samples)
     return Batch(Fraction(1, 25), lengths, signals, sizes, given)
@@ -205,7 +205,7 @@ def main() -> int:
     per_trace = (perf_counter() - start) / options.recursive
     figures["recursive_scaled"] = per_trace * options.traces
     for i, answers in zip(chosen, expected, strict=True):
-        reading = Reading(trace_of(batch, i))
+        reading = TraceReader(trace_of(batch, i))
         for (name, formula), wanted in zip(formulas.items(), answers, strict=True):
             found = verdicts.answers[name]
             got = "true" if found.true[i] else "false" if found.false[i] else "undecided"

@@ -49,7 +49,7 @@ def quantified(claim: Formula) -> str:
     def truth(formula: Formula, now: str) -> str:
         nonlocal count
         match formula:
-            case f.Named(name, _, _):
+            case f.Application(name, _, _):
                 atoms.add(name)
                 return f"(|{name}| {now})"
             case f.Truth(value):
@@ -92,7 +92,9 @@ def quantified(claim: Formula) -> str:
 
 def without_adjacent_lanes(formula: Formula) -> Formula:
     """Quantifiers over adjacent lanes as atoms, which is how the sentence was asked before roadproof."""
-    return f.transform(formula, lambda x: f.Named("someLane", (), f.TRUE) if isinstance(x, f.Some) else x)
+    return f.transform(
+        formula, lambda x: f.Application("someLane", (), f.TRUE) if isinstance(x, f.Some) else x
+    )
 
 
 def timed(work: Callable[[], str]) -> tuple[str, float]:

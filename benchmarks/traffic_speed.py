@@ -24,7 +24,7 @@ from roadproof.recordings.formats.table import read_columns
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.simulate import Traffic
 from roadproof.recordings.simulate.synthetic import simulate
-from roadproof.runtime.executors import Hands
+from roadproof.runtime.executors import Executor
 
 
 def seconds(work: Callable[[], object]) -> float:
@@ -82,7 +82,7 @@ def main() -> None:
 
         def experiment() -> None:
             nonlocal outcome
-            outcome = run_experiment(Experiment(folder, out, default_settings(), Hands(args.jobs)))
+            outcome = run_experiment(Experiment(folder, out, default_settings(), Executor(args.jobs)))
 
         begun = processor_seconds()
         running = seconds(experiment)

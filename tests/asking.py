@@ -3,7 +3,7 @@
 from roadproof.engines.prove import prover
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import Search
-from roadproof.engines.search.question import Posed, SearchOptions, Setting, pose
+from roadproof.engines.search.question import SearchOptions, SearchProblem, Setting, pose
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import read_query
 from roadproof.library.specification import Specification, bundled_library
@@ -38,6 +38,6 @@ def search_for(
     )
 
 
-def posed(search: Search) -> Posed:
+def posed(search: Search) -> SearchProblem:
     """The question of a search, with road, vehicles and grid in place."""
     return pose(search.specification.library, search.query, search.setting)

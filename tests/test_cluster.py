@@ -11,13 +11,13 @@ import pytest
 from roadproof.analysis.study.pool import work
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.runtime import dask_executor
-from roadproof.runtime.executors import Cluster, Hands
+from roadproof.runtime.executors import Cluster, Executor
 from roadproof.runtime.process_pool import is_worker
 
 pytest.importorskip("distributed", reason="dask is not installed: pip install 'roadproof[cluster]'")
 
 TOLD: list[str] = []
-HERE = Hands(cluster=Cluster("local:2", tell=TOLD.append))
+HERE = Executor(cluster=Cluster("local:2", tell=TOLD.append))
 
 
 def square(job: int) -> int:
@@ -78,4 +78,4 @@ def test_other_versions_are_refused_before_any_work(monkeypatch: pytest.MonkeyPa
 def test_a_scheduler_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_executor, "_PATIENCE", 1)
     with pytest.raises(InputError, match="no scheduler answers within 1 s"):
-        list(work(square, range(2), Hands(cluster=Cluster("tcp://127.0.0.1:9"))))
+        list(work(square, range(2), Executor(cluster=Cluster("tcp://127.0.0.1:9"))))

@@ -5,7 +5,7 @@ import pickle
 import pytest
 
 from roadproof.runtime import budget
-from roadproof.runtime.budget import Effort, Late, Meter, backstop
+from roadproof.runtime.budget import Budget, BudgetExceeded, Effort, backstop
 
 
 class Clock:
@@ -52,7 +52,7 @@ def test_the_reason_names_the_limit_that_was_reached():
     assert part.reason() == "no answer within 10 units of work"
 
 
-@pytest.mark.parametrize("made", [Meter.part, Meter.apart])
+@pytest.mark.parametrize("made", [Budget.part, Budget.apart])
 def test_what_the_clock_cuts_off_is_late(clock, made):
     meter = made(Effort(10, 3.0).meter(), 4)
     clock.now = 2.5
@@ -60,7 +60,7 @@ def test_what_the_clock_cuts_off_is_late(clock, made):
     assert not meter.is_out()
     clock.now = 3.0
     for ask in (meter.seconds_left, meter.is_out):
-        with pytest.raises(Late, match=r"cut off by the clock after 3 s, .*raise --timeout"):
+        with pytest.raises(BudgetExceeded, match=r"cut off by the clock after 3 s, .*raise --timeout"):
             ask()
 
 
@@ -77,7 +77,7 @@ def test_the_backstop_follows_from_the_work_unless_it_is_given(clock):
 
 
 def test_lateness_comes_back_from_another_process():
-    late = pickle.loads(pickle.dumps(Late(2.5)))
-    assert isinstance(late, Late)
-    assert str(late) == str(Late(2.5))
+    late = pickle.loads(pickle.dumps(BudgetExceeded(2.5)))
+    assert isinstance(late, BudgetExceeded)
+    assert str(late) == str(BudgetExceeded(2.5))
     assert late.exit_code == 20

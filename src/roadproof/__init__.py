@@ -67,7 +67,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.traces import monitor as monitor
     from roadproof.frontends.api.traces import trace as trace
     from roadproof.runtime.executors import Cluster as Cluster
-    from roadproof.runtime.executors import Hands as Hands
+    from roadproof.runtime.executors import Executor as Executor
     from roadproof.runtime.executors import Shard as Shard
     from roadproof.runtime.progress import Cancelled as Cancelled
     from roadproof.runtime.progress import Stage as Stage
@@ -116,7 +116,7 @@ _HOMES = {
     "Cancelled": "runtime.progress",
     **dict.fromkeys(_PHRASES, "frontends.api.phrases"),
     **dict.fromkeys(_ERRORS, "errors"),
-    **dict.fromkeys(("Hands", "Shard", "Cluster"), "runtime.executors"),
+    **dict.fromkeys(("Executor", "Shard", "Cluster"), "runtime.executors"),
 }
 __all__ = [*_HOMES, "__version__"]
 

@@ -13,7 +13,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.catalogue import examination, meaning, showing, tested
-from roadproof.analysis.catalogue.asked import NOWHERE, Asked, Row
+from roadproof.analysis.catalogue.asked import NOWHERE, Questions, Row
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.figures import figures
 from roadproof.analysis.catalogue.meaning import Fact
@@ -24,7 +24,7 @@ from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import Division, divide
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
-from roadproof.frontends.api.cataloguing import Catalogued, catalogue
+from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.catalogue import as_text
@@ -53,18 +53,18 @@ def division() -> Division:
 
 
 @pytest.fixture(scope="module")
-def asked(division: Division) -> Asked:
-    return Asked(HOME.alone, NUMBERS, division.classes, HOME.all_values())
+def asked(division: Division) -> Questions:
+    return Questions(HOME.alone, NUMBERS, division.classes, HOME.all_values())
 
 
-def names(asked: Asked, path: Path, freedom: Freedom = FIXED) -> set[str]:
+def names(asked: Questions, path: Path, freedom: Freedom = FIXED) -> set[str]:
     answer = show(Concrete("x", str(path)), asked, freedom)
     assert not answer.fault
     return {*answer.names}
 
 
 @pytest.fixture(scope="module")
-def queries(asked: Asked) -> dict[str, Query]:
+def queries(asked: Questions) -> dict[str, Query]:
     """Each scenario, class and danger by itself."""
     assert asked.classes is not None
     found = {name_of(n): applied(HOME.alone, Scenario(n, "base")) for n in NUMBERS}
@@ -86,7 +86,7 @@ def one_by_one(queries: Mapping[str, Query], path: Path) -> set[str]:
     return found
 
 
-def test_all_at_once_is_one_by_one(asked: Asked, queries: dict[str, Query]) -> None:
+def test_all_at_once_is_one_by_one(asked: Questions, queries: dict[str, Query]) -> None:
     shown = {path.stem: names(asked, path) for path in DRIVES}
     assert shown == {path.stem: one_by_one(queries, path) for path in DRIVES}
     assert {name: [x for x in those if x.startswith("class_")] for name, those in shown.items()} == {
@@ -107,7 +107,7 @@ def exchanged(file: DriveFile) -> DriveFile:
     )
 
 
-def test_roles_are_fixed_or_any(asked: Asked, tmp_path: Path) -> None:
+def test_roles_are_fixed_or_any(asked: Questions, tmp_path: Path) -> None:
     path = EXAMPLE / "drives" / "braking.json"
     turned = written(tmp_path / "turned.json", exchanged(load_drive(path)))
     assert names(asked, path) == {"scenario_4", "class_4", ENDANGERED}
@@ -115,7 +115,7 @@ def test_roles_are_fixed_or_any(asked: Asked, tmp_path: Path) -> None:
     assert "scenario_4" in names(asked, turned, Freedom(roles=True))
 
 
-def test_lanes_are_fixed_or_any(asked: Asked, tmp_path: Path) -> None:
+def test_lanes_are_fixed_or_any(asked: Questions, tmp_path: Path) -> None:
     file = load_drive(EXAMPLE / "drives" / "braking.json")
     other = next(lane for lane in file.road.lanes if lane != file.lanes["L"])
     moved = written(tmp_path / "moved.json", replace(file, lanes={"L": other}))
@@ -123,7 +123,7 @@ def test_lanes_are_fixed_or_any(asked: Asked, tmp_path: Path) -> None:
     assert "scenario_4" in names(asked, moved, Freedom(lanes=True))
 
 
-def test_instants_are_those_of_the_judge(asked: Asked) -> None:
+def test_instants_are_those_of_the_judge(asked: Questions) -> None:
     """All instants count: each thing is shown from the instant on at which it is true first."""
     more = set()
     for path in (DRIVES[0], DRIVES[4]):
@@ -141,7 +141,7 @@ def test_instants_are_those_of_the_judge(asked: Asked) -> None:
 
 
 @pytest.mark.parametrize("samples", ["braking.csv", "cut-in.xml"])
-def test_samples_show_what_their_drive_shows(samples: str, asked: Asked) -> None:
+def test_samples_show_what_their_drive_shows(samples: str, asked: Questions) -> None:
     path = EXAMPLE / "samples" / samples
     drive = EXAMPLE / "drives" / f"{path.stem}.json"
     answer = show(Concrete("x", str(path)), asked, FIXED)
@@ -149,17 +149,17 @@ def test_samples_show_what_their_drive_shows(samples: str, asked: Asked) -> None
     assert not answer.dense
 
 
-def test_what_is_steady_shows_nothing(asked: Asked) -> None:
+def test_what_is_steady_shows_nothing(asked: Questions) -> None:
     assert names(asked, EXAMPLE / "samples" / "steady.csv", ANY) == set()
 
 
-def test_danger_that_no_scenario_covers_is_a_gap(asked: Asked, tmp_path: Path) -> None:
+def test_danger_that_no_scenario_covers_is_a_gap(asked: Questions, tmp_path: Path) -> None:
     """A leader that brakes, among scenarios that know of cut-ins only."""
     braking = load_drive(EXAMPLE / "drives" / "braking.json")
     turned = show(Concrete("x", str(written(tmp_path / "a.json", exchanged(braking)))), asked, FIXED)
     assert ENDANGERED in turned.names
     assert GAP not in turned.names  # it is a scenario in other roles
-    few = Asked(HOME.alone, (1, 2), None, asked.values)
+    few = Questions(HOME.alone, (1, 2), None, asked.values)
     gap = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), few, FIXED)
     assert gap.names == {ENDANGERED, GAP, "gap_behaviourPOV_1", "gap_behaviourPOV_1_1"}
     samples = show(Concrete("x", str(EXAMPLE / "samples" / "braking.csv")), few, FIXED)
@@ -171,24 +171,24 @@ def test_danger_that_no_scenario_covers_is_a_gap(asked: Asked, tmp_path: Path) -
 # --- planted faults: each is noticed by the comparison above, or by the answer itself --------------
 
 
-def a_row_is_lost(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
-    shown = Asked.shown
-    monkeypatch.setattr(Asked, "shown", lambda s, r, true: shown(s, r, frozenset(true - {Row(4)})))
+def a_row_is_lost(asked: Questions, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = Questions.shown
+    monkeypatch.setattr(Questions, "shown", lambda s, r, true: shown(s, r, frozenset(true - {Row(4)})))
 
 
-def scenarios_in_other_lanes(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+def scenarios_in_other_lanes(asked: Questions, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(showing, "_lanes", lambda file, free: file.road.lanes[-1:])
 
 
-def all_instants(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+def all_instants(asked: Questions, monkeypatch: pytest.MonkeyPatch) -> None:
     instants = showing._instants
     monkeypatch.setattr(showing, "_instants", lambda truths, file, free: instants(truths, file, True))
 
 
 @pytest.mark.parametrize("plant", [a_row_is_lost, scenarios_in_other_lanes, all_instants])
 def test_a_planted_fault_is_noticed(
-    plant: Callable[[Asked, pytest.MonkeyPatch], None],
-    asked: Asked,
+    plant: Callable[[Questions, pytest.MonkeyPatch], None],
+    asked: Questions,
     queries: dict[str, Query],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -201,7 +201,7 @@ def test_a_scenario_that_is_neither_shown_nor_excluded_is_no_doubt_unless_it_is_
     entry = Abstract("x", query)
     runs = Fact("x", "", "runs", query)
     still_open = Fact("x", "scenario_8", "open", query, HOME.read("scenario_8(SV,POV,L)"), "not on this road")
-    few = Asked(HOME.alone, (8,), None, HOME.all_values())
+    few = Questions(HOME.alone, (8,), None, HOME.all_values())
 
     def doubts(entry: Abstract) -> list[str]:
         found = tested.tested(few, [], [entry], [runs, still_open], tested.targets_of(few), 0.5, None)
@@ -214,10 +214,10 @@ def test_a_scenario_that_is_neither_shown_nor_excluded_is_no_doubt_unless_it_is_
     ]
 
 
-def test_a_drive_in_no_class_is_a_contradiction(asked: Asked) -> None:
+def test_a_drive_in_no_class_is_a_contradiction(asked: Questions) -> None:
     assert asked.classes is not None
     what = tuple(tuple(c for c in cells if c.holds != (4,)) for cells in asked.classes.what)
-    fewer = Asked(asked.specification, NUMBERS, replace(asked.classes, what=what), asked.values)
+    fewer = Questions(asked.specification, NUMBERS, replace(asked.classes, what=what), asked.values)
     answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), fewer, FIXED)
     assert NOWHERE in answer.names
     found = tested.tested(fewer, [answer], [], [], tested.targets_of(fewer), 0.5, None)
@@ -237,7 +237,7 @@ def few(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def ask(*paths: Path, **more: Any) -> Catalogued:
+def ask(*paths: Path, **more: Any) -> CatalogueAnswer:
     return catalogue(*paths, among="1-8", jobs=1, **more)
 
 
@@ -274,12 +274,12 @@ def test_tables_and_reports(few: Path) -> None:
     assert found.plot().png.startswith(b"\x89PNG")
 
 
-def test_road_sectors_are_told_apart(asked: Asked) -> None:
+def test_road_sectors_are_told_apart(asked: Questions) -> None:
     numbers = (4, 12)
     plan = plan_of(HOME.alone, numbers)
     what = tuple((Cell((number,), (number,), ()),) for number in (4,))
     where = tuple(Cell((number,), (number,), ()) for number in plan.sectors)
-    both = Asked(HOME.alone, numbers, Classes(plan, what, where), asked.values)
+    both = Questions(HOME.alone, numbers, Classes(plan, what, where), asked.values)
     answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), both, FIXED)
     found = tested.tested(both, [answer], [], [], tested.targets_of(both), 0.5, None)
     assert {x.name: (x.sector, x.tested) for x in found.targets} == {
@@ -384,8 +384,8 @@ def test_a_doubt_is_a_doubt(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
     assert "whether it can be run is in doubt: its process was ended" in str(found)
 
 
-def test_other_values_of_parameters_are_told(asked: Asked) -> None:
-    calm = Asked(HOME.alone, NUMBERS, None, {**asked.values, "rho": Fraction(3)})
+def test_other_values_of_parameters_are_told(asked: Questions) -> None:
+    calm = Questions(HOME.alone, NUMBERS, None, {**asked.values, "rho": Fraction(3)})
     answer = show(Concrete("x", str(EXAMPLE / "drives" / "braking.json")), calm, FIXED)
     found = tested.tested(calm, [answer], [], [], tested.targets_of(calm), 0.5, None)
     (fault,) = found.faults
@@ -421,5 +421,5 @@ def test_what_is_no_test_is_counted(tmp_path: Path) -> None:
     assert "2 more files" in found.notes[0]
 
 
-def test_vehicles_of_scenarios_are_known(asked: Asked) -> None:
+def test_vehicles_of_scenarios_are_known(asked: Questions) -> None:
     assert {*asked.roles} == {vehicles_of(HOME.alone, Scenario(n, "base")) for n in NUMBERS}

@@ -17,7 +17,7 @@ import roadproof as rp
 from cli.test_schemas import validator
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue import examination, far, gaps, ranges, tested
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.completing import complete
 from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
@@ -31,10 +31,10 @@ from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.classes import near_miss
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.frontends.api.cataloguing import Catalogued, catalogue
+from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import catalogue_drives
-from roadproof.frontends.report.catalogue_drives import Drawn, draw_tests
+from roadproof.frontends.report.catalogue_drives import TestPicture, draw_tests
 from roadproof.frontends.report.figures import make_page, shorten
 from roadproof.library.bind import bind, values_with
 from roadproof.semantics.exact.exact import judge
@@ -51,20 +51,20 @@ def behaviourPOV_4(POV, SV: vehicle, L: lane) "POV drives away, and stands"
 """
 
 
-def asked_about(*numbers: int) -> Asked:
-    return Asked(HOME.specification, numbers, None, HOME.all_values())
+def asked_about(*numbers: int) -> Questions:
+    return Questions(HOME.specification, numbers, None, HOME.all_values())
 
 
 # --- gaps ---------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
-def asked() -> Asked:
+def asked() -> Questions:
     return asked_about(1)
 
 
 @pytest.mark.parametrize("path", [BRAKING, SEVEN, CUT_IN], ids=lambda path: path.stem)
-def test_classes_of_a_gap_are_those_of_the_judge_one_by_one(path: Path, asked: Asked) -> None:
+def test_classes_of_a_gap_are_those_of_the_judge_one_by_one(path: Path, asked: Questions) -> None:
     """Each part that can be left out so that its scenario holds, asked by itself."""
     assert asked.gaps is not None
     file, expected = load_drive(path), set()
@@ -91,7 +91,7 @@ def test_scenarios_that_are_no_rows_have_no_classes_of_gaps() -> None:
 
 
 @pytest.fixture(scope="module")
-def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Catalogued, Path]]:
+def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[CatalogueAnswer, Path]]:
     """A cut-in, asked about scenario 4 and its gaps, with few drives to look through and little work."""
     simple, folder = found.simple_drives, tmp_path_factory.mktemp("gaps")
     with pytest.MonkeyPatch.context() as patch:
@@ -106,7 +106,9 @@ def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Catalog
         yield made, folder
 
 
-def test_each_class_of_gaps_is_tested_missing_empty_or_in_doubt(surveyed: tuple[Catalogued, Path]) -> None:
+def test_each_class_of_gaps_is_tested_missing_empty_or_in_doubt(
+    surveyed: tuple[CatalogueAnswer, Path],
+) -> None:
     made, folder = surveyed
     told = made.tested.gaps
     assert [x.name for x in told.targets if x.tested] == ["gap_behaviourPOV_4", NO_SINGLE]
@@ -127,7 +129,7 @@ def test_each_class_of_gaps_is_tested_missing_empty_or_in_doubt(surveyed: tuple[
     assert made.plot().png.startswith(b"\x89PNG")
 
 
-def test_gaps_that_nobody_tests_are_made_and_found_again(surveyed: tuple[Catalogued, Path]) -> None:
+def test_gaps_that_nobody_tests_are_made_and_found_again(surveyed: tuple[CatalogueAnswer, Path]) -> None:
     made, folder = surveyed
     completed = made.complete(folder / "more", jobs=1)
     drives = {x.name for x in completed.completions if x.drive}
@@ -142,7 +144,7 @@ def test_gaps_that_nobody_tests_are_made_and_found_again(surveyed: tuple[Catalog
 
 @pytest.mark.parametrize("field", ["verdict", "claim", "drive"])
 def test_forged_classes_of_gaps_are_refused(
-    field: str, surveyed: tuple[Catalogued, Path], tmp_path: Path
+    field: str, surveyed: tuple[CatalogueAnswer, Path], tmp_path: Path
 ) -> None:
     report = tmp_path / "report"
     shutil.copytree(surveyed[1] / "report", report)
@@ -163,7 +165,7 @@ def test_forged_classes_of_gaps_are_refused(
     assert main(["check", str(report), "--jobs", "1"]) in (3, 10)
 
 
-def test_a_gap_that_is_proved_empty_and_shown_is_a_contradiction(asked: Asked) -> None:
+def test_a_gap_that_is_proved_empty_and_shown_is_a_contradiction(asked: Questions) -> None:
     answer = show(Concrete("x", str(BRAKING)), asked, Freedom())
     assert asked.gaps is not None
     name = next(x for x in sorted(answer.names) if x.startswith(gaps.PREFIX))
@@ -273,7 +275,7 @@ def test_all_tests_are_drawn_on_pages_and_titles_fit(monkeypatch: pytest.MonkeyP
     courses = courses_of(Concrete("x", str(CUT_IN)))
     assert courses is not None
     assert courses_of(Concrete("x", str(DRIVES / "torn.json"))) is None
-    pages = list(draw_tests([Drawn("W" * 60, "1 cut-in", courses)] * 3))
+    pages = list(draw_tests([TestPicture("W" * 60, "1 cut-in", courses)] * 3))
     assert [page["png"][:4] for page in pages] == [b"\x89PNG"] * 2
     text = make_page(4, 4).text(0, 0, "W" * 60, fontsize=6.5)
     shorten(text, 1.9)
@@ -340,7 +342,7 @@ def test_a_scenario_without_drives_has_a_proof(tmp_path: Path) -> None:
     (tmp_path / "never.spec").write_text(NEVER, "utf-8")
     home = rp.load(specs=[tmp_path / "never.spec"]).specification
     [made] = complete(
-        Basis(home), Asked(home, (4,), None, values_with(home.library, {})), ["scenario_4"], hands=1
+        Basis(home), Questions(home, (4,), None, values_with(home.library, {})), ["scenario_4"], hands=1
     )
     assert made.drive is None
     assert made.empty is not None

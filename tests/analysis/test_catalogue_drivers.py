@@ -25,7 +25,7 @@ from roadproof.analysis.catalogue.decisions import (
 from roadproof.analysis.catalogue.sides import read_side_name, side_name
 from roadproof.drivers import margins
 from roadproof.drivers.claims import SIDES, Side
-from roadproof.drivers.driving import OWN_LANE, Reading, drive_of, road_of
+from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, road_of
 from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
 from roadproof.drivers.margins import State, controller_hits, controller_margin, margin
 from roadproof.drivers.models import MODELS, SCENARIOS, unpreventable
@@ -98,7 +98,7 @@ def random_values(name: str, random: Random) -> dict[str, Fraction]:
 
 def is_hit(state: State, name: str, model: str, given: dict[str, Fraction]) -> bool:
     text = unpreventable(name, model, MANOEUVRES[name].vehicles)
-    return judge(with_values(DRIVERS.formula(text), given), margins._Varied(state)).holds
+    return judge(with_values(DRIVERS.formula(text), given), margins._VariedState(state)).holds
 
 
 @pytest.mark.parametrize(("name", "model"), EACH)
@@ -172,7 +172,7 @@ def test_a_vehicle_that_stands_has_no_headway() -> None:
 def test_a_drive_is_decided_when_its_manoeuvre_begins(model: str, gap: int, side: str) -> None:
     kind = MANOEUVRES["cut-in"]
     at = kind.values({"Ve0": 90 * KMH, "dV0": 30 * KMH, "dx0": Fraction(gap)})
-    drive = drive_of(kind, "r157", at, Reading(values(), specification().options))
+    drive = drive_of(kind, "r157", at, DriverSettings(values(), specification().options))
     file = DriveFile(None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road_of(at), drive, True)
     [found] = [x for x in decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 0.0) if x.driver == model]
     assert (found.side, found.at, found.start["dx0"], found.reason) == (side, 0.0, gap, "")
@@ -186,7 +186,7 @@ def test_a_formula_about_drivers_is_judged_too(said: str, tmp_path: Path) -> Non
     kind = MANOEUVRES["cut-in"]
     at = kind.values({"Ve0": 90 * KMH, "dV0": 30 * KMH, "dx0": Fraction(8)})
     home = specification()
-    drive = drive_of(kind, "r157", at, Reading(values(), home.options))
+    drive = drive_of(kind, "r157", at, DriverSettings(values(), home.options))
     formula = f"{said}unpreventable_cutIn_careful(SV, POV)"
     reading = values(), dict(home.options)
     file = DriveFile(None, "base", formula, Fraction(6), {"L": OWN_LANE}, *reading, road_of(at), drive, True)
@@ -203,7 +203,7 @@ def braking(gap: int, *pieces: tuple[int, int]) -> DriveFile:
     """POV, ahead by ``gap`` and as fast as SV, brakes as the pieces say: seconds, and m/s^2."""
     kind = MANOEUVRES["deceleration"]
     at = kind.values({"Ve0": Fraction(25), "dx0": Fraction(gap), "Gx": Fraction(1)})
-    drive = drive_of(kind, "careful", at, Reading(values(), specification().options))
+    drive = drive_of(kind, "careful", at, DriverSettings(values(), specification().options))
     steps = [Piece(Fraction(t), Fraction(-a), Fraction(0)) for t, a in pieces]
     last = (Piece(None, Fraction(0), Fraction(0)),)
     motions = {
@@ -247,7 +247,7 @@ def test_danger_before_a_cut_out_is_that_of_the_vehicle_behind_which_it_opens() 
     at = kind.values(
         {"Ve0": Fraction(25), "Vf0": Fraction(20), "headway": Fraction(1, 5), "dx0_f": Fraction(90)}
     )
-    drive = drive_of(kind, "careful", at, Reading(values(), specification().options))
+    drive = drive_of(kind, "careful", at, DriverSettings(values(), specification().options))
     steps = (
         Piece(Fraction(2), Fraction(0), Fraction(0)),
         Piece(Fraction(1), Fraction(0), Fraction(1)),

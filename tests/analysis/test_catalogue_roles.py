@@ -11,7 +11,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.catalogue import traces
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import choices, roles_of
@@ -26,8 +26,8 @@ PAIRS, TRIPLES = ("SV", "POV"), ("SV", "POV1", "POV2")
 
 
 @pytest.fixture(scope="module")
-def asked() -> Asked:
-    return Asked(HOME.alone, (1, 2, 3, 4), None, HOME.all_values())
+def asked() -> Questions:
+    return Questions(HOME.alone, (1, 2, 3, 4), None, HOME.all_values())
 
 
 def renamed(path: Path, drive: str, names: Mapping[str, str]) -> Path:
@@ -47,7 +47,7 @@ def sampled(folder: Path, names: Mapping[str, str]) -> Path:
     return folder / "a.csv"
 
 
-def looked_at(asked: Asked, path: Path, free: bool = False, **roles: str) -> ConcreteAnswer:
+def looked_at(asked: Questions, path: Path, free: bool = False, **roles: str) -> ConcreteAnswer:
     return show(Concrete("x", str(path), roles=roles), asked, Freedom(roles=free))
 
 
@@ -97,7 +97,7 @@ def test_choices_keep_who_is_named() -> None:
 
 
 @pytest.mark.parametrize("drive", ["braking", "cut-in", "cut-out"])
-def test_other_names_show_the_same(drive: str, asked: Asked, tmp_path: Path) -> None:
+def test_other_names_show_the_same(drive: str, asked: Questions, tmp_path: Path) -> None:
     """With roles as the test says, all that is told is the same, in the names of the test."""
     original = show(Concrete("x", str(EXAMPLE / "drives" / f"{drive}.json")), asked, Freedom())
     names = {"SV": "ego", "POV": "blue", "POV1": "one", "POV2": "two"}
@@ -114,7 +114,7 @@ def test_other_names_show_the_same(drive: str, asked: Asked, tmp_path: Path) -> 
     assert not any("taken as" in note for note in found.notes)
 
 
-def test_usual_names_are_told(asked: Asked, tmp_path: Path) -> None:
+def test_usual_names_are_told(asked: Questions, tmp_path: Path) -> None:
     names = {"SV": "Ego", "POV": "lead"}
     for path in (renamed(tmp_path / "b.json", "braking", names), sampled(tmp_path, names)):
         found = looked_at(asked, path)
@@ -127,7 +127,7 @@ def test_usual_names_are_told(asked: Asked, tmp_path: Path) -> None:
         assert [*courses.vehicles] == ["SV", "POV"]
 
 
-def test_roles_decide_what_is_shown(asked: Asked, tmp_path: Path) -> None:
+def test_roles_decide_what_is_shown(asked: Questions, tmp_path: Path) -> None:
     """Exchanged roles show something else, in drives and in samples, unless any roles are looked at."""
     names = {"SV": "ego", "POV": "lead"}
     for path in (renamed(tmp_path / "b.json", "braking", names), sampled(tmp_path, names)):
@@ -137,7 +137,7 @@ def test_roles_decide_what_is_shown(asked: Asked, tmp_path: Path) -> None:
         assert ("scenario_4", ("ego", "lead")) in {(x.what, x.vehicles) for x in free.shown}
 
 
-def test_the_vehicle_under_test_among_several(asked: Asked, tmp_path: Path) -> None:
+def test_the_vehicle_under_test_among_several(asked: Questions, tmp_path: Path) -> None:
     """Of three vehicles with one usual name the others may play any role, and it is always SV."""
     names = {"SV": "ego", "POV1": "near", "POV2": "far"}
     found = looked_at(asked, renamed(tmp_path / "a.json", "cut-out", names))
@@ -145,13 +145,13 @@ def test_the_vehicle_under_test_among_several(asked: Asked, tmp_path: Path) -> N
     assert {x.vehicles[0] for x in found.shown} == {"ego"}
 
 
-def test_names_that_are_no_roles_are_noted(asked: Asked, tmp_path: Path) -> None:
+def test_names_that_are_no_roles_are_noted(asked: Questions, tmp_path: Path) -> None:
     found = looked_at(asked, renamed(tmp_path / "a.json", "braking", {"SV": "red", "POV": "blue"}))
     assert found.shown == ()
     assert any("no vehicle is called as a role" in note and "red, blue" in note for note in found.notes)
 
 
-def test_obstacles_play_roles_by_number(asked: Asked) -> None:
+def test_obstacles_play_roles_by_number(asked: Questions) -> None:
     path = EXAMPLE / "samples" / "cut-in.xml"
     right, turned = looked_at(asked, path, SV="1", POV="2"), looked_at(asked, path, SV="2", POV="1")
     assert {x.vehicles for x in right.shown} == {("1", "2")}
@@ -171,7 +171,7 @@ def test_obstacles_play_roles_by_number(asked: Asked) -> None:
         ("samples/cut-in.xml:1,2", {"SV": "1"}, "the order of the vehicles says their roles"),
     ],
 )
-def test_unknown_names_are_a_fault(name: str, roles: dict[str, str], told: str, asked: Asked) -> None:
+def test_unknown_names_are_a_fault(name: str, roles: dict[str, str], told: str, asked: Questions) -> None:
     found = show(Concrete("x", str(EXAMPLE / name), roles=roles), asked, Freedom())
     assert found.shown == ()
     assert found.fault.startswith(f"{EXAMPLE / name}: roles")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue.asked import Asked, Happens
+from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.nearest import first_false_part
 from roadproof.analysis.catalogue.why import Course, Why, why_none
 from roadproof.evidence.drive_file import load_drive
@@ -24,7 +24,7 @@ HOME = rp.load()
 FILE = load_drive(Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives" / "lead.json")
 NUMBERS = tuple(range(1, 9))
 ROLES = ((("SV", "POV"), ("SV", "POV")),)
-ASKED = Asked(HOME.alone, NUMBERS, None, HOME.all_values())
+ASKED = Questions(HOME.alone, NUMBERS, None, HOME.all_values())
 
 
 def pair(speed: Fraction, other: Fraction, gap: Fraction, braking: Fraction, begin: Fraction) -> Course:
@@ -88,7 +88,7 @@ def test_the_change_makes_the_part_true_and_less_does_not(seed: int) -> None:
     formulas = [
         formula
         for key, formula in ASKED.on(course.road, *ROLES[0], course.lanes[0]).items()
-        if isinstance(key, Happens)
+        if isinstance(key, ScenarioQuestion)
     ]
     for formula in formulas:
         part = first_false_part(formula, course.signals, course.horizon)

@@ -26,9 +26,9 @@ from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, whe
 from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
-from roadproof.analysis.classify.study import Claimed, classification_of
+from roadproof.analysis.classify.study import ProofClaims, classification_of
 from roadproof.analysis.classify.text import claims_of, ranges, with_classes, write_classes
-from roadproof.analysis.study.evidence_store import Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
@@ -49,7 +49,7 @@ from roadproof.library.specification import (
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.semantics.sampled import compile
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
@@ -292,7 +292,7 @@ def test_answers_of_another_class_do_not_count(written: Path, tmp_path: Path) ->
         (out / f"answers/{forged}.json").write_text(json.dumps(record))
     told: list[str] = []
     study = classification_of(Basis(BASE), divide(Basis(BASE), plan_of(BASE, (4, 8)), 1))
-    shelf = Shelf(out, study.question)
+    shelf = EvidenceStore(out, study.question)
     recalled = {}
     for name, record in shelf.answers(told.append):
         try:
@@ -309,7 +309,7 @@ def die(*_: object) -> None:
 
 
 def late(*_: object) -> None:
-    raise Late(1.0)
+    raise BudgetExceeded(1.0)
 
 
 @pytest.mark.parametrize(
@@ -380,7 +380,7 @@ def test_lost_drives_and_proofs_are_doubts(monkeypatch: pytest.MonkeyPatch) -> N
     assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
     assert all("its process ended twice" in x.reason for x in found.examples)
     assert {x.verdict for x in found.decisions} == {Verdict.PROVED}
-    claims = study.doubt(Claimed(study.claims), "lost")
+    claims = study.doubt(ProofClaims(study.claims), "lost")
     assert {(x.verdict, x.reason) for x in claims.values()} == {(Verdict.UNKNOWN, "lost")}
     assert not any(map(study.is_sure, (*found.examples, *claims.values())))
 

@@ -12,7 +12,7 @@ from roadproof.analysis.coverage.answers import Answers
 from roadproof.analysis.coverage.claims import in_either_role, missed, sectors_of
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap, find_among_simple
-from roadproof.analysis.coverage.settling import Settling
+from roadproof.analysis.coverage.settling import ClassGroup
 from roadproof.analysis.coverage.trial import Trials
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.judged import judge_file
@@ -38,7 +38,7 @@ def known() -> list[FoundGap]:
 
 
 def settle(group: GapGroup, known: list[FoundGap] | None = None) -> Answers:
-    return Settling(SURVEY, group, known or [], CLASSES, TRIALS).run()
+    return ClassGroup(SURVEY, group, known or [], CLASSES, TRIALS).run()
 
 
 def group(name: str) -> GapGroup:
@@ -117,13 +117,13 @@ def test_where_no_search_is_possible_the_answer_says_so() -> None:
     classes = GapClasses(off_the_grid)
     survey = replace(SURVEY, basis=off_the_grid, wider=())
     part = next(x.component for x in classes.groups() if x.title == "behaviourPOV_8")
-    (answer,) = Settling(survey, GapGroup(part), [], classes, Trials(off_the_grid, ())).run()
+    (answer,) = ClassGroup(survey, GapGroup(part), [], classes, Trials(off_the_grid, ())).run()
     assert answer.verdict is Verdict.UNKNOWN
     assert "no search on main-2" in answer.reason
 
 
 def test_what_the_clock_cuts_off_is_in_doubt() -> None:
     late = replace(EXT, effort=Effort(0.1, timeout=0.0001))
-    every = Settling(replace(SURVEY, basis=late), group("behaviourSV_8"), [], CLASSES, TRIALS).run()
+    every = ClassGroup(replace(SURVEY, basis=late), group("behaviourSV_8"), [], CLASSES, TRIALS).run()
     assert {x.verdict for x in every} == {Verdict.UNKNOWN}
     assert all("cut off by the clock" in x.reason for x in every)

@@ -6,7 +6,7 @@ import pytest
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.coverage.claims import Covered, claims_of
+from roadproof.analysis.coverage.claims import CoverageResult, claims_of
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic, with_counts
 from roadproof.analysis.coverage.surveyed import verdict_on
@@ -36,7 +36,7 @@ def test_what_is_proved_not_to_be_and_occurs_is_our_fault() -> None:
     broken = with_counts(ClassAnswer(FIRST, Verdict.IMPOSSIBLE), TRAFFIC)
     assert broken.verdict is Verdict.CROSSCHECK_FAILED
     assert verdict_on([], [broken], TRAFFIC) is Verdict.CROSSCHECK_FAILED
-    proved = [Covered(claim, Verdict.PROVED, None, "") for claim in claims_of(BASIS.specification)]
+    proved = [CoverageResult(claim, Verdict.PROVED, None, "") for claim in claims_of(BASIS.specification)]
     assert verdict_on(proved, [], None) is Verdict.COVERED
     assert verdict_on(proved, [], TRAFFIC) is Verdict.CROSSCHECK_FAILED
 

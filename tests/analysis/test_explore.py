@@ -13,10 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadproof.analysis.explore import extreme, search, study, values
-from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, PointFinding
+from roadproof.analysis.explore.answer import Explorable, ExplorationResult, Extreme, PointFinding
 from roadproof.analysis.explore.bracket import Bracket
-from roadproof.analysis.explore.extreme import Sought, find_extreme, find_extremes
-from roadproof.analysis.explore.knobs import Knob, between
+from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme, find_extremes
+from roadproof.analysis.explore.knobs import Variable, between
 from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.analysis.explore.range import range_of, starting_ranges
 from roadproof.analysis.explore.search import (
@@ -38,11 +38,11 @@ from roadproof.engines.search.grid import common_step, durations
 from roadproof.engines.search.question import SearchOptions, Setting, pose
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.journal import seal_of
-from roadproof.evidence.judged import Judged, judge_file
+from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.specification import bundled_library
-from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()
@@ -57,7 +57,7 @@ def search_for(what: str, **values: F) -> Search:
     return Search(BASE, read_claim(BASE, what), Setting(values=values), search_options)
 
 
-def complaints(explored: Explored, name: str) -> list[str]:
+def complaints(explored: ExplorationResult, name: str) -> list[str]:
     """What is wrong with the evidence: each drive file must say its value and be judged to hold there."""
     wrong: list[str] = []
     ends = [x for boundary in explored.boundaries for x in (boundary.held, boundary.missed)]
@@ -77,7 +77,7 @@ def least_time(found: bool, finding: PointFinding) -> bool:
 
 
 def test_a_boundary_in_time_is_where_reasoning_puts_it() -> None:
-    explored = explore(Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 6))
+    explored = explore(Explorable(search_for(FASTER), (Variable("minSafe", "s", F(0), F(6)),), 6))
     assert [x.found for x in explored.findings] == [False, False, True, True, True, True]
     [boundary] = explored.boundaries
     assert 2 <= boundary.held.at[0] <= F(21, 10)
@@ -92,7 +92,7 @@ def test_a_boundary_in_time_is_where_reasoning_puts_it() -> None:
 
 def test_a_boundary_in_a_limit_is_where_reasoning_puts_it() -> None:
     what = "v_lon(SV) <= 20 m/s and F[0, 3 s] v_lon(SV) >= 26 m/s"
-    knob = Knob("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
+    knob = Variable("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
     explored = explore(Explorable(search_for(what), (knob,), 3))
     [boundary] = explored.boundaries
     assert 2 <= boundary.held.at[0] <= F(21, 10)
@@ -107,8 +107,8 @@ def test_a_boundary_in_a_limit_is_where_reasoning_puts_it() -> None:
 
 
 def test_a_map_is_what_reasoning_makes_it() -> None:
-    gain = Knob("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
-    explored = explore(Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)), gain), 3))
+    gain = Variable("SV.a_lon.max", "m/s^2", F(1), F(3), ("SV",), "a_lon.max")
+    explored = explore(Explorable(search_for(FASTER), (Variable("minSafe", "s", F(0), F(6)), gain), 3))
     for finding in explored.findings:
         time, limit = finding.at
         assert finding.verdict is (Verdict.WITNESSED if time * limit >= 6 else Verdict.NONE_WITHIN)
@@ -118,7 +118,7 @@ def test_a_map_is_what_reasoning_makes_it() -> None:
 
 def test_one_drive_serves_many_values() -> None:
     what = "scenario_4(SV,POV,L)"
-    explored = explore(Explorable(search_for(what), (Knob("minDanger", "s", F(0), F(3)),), 11))
+    explored = explore(Explorable(search_for(what), (Variable("minDanger", "s", F(0), F(3)),), 11))
     assert all(x.found for x in explored.findings)
     assert explored.searches <= 3
     assert complaints(explored, "minDanger") == []
@@ -126,19 +126,19 @@ def test_one_drive_serves_many_values() -> None:
 
 def test_values_off_every_grid_are_served_by_drives_of_coarser_ones() -> None:
     what = "v_lon(SV) <= 20 m/s and F[0, minSafe] v_lon(SV) >= 26 m/s and F[0, 2.4 s] v_lon(SV) >= 27 m/s"
-    knob = Knob("minSafe", "s", F("2.011"), F("2.413"))
+    knob = Variable("minSafe", "s", F("2.011"), F("2.413"))
     asked = Explorable(search_for(what), (knob,), 2)
     assert fit_grid(search_for(what, minSafe=F("2.413"))) is None
     explored = explore(asked)
     assert [x.verdict for x in explored.findings] == [Verdict.WITNESSED] * 2
     assert complaints(explored, "minSafe") == []
-    tight = replace(asked, knobs=(Knob("minSafe", "s", F("1.911"), F("1.913")),), precision=F(1))
+    tight = replace(asked, knobs=(Variable("minSafe", "s", F("1.911"), F("1.913")),), precision=F(1))
     assert {x.verdict for x in explore(tight).findings} == {Verdict.UNKNOWN}
 
 
 def test_what_is_proved_impossible_takes_no_search() -> None:
     what = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
-    explored = explore(Explorable(search_for(what), (Knob("minDanger", "s", F(0), F(3)),), 4))
+    explored = explore(Explorable(search_for(what), (Variable("minDanger", "s", F(0), F(3)),), 4))
     assert {x.verdict for x in explored.findings} == {Verdict.IMPOSSIBLE}
     assert all(x.certificate for x in explored.findings)
     assert explored.searches == 0
@@ -149,20 +149,20 @@ def test_a_drive_that_keeps_its_old_value_is_caught(monkeypatch: pytest.MonkeyPa
         return replace(file, formula=claim.query.text)
 
     monkeypatch.setattr(search, "made_for", forgetful)
-    asked = Explorable(search_for(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
+    asked = Explorable(search_for(FASTER), (Variable("minSafe", "s", F(3), F(6)),), 3)
     assert complaints(explore(asked), "minSafe")
 
 
 def test_a_drive_that_is_not_judged_again_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def believed(file: DriveFile, library: object) -> Judged:
+    def believed(file: DriveFile, library: object) -> JudgedDrive:
         """As if it had been judged."""
-        judged = object.__new__(Judged)
+        judged = object.__new__(JudgedDrive)
         for name, value in (("file", file), ("judgement", None), ("natural", None)):
             object.__setattr__(judged, name, value)
         return judged
 
-    monkeypatch.setattr(search, "Judged", believed)
-    asked = Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3)
+    monkeypatch.setattr(search, "JudgedDrive", believed)
+    asked = Explorable(search_for(FASTER), (Variable("minSafe", "s", F(0), F(6)),), 3)
     assert complaints(explore(asked), "minSafe")
 
 
@@ -170,14 +170,14 @@ def test_a_leap_that_takes_the_next_value_for_granted_is_caught(monkeypatch: pyt
     def hasty(self: object, held: PointFinding, missed: PointFinding, precision: F) -> PointFinding:
         return replace(held, at=(between(held.at[0], missed.at[0]),))
 
-    monkeypatch.setattr(values.Exploring, "leap", hasty)
-    explored = explore(Explorable(search_for(FASTER), (Knob("minSafe", "s", F(0), F(6)),), 3))
+    monkeypatch.setattr(values.ExplorationState, "leap", hasty)
+    explored = explore(Explorable(search_for(FASTER), (Variable("minSafe", "s", F(0), F(6)),), 3))
     assert complaints(explored, "minSafe")
 
 
 def extreme_of(what: str, sense: Sense, term: str, when: str = "") -> tuple[Extreme, PointFinding, DriveFile]:
     """The extreme, its best value, and the drive file that shows it."""
-    found = find_extreme(Sought(search_for(what), read_measure(BASE, sense, term, when), F(1, 10)))
+    found = find_extreme(ExtremeQuestion(search_for(what), read_measure(BASE, sense, term, when), F(1, 10)))
     assert found.best is not None
     assert found.best.drive is not None
     file = found.best.drive.file
@@ -217,13 +217,13 @@ def test_a_measure_without_end_is_said_to_have_none() -> None:
 
 
 def test_the_drive_of_one_value_is_tried_at_the_others() -> None:
-    knob = Knob("minSafe", "s", F(1), F(6))
+    knob = Variable("minSafe", "s", F(1), F(6))
     measure = read_measure(BASE, "least", "v_lon(SV)")
     asked = search_for("F[0, minSafe] v_lon(SV) >= 30 m/s")
-    soughts = [Sought(asked, measure, F(1), (knob,), (F(x),)) for x in (4, 3)]
+    soughts = [ExtremeQuestion(asked, measure, F(1), (knob,), (F(x),)) for x in (4, 3)]
     poor = find_extreme(replace(soughts[0], point=(F(1),)))
 
-    def find(some: Sequence[Sought]) -> list[Extreme]:
+    def find(some: Sequence[ExtremeQuestion]) -> list[Extreme]:
         return [poor if x.point == (4,) and not x.seeds else find_extreme(x) for x in some]
 
     one, other = find_extremes(soughts, find)
@@ -302,15 +302,15 @@ def test_a_drive_found_later_is_judged_where_none_was_found_before() -> None:
             return [Reply(Verdict.NONE_WITHIN, "not looked") for _ in tasks]
         return [look(task) for task in tasks]
 
-    asked = Explorable(search_for(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 3)
+    asked = Explorable(search_for(FASTER), (Variable("minSafe", "s", F(3), F(6)),), 3)
     explored = explore(asked, look_all)
     assert all(finding.found for finding in explored.findings)
     assert explored.boundaries == ()
 
 
 TWO = (
-    Explorable(search_for(FASTER), (Knob("minSafe", "s", F(3), F(6)),), 2),
-    Explorable(search_for("F[0, minSafe] v_lon(SV) >= 26 m/s"), (Knob("minSafe", "s", F(3), F(6)),), 2),
+    Explorable(search_for(FASTER), (Variable("minSafe", "s", F(3), F(6)),), 2),
+    Explorable(search_for("F[0, minSafe] v_lon(SV) >= 26 m/s"), (Variable("minSafe", "s", F(3), F(6)),), 2),
 )
 
 
@@ -321,7 +321,7 @@ def test_a_search_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatch)
         return look(task)
 
     monkeypatch.setattr(study, "look", deadly)
-    asked = replace(TWO[0], knobs=(Knob("minSafe", "s", F(1), F(6)),))
+    asked = replace(TWO[0], knobs=(Variable("minSafe", "s", F(1), F(6)),))
     (found,) = conduct(Exploration((asked,), 2), hands=2).answers.values()
     assert (found.findings[1].verdict, found.late) == (Verdict.UNKNOWN, True)
     assert "its process ended twice" in found.findings[1].reason
@@ -329,7 +329,7 @@ def test_a_search_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_an_extreme_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
-    def deadly(sought: Sought, **_: object) -> Extreme:
+    def deadly(sought: ExtremeQuestion, **_: object) -> Extreme:
         os.kill(os.getpid(), signal.SIGKILL)
         raise AssertionError
 
@@ -345,7 +345,7 @@ def test_an_extreme_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_formula_whose_process_dies_is_a_doubt_at_every_value(monkeypatch: pytest.MonkeyPatch) -> None:
-    def deadly(asked: Explorable, *rest: object) -> Explored:
+    def deadly(asked: Explorable, *rest: object) -> ExplorationResult:
         if asked == TWO[0]:
             os.kill(os.getpid(), signal.SIGKILL)
         return explore(asked)
@@ -361,7 +361,7 @@ def test_a_formula_whose_process_dies_is_a_doubt_at_every_value(monkeypatch: pyt
 
 def test_what_the_clock_cuts_off_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
-        raise Late(1.0)
+        raise BudgetExceeded(1.0)
 
     for module in (values, extreme):
         monkeypatch.setattr(module, "show_impossible", late)
@@ -379,7 +379,7 @@ def test_what_is_kept_is_not_explored_again(tmp_path: Path, monkeypatch: pytest.
     (tmp_path / f"answers/{names[1]}.json").unlink()
     again: list[str] = []
 
-    def counted(self: Exploration, piece: str) -> dict[str, Explored]:
+    def counted(self: Exploration, piece: str) -> dict[str, ExplorationResult]:
         again.append(piece)
         return settle(self, piece)
 

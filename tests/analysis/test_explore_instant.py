@@ -8,8 +8,8 @@ import pytest
 
 from roadproof.analysis.explore import never
 from roadproof.analysis.explore.answer import Explorable
-from roadproof.analysis.explore.extreme import Sought, find_extreme
-from roadproof.analysis.explore.knobs import Knob
+from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme
+from roadproof.analysis.explore.knobs import Variable
 from roadproof.analysis.explore.measure import read_measure
 from roadproof.analysis.explore.values import explore
 from roadproof.engines.search.ask import Search
@@ -23,7 +23,7 @@ from roadproof.verdict import Verdict
 BASE = bundled_library().select("base")
 # 30 m/s > 50 m/s^2 * rho, by cubes: wherever rho < 0.6 s.
 FAST = "v_lon(SV) = 30 m/s and v_lon(SV)^3 > rho*rho*rho*(50 m/s^2)*(50 m/s^2)*(50 m/s^2)"
-RHO = Knob("rho", "s", F(0), F("1.2"))
+RHO = Variable("rho", "s", F(0), F("1.2"))
 
 
 def search_for(what: str, **values: F) -> Search:
@@ -44,7 +44,7 @@ def test_every_value_has_a_drive_or_a_proof() -> None:
 def test_an_extreme_is_bracketed_by_proofs() -> None:
     search = search_for(f"{FAST.replace('= 30', '<= 30')} and v_lon(SV) >= 20 m/s", rho=F("0.5"))
     measure = read_measure(BASE, "least", "v_lon(SV)", "")
-    extreme = find_extreme(Sought(search, measure, F(1, 10)))
+    extreme = find_extreme(ExtremeQuestion(search, measure, F(1, 10)))
     assert extreme.best is not None
     assert extreme.missed is not None
     assert F(25) < extreme.best.at[0] <= extreme.missed.at[0] + F(1, 10)

@@ -11,10 +11,10 @@ from asking import prove, search_for
 from report.edges import cut_off
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.deciding import (
-    Decided,
+    Decisions,
     Edge,
     OrderDoubt,
-    _Deciding,
+    _DecisionJobs,
     decide_family,
     settle_doubts,
 )
@@ -141,7 +141,7 @@ def test_a_family_in_doubt_is_asked_again(
     out = tmp_path / "out"
     line = ["order", "--set", "base", "--among", "1,6", "--out", str(out), "--no-pictures", "--jobs", "1"]
     with monkeypatch.context() as without_drives:
-        without_drives.setattr(_Deciding, "_ask", lambda *_: ())
+        without_drives.setattr(_DecisionJobs, "_ask", lambda *_: ())
         assert main(line) == 20
     assert "in doubt: 1@base -> 6@base" in capsys.readouterr().out
     assert main(line) == 0
@@ -150,7 +150,7 @@ def test_a_family_in_doubt_is_asked_again(
 def test_a_drive_for_another_scenario_settles_a_doubt_with_its_vehicles_exchanged() -> None:
     basis = Basis(BASE)
     three, one, wide = (read_claim(BASE, f"scenario_{x}(SV, POV, L)") for x in ("3", "1", "3@ext"))
-    decided = Decided(doubts=(OrderDoubt(node(3), node(1), ((three, one),)),))
+    decided = Decisions(doubts=(OrderDoubt(node(3), node(1), ((three, one),)),))
     (drive,) = ask(search_for("4")).drives
     settled = settle_doubts(basis, decided, [drive])
     assert settled.doubts == ()
@@ -159,4 +159,4 @@ def test_a_drive_for_another_scenario_settles_a_doubt_with_its_vehicles_exchange
     assert file.drive.vehicles["SV"] == drive.file.drive.vehicles["POV"]
     assert file.formula == "scenario_3(SV, POV, L) and not scenario_1(SV, POV, L)"
     wrong = OrderDoubt(node(3), node(4), ((three, wide),))
-    assert settle_doubts(basis, Decided(doubts=(wrong,)), [drive]).doubts == (wrong,)
+    assert settle_doubts(basis, Decisions(doubts=(wrong,)), [drive]).doubts == (wrong,)

@@ -119,12 +119,14 @@ def test_one_reading_that_is_impossible_does_not_make_the_pair_so() -> None:
 @pytest.mark.parametrize("kept", ["queries[:1]", "queries[1:]"])
 def test_a_proof_of_one_reading_only_is_noticed(kept: str, monkeypatch: pytest.MonkeyPatch) -> None:
     right = "negation(x) for x in queries"
-    plant(monkeypatch, overlap._Deciding, "_impossible", right, right.replace("queries", kept))
+    plant(monkeypatch, overlap._DecisionJobs, "_impossible", right, right.replace("queries", kept))
     assert not is_proved_of_every_reading(decided(5, 6))
 
 
 def test_a_proof_of_one_reading_is_not_taken_for_that_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    plant(monkeypatch, overlap._Deciding, "decide", "proofs[0] if len(proofs) == 1 else None", "proofs[0]")
+    plant(
+        monkeypatch, overlap._DecisionJobs, "decide", "proofs[0] if len(proofs) == 1 else None", "proofs[0]"
+    )
     assert not is_proved_of_every_reading(decided(5, 6))
 
 
@@ -138,7 +140,7 @@ def test_a_proof_of_one_reading_is_not_taken_for_that_of_all(monkeypatch: pytest
 def test_a_reading_that_is_forgotten_is_noticed(
     right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    plant(monkeypatch, overlap._Deciding, "decide", right, wrong)
+    plant(monkeypatch, overlap._DecisionJobs, "decide", right, wrong)
     assert decided(3, 8).verdict is not Verdict.WITNESSED
 
 

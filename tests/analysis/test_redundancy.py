@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from judge.cases import drives
 from roadproof.analysis import redundancy
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.redundancy import Change, ChangeFinding, Learned, _Examining, changes_of
+from roadproof.analysis.redundancy import Change, ChangeFinding, SharedFindings, _ExaminationJobs, changes_of
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.ask import ask as ask_for_drive
 from roadproof.engines.solve.smt import ask
@@ -65,7 +65,7 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
 
 def decide(number: int, part: str, value: bool) -> ChangeFinding:
     """The finding on the first change of ``part`` in a scenario of base."""
-    examining = _Examining(BASIS, Scenario(number, "base"))
+    examining = _ExaminationJobs(BASIS, Scenario(number, "base"))
     found = changes_of(BASE, examining.query)
     change = next(x for x in found if x.part == part and x.value is value)
     return examining._decide(change)
@@ -82,7 +82,7 @@ def test_adjacent_lanes_are_redundant_in_scenario_3() -> None:
 
 def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
     found = [x for x in changes("scenario_8(SV,POV,L)") if x.part == "aheadOf(SV, POV)" and not x.value]
-    examining = _Examining(BASIS, Scenario(8, "base"))
+    examining = _ExaminationJobs(BASIS, Scenario(8, "base"))
     examining._collect()
     finding = examining._decide(found[0])
     assert finding.verdict is Verdict.REFUTED
@@ -132,10 +132,10 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
 
 def test_what_was_looked_for_in_vain_is_not_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
     (change,) = (x for x in changes("scenario_3(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
-    learned = Learned(vain=frozenset({without_sectors(change.changed.formula)}))
+    learned = SharedFindings(vain=frozenset({without_sectors(change.changed.formula)}))
     monkeypatch.setattr(redundancy, "ask", lambda request: pytest.fail("searched again"))
     (twin,) = (x for x in changes("scenario_11(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
-    finding = _Examining(BASIS, Scenario(11, "base"), learned)._decide(twin)
+    finding = _ExaminationJobs(BASIS, Scenario(11, "base"), learned)._decide(twin)
     assert finding.verdict is Verdict.REFUTED
     assert finding.trace is not None
     assert "another road" in finding.reason
@@ -145,14 +145,14 @@ def test_what_motion_makes_redundant_is_proved_for_motion() -> None:
     """SV need not be asked to keep its lane until it or POV1 has left it: one of them leaves first."""
     part = "laneKeep(SV, L) U not sameLane(SV, POV1, L)"
     (change,) = (x for x in changes("scenario_2(SV,POV1,POV2,L)") if x.part == part and x.value)
-    finding = _Examining(Basis(BASE, proof=10.0), Scenario(2, "base"))._redundant_in_motion(change)
+    finding = _ExaminationJobs(Basis(BASE, proof=10.0), Scenario(2, "base"))._redundant_in_motion(change)
     assert finding is not None
     assert finding.verdict is Verdict.PROVED
     assert finding.assuming is not None
     assert finding.assuming.text.count(" U not atLane(") == 3
     assert finding.claim.text.count(finding.assuming.text) == 2
     other = next(x for x in changes("scenario_8(SV,POV,L)") if x.part == "atLane(POV, L)" and not x.value)
-    assert _Examining(Basis(BASE), Scenario(8, "base"))._redundant_in_motion(other) is None
+    assert _ExaminationJobs(Basis(BASE), Scenario(8, "base"))._redundant_in_motion(other) is None
 
 
 @settings(deadline=None, derandomize=True)

@@ -12,7 +12,7 @@ import pytest
 import roadproof as rp
 from analysis.heard import Asked
 from evidence.folders import check
-from roadproof.analysis.witnesses import Witnessing
+from roadproof.analysis.witnesses import WitnessStudy
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
 from roadproof.frontends.cli.main import main
@@ -25,7 +25,7 @@ A3, A4 = "scenario-03-base", "scenario-04-base"
 
 @pytest.fixture
 def asked(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Asked:
-    return Asked(tmp_path_factory.mktemp("log") / "asked", monkeypatch, Witnessing)
+    return Asked(tmp_path_factory.mktemp("log") / "asked", monkeypatch, WitnessStudy)
 
 
 def witness(out: Path, *what: str) -> int:

@@ -14,27 +14,27 @@ import roadproof as rp
 from api.doors import ASKED, FALSE, MINE, SYMMETRIC, Asked, tell, without_clock, without_seconds
 from roadproof.analysis.claims import name_of
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel
 from roadproof.frontends.api.answer import Answer
 from roadproof.verdict import Verdict
 
 # What each answer says and shows, in order.
 SHOWS = {
-    "prove": ("PROVED REFUTED", (Certificate, Judged)),
+    "prove": ("PROVED REFUTED", (Certificate, JudgedDrive)),
     "prove-property": ("PROVED PROVED PROVED", (Certificate,) * 3),
     "prove-bounded": ("PROVED-BOUNDED", ()),
-    "witness": ("WITNESSED IMPOSSIBLE", (Judged, Certificate)),
+    "witness": ("WITNESSED IMPOSSIBLE", (JudgedDrive, Certificate)),
     "witness-none": ("NONE-WITHIN", ()),
     "compare": ("PROVED PROVED", (Certificate, Certificate)),
-    "compare-sets": ("PROVED REFUTED", (Certificate, Judged)),
+    "compare-sets": ("PROVED REFUTED", (Certificate, JudgedDrive)),
     "overlap": ("IMPOSSIBLE", (Certificate,)),
-    "order": ("REFUTED REFUTED", (Judged, Judged)),
-    "redundancy": (" ".join(["REFUTED"] * 6), (Judged,) * 6),
+    "order": ("REFUTED REFUTED", (JudgedDrive, JudgedDrive)),
+    "redundancy": (" ".join(["REFUTED"] * 6), (JudgedDrive,) * 6),
     "coverage": (" ".join(["PROVED"] * 4), (Certificate,) * 4),
-    "classify": ("WITNESSED WITNESSED PROVED PROVED PROVED", (Judged, Judged, *(Certificate,) * 3)),
-    "explore-values": ("WITNESSED WITNESSED", (Judged, Judged)),
-    "explore-measure": ("WITNESSED IMPOSSIBLE", (Judged, Certificate)),
+    "classify": ("WITNESSED WITNESSED PROVED PROVED PROVED", (JudgedDrive, JudgedDrive, *(Certificate,) * 3)),
+    "explore-values": ("WITNESSED WITNESSED", (JudgedDrive, JudgedDrive)),
+    "explore-measure": ("WITNESSED IMPOSSIBLE", (JudgedDrive, Certificate)),
 }
 
 
@@ -77,7 +77,7 @@ def test_its_data_are_the_json_of_the_command_line(both: Both) -> None:
 def test_verdicts_and_evidence(both: Both) -> None:
     answer = both.answer
     assert all(isinstance(x, Verdict) for x in answer.verdicts.values())
-    assert all(isinstance(x, Certificate | Judged | Countermodel) for x in answer.evidence)
+    assert all(isinstance(x, Certificate | JudgedDrive | Countermodel) for x in answer.evidence)
     if both.name in SHOWS:
         verdicts, kinds = SHOWS[both.name]
         assert " ".join(answer.verdicts.values()) == verdicts

@@ -5,7 +5,7 @@ import pytest
 import roadproof as rp
 from roadproof.errors import InputError, Position
 from roadproof.frontends.api.drafting import Draft, Mistake, mistakes, place_in, sources_of
-from roadproof.logic.formula import Named
+from roadproof.logic.formula import Application
 
 LOOSE = """\
 # what replaces, what is new, and what is no definition
@@ -18,7 +18,7 @@ def far(a, b: vehicle) := s(b) - s(a) <= far_away
 def test_a_draft_is_a_set_on_top_of_another_and_means_what_its_file_means() -> None:
     home = Draft("ext", LOOSE).definitions()
     assert home.specification.set_name == "edit"
-    assert isinstance(home.read("danger(SV,POV)").formula, Named)
+    assert isinstance(home.read("danger(SV,POV)").formula, Application)
     assert "far_away" in home.library.parameters
     file = Draft("ext", LOOSE).file()
     again = rp.load("edit", specs=[file])

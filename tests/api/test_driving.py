@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.driving import drive, motion
 from roadproof.world.drive import Motion
 
@@ -72,5 +72,5 @@ def test_mistakes_are_told(ask: object, message: str) -> None:
 
 def test_boxes_may_overlap_where_that_is_said() -> None:
     made = drive("true", pair() | {"POV": motion(4, 3, 30)}, collisions=True)
-    assert isinstance(made, Judged)
+    assert isinstance(made, JudgedDrive)
     assert made.file.overlaps_allowed

@@ -10,7 +10,7 @@ from roadproof.errors import MissingSolverError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.kernel import coq
 from roadproof.frontends.api.completing import _free
-from roadproof.frontends.api.kernel import Asked, write
+from roadproof.frontends.api.kernel import KernelQuestion, write
 from roadproof.frontends.api.restricting import drivers_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
@@ -57,7 +57,7 @@ def test_what_cannot_be_put_to_coq_has_a_reason_and_no_file(tmp_path: Path) -> N
     drive = EXAMPLE / "drives" / "braking.json"
     wrong = json.loads(drive.read_text("utf-8")) | {"formula": "nothing(SV)", "scenario": None}
     (tmp_path / "wrong.json").write_text(json.dumps(wrong), "utf-8")
-    asked = [Asked("wrong", tmp_path / "wrong.json", ()), Asked("fine", drive, ())]
+    asked = [KernelQuestion("wrong", tmp_path / "wrong.json", ()), KernelQuestion("fine", drive, ())]
     reasons = write(asked, tmp_path / "out", 1)
     assert [*reasons] == ["wrong"]
     assert "nothing" in reasons["wrong"]

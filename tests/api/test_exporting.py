@@ -9,7 +9,7 @@ import pytest
 import roadproof as rp
 from exporting.kept import kept, motion, subject
 from roadproof.evidence.drive_file import DriveFile, drive_data
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.specification import bundled_library
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.runtime.files import write_json
@@ -42,7 +42,7 @@ def test_a_folder_of_drives_in_every_format(drives: Path, tmp_path: Path) -> Non
 
 def test_values_paths_and_files_are_the_same(drives: Path, tmp_path: Path) -> None:
     file = kept()["scenario-04-base"]
-    given = (drives / "scenario-04-base.json", file, Judged(file, bundled_library()))
+    given = (drives / "scenario-04-base.json", file, JudgedDrive(file, bundled_library()))
     each = [rp.export(x, "openscenario", tmp_path / f"{k}") for k, x in enumerate(given)]
     found = [contents(x.folder) for x in each]
     assert [*found[0]] == ["scenario-04-base.xodr", "scenario-04-base.xosc"]

@@ -19,7 +19,7 @@ from roadproof.engines.prove.motion import prove_of_motions
 from roadproof.errors import InputError
 from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged, judge_file
+from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.evidence.kernel.accept import Word
 from roadproof.evidence.kernel.drive import drive_lines, shown
 from roadproof.frontends.api.driving import drive, motion
@@ -83,7 +83,7 @@ def test_samples_of_files_have_none_and_say_so(tmp_path: Path) -> None:
 def test_what_looks_for_drives_among_files_finds_it(tmp_path: Path) -> None:
     path = tmp_path / "drives" / "smooth.json"
     path.parent.mkdir()
-    path.write_text(json.dumps(Judged(FILE, LIBRARY).as_data()), "utf-8")
+    path.write_text(json.dumps(JudgedDrive(FILE, LIBRARY).as_data()), "utf-8")
     assert rp.check(path.parent).accepted
     assert [x.name for x in rp.export(path.parent, "csv", tmp_path / "csv").drives] == ["smooth"]
     assert is_test(path)

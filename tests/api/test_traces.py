@@ -12,20 +12,20 @@ import pytest
 import roadproof as rp
 from api.doors import tell
 from roadproof.evidence.answers.monitor import Override
-from roadproof.evidence.judged import Judged
-from roadproof.frontends.api.traces import Monitored
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.frontends.api.traces import MonitorAnswer
 
 MARGIN = "s(POV) - s(SV) > 10 m"
 
 
 @pytest.fixture(scope="module")
-def drive() -> Judged:
+def drive() -> JudgedDrive:
     [found] = rp.witness(4, jobs=1).drives
     return found
 
 
 @pytest.fixture(scope="module")
-def here(drive: Judged, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def here(drive: JudgedDrive, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("drives")
     rp.witness(4, jobs=1).save(folder, pictures=False)
     return folder
@@ -36,13 +36,13 @@ def frame(here: Path) -> polars.DataFrame:
     return polars.read_csv(here / "scenario-04-base.csv")
 
 
-def as_told(found: Monitored, source: str) -> dict[str, Any]:
+def as_told(found: MonitorAnswer, source: str) -> dict[str, Any]:
     """The data of an answer, as if the trace had come from ``source``."""
     return json.loads(json.dumps({**found.as_data(), "trace": source}))  # type: ignore[no-any-return]
 
 
 @pytest.mark.parametrize("what", ["4", "F danger(SV,POV)", MARGIN, "G aheadOf(SV,POV)"])
-def test_a_drive(what: str, drive: Judged, here: Path) -> None:
+def test_a_drive(what: str, drive: JudgedDrive, here: Path) -> None:
     path = str(here / "scenario-04-base.json")
     code, text, _ = tell(["monitor", what, path])
     data = json.loads(tell(["monitor", what, path, "--json", "-"])[1])
@@ -55,14 +55,14 @@ def test_a_drive(what: str, drive: Judged, here: Path) -> None:
         assert as_told(rp.monitor(what, on), path) == data
 
 
-def test_a_sampled_drive(drive: Judged, here: Path) -> None:
+def test_a_sampled_drive(drive: JudgedDrive, here: Path) -> None:
     path = str(here / "scenario-04-base.json")
     line = ["monitor", "4", path, "--view", "recorded", "--dt", "1/10", "--end", "clip", "--json", "-"]
     found = rp.monitor(4, drive, view="recorded", dt="1/10", end="clip")
     assert as_told(found, path) == json.loads(tell(line)[1])
 
 
-def test_what_is_overruled_is_told(drive: Judged, here: Path) -> None:
+def test_what_is_overruled_is_told(drive: JudgedDrive, here: Path) -> None:
     line = ["monitor", "4", str(here / "scenario-04-base.json"), "--set", "ext", "--param", "rho=1"]
     found = rp.monitor(4, drive, rp.load("ext", params={"rho": 1}))
     assert Override(what="parameter rho", asked="1", said="3/5") in found.place.overruled
@@ -114,7 +114,7 @@ def test_a_trace_of_ones_own() -> None:
     assert rp.monitor("F (v_lon(SV) < 1 m/s)", columns, end="clip").verdict == "false"
 
 
-def test_what_it_can_do(drive: Judged) -> None:
+def test_what_it_can_do(drive: JudgedDrive) -> None:
     found = rp.monitor(4, drive)
     assert repr(found) == "<Monitored: true>"
     assert found.plot().png.startswith(b"\x89PNG")

@@ -8,12 +8,12 @@ import pytest
 
 import roadproof as rp
 from api.doors import tell
-from roadproof.frontends.api.recordings import Evaluated
-from roadproof.frontends.api.simulating import Simulated
+from roadproof.frontends.api.recordings import Evaluation
+from roadproof.frontends.api.simulating import Simulation
 
 
 @pytest.fixture(scope="module")
-def simulated(tmp_path_factory: pytest.TempPathFactory) -> Simulated:
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> Simulation:
     drives = rp.witness(1, 4, jobs=1).drives
     told: list[str] = []
     folder = tmp_path_factory.mktemp("traffic")
@@ -23,11 +23,11 @@ def simulated(tmp_path_factory: pytest.TempPathFactory) -> Simulated:
 
 
 @pytest.fixture(scope="module")
-def evaluated(simulated: Simulated) -> Evaluated:
+def evaluated(simulated: Simulation) -> Evaluation:
     return rp.evaluate(simulated.folder, among="1-4", detectors=False, jobs=1)
 
 
-def test_simulated_traffic_is_that_of_the_command_line(simulated: Simulated, tmp_path: Path) -> None:
+def test_simulated_traffic_is_that_of_the_command_line(simulated: Simulation, tmp_path: Path) -> None:
     rp.witness(1, 4, jobs=1).save(tmp_path / "drives", pictures=False)
     line = ["simulate", "--out", str(tmp_path / "sim"), "--seconds", "40", "--seed", "7"]
     code, text, _ = tell([*line, "--plant", str(tmp_path / "drives")])
@@ -42,7 +42,7 @@ def test_simulated_traffic_is_that_of_the_command_line(simulated: Simulated, tmp
 
 
 def test_traffic_is_evaluated_as_by_the_command_line(
-    simulated: Simulated, evaluated: Evaluated, tmp_path: Path
+    simulated: Simulation, evaluated: Evaluation, tmp_path: Path
 ) -> None:
     line = ["evaluate", str(simulated.folder), "--out", str(tmp_path), "--among", "1-4", "--no-detectors"]
     code, text, _ = tell([*line, "--no-pictures"])
@@ -56,7 +56,7 @@ def test_traffic_is_evaluated_as_by_the_command_line(
         assert evaluated.matches().height == len([*csv.reader(matches)]) - 1
 
 
-def test_frames_of_traffic(simulated: Simulated, evaluated: Evaluated) -> None:
+def test_frames_of_traffic(simulated: Simulation, evaluated: Evaluation) -> None:
     results, matches, pairs = evaluated.to_frame(), evaluated.matches(), evaluated.pairs()
     counts = ["traces", "matching", "recall", "s1", "s2", "s3", "s4"]
     assert results.columns == ["sector", "minDanger", "set", *counts]
@@ -72,7 +72,7 @@ def test_frames_of_traffic(simulated: Simulated, evaluated: Evaluated) -> None:
     assert evaluated.plot().png.startswith(b"\x89PNG")
 
 
-def test_a_pair_of_a_recording(simulated: Simulated) -> None:
+def test_a_pair_of_a_recording(simulated: Simulation) -> None:
     row = simulated.to_frame().filter(scenario=4).row(0, named=True)
     on = f"{simulated.folder}/01_tracks.csv:{row['sv']},{row['pov']}"
     frames = (row["start_frame"], row["end_frame"])

@@ -14,7 +14,7 @@ from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.analysis.study.evidence_store import Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import UsageError
 from roadproof.frontends.api import covering
@@ -135,10 +135,10 @@ def asked(set_name: str, *wider: str, road: str = "main-2") -> Coverage:
 
 def test_answers_that_compare_with_other_sets_are_not_taken_over(tmp_path: Path) -> None:
     """Which set is the first to catch a drive is part of an answer, so it depends on the sets compared."""
-    list(Shelf(tmp_path, asked("base", "extA", "ext").question).answers())
-    list(Shelf(tmp_path, asked("base", "extA", "ext", road="main-3").question).answers())
+    list(EvidenceStore(tmp_path, asked("base", "extA", "ext").question).answers())
+    list(EvidenceStore(tmp_path, asked("base", "extA", "ext", road="main-3").question).answers())
     with pytest.raises(UsageError, match="another question"):
-        list(Shelf(tmp_path, asked("base", "extA", "ext", "complete").question).answers())
+        list(EvidenceStore(tmp_path, asked("base", "extA", "ext", "complete").question).answers())
 
 
 def test_what_is_kept_comes_back_as_it_was(few: list[str], tmp_path: Path) -> None:

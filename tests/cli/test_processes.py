@@ -14,13 +14,13 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.claims import Answered, Claims
+from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.analysis.study.pool import in_order, work
 from roadproof.engines.prove.properties import Task
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
 from roadproof.frontends.cli import supervising
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.process_pool import Lost, answers_of
+from roadproof.runtime.process_pool import LostJob, answers_of
 
 HANGS = 60.0
 
@@ -150,7 +150,7 @@ def test_a_job_whose_worker_dies_is_tried_again(processes: int, tmp_path: Path) 
 def test_a_job_that_kills_twice_is_left_out_alone(processes: int, tmp_path: Path) -> None:
     found = dict(answers_of(Dying(tmp_path, {1: 9, 3: 1}), range(6), processes))
     lost = found.pop(1)
-    assert isinstance(lost, Lost)
+    assert isinstance(lost, LostJob)
     assert "SIGKILL" in lost.reason
     assert "ended twice" in lost.reason
     assert found == {k: k * k for k in range(6) if k != 1}
@@ -159,10 +159,10 @@ def test_a_job_that_kills_twice_is_left_out_alone(processes: int, tmp_path: Path
 
 def test_other_deaths_are_named(tmp_path: Path) -> None:
     [(_, lost)] = answers_of(Dying(tmp_path, {0: 9}, signal.SIGUSR1), [0], 1)
-    assert isinstance(lost, Lost)
+    assert isinstance(lost, LostJob)
     assert "SIGUSR1" in lost.reason
     [(_, lost)] = answers_of(os._exit, [3], 1)  # type: ignore[type-var]
-    assert isinstance(lost, Lost)
+    assert isinstance(lost, LostJob)
     assert "exited with 3" in lost.reason
 
 
@@ -212,7 +212,7 @@ def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(
 ) -> None:
     settle = Claims.settle
 
-    def settle_or_die(claims: Claims, task: Task) -> dict[str, Answered]:
+    def settle_or_die(claims: Claims, task: Task) -> dict[str, ClaimResult]:
         if task.claim == "false":
             os.kill(os.getpid(), signal.SIGKILL)
         return settle(claims, task)

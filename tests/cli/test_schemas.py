@@ -18,7 +18,7 @@ from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.schemas import as_text, schemas
 from roadproof.frontends.cli.main import COMMANDS, main
 from roadproof.library.elaborate import read_claim
@@ -291,7 +291,7 @@ def of_coverage(run: Run, out: Path, traffic: Path) -> None:
         examine(told, folder=out / "gaps")
         patch.setattr(study, "claims_of", claims("danger(SV,POV) -> danger(SV,POV)"))
         patch.setattr(study, "replaced_by", lambda _: ("cutIn",))
-        drive = Judged(load_drive(DRIVE), bundled_library())
+        drive = JudgedDrive(load_drive(DRIVE), bundled_library())
         patch.setattr(study, "find_need", lambda _, name: Need(name, "ext", Verdict.WITNESSED, drive))
         told = run("coverage", "--set", "complete", "--needed", *asked, "--out", out / "needs")
         assert told["needs"]
@@ -385,7 +385,7 @@ def with_jerk() -> dict[str, Any]:
         for piece in motion["pieces"]:
             piece["j_lon"] = "0"
         motion["pieces"][0]["j_lon"] = "1/1000"
-    return Judged(read_drive(data, "test"), bundled_library()).as_data()
+    return JudgedDrive(read_drive(data, "test"), bundled_library()).as_data()
 
 
 def test_spoiled_evidence_is_refused() -> None:

@@ -46,7 +46,7 @@ def formulas(windows=intervals, leaves=8):
             st.builds(f.Eventually, windows, inner),
             st.builds(f.Always, windows, inner),
             st.builds(f.Until, inner, windows, inner),
-            st.builds(lambda a: f.Named("part", (), a), inner),
+            st.builds(lambda a: f.Application("part", (), a), inner),
         ),
         max_leaves=leaves,
     )
@@ -89,7 +89,7 @@ def holds(formula, trace, k=0):
             return all(holds(p, trace, k) for p in parts)
         case f.Or(parts):
             return any(holds(p, trace, k) for p in parts)
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             return holds(body, trace, k)
         case f.Eventually(window, body):
             return any(holds(body, trace, j) for j in samples(window))

@@ -80,7 +80,7 @@ UNROLLING = {
 @pytest.mark.parametrize("fault", UNROLLING)
 def test_faults_in_unrolling_are_caught(fault, monkeypatch):
     name, wrong = UNROLLING[fault]
-    monkeypatch.setattr(unroll._Unrolling, name, wrong)
+    monkeypatch.setattr(unroll._Unroller, name, wrong)
     assert unrolling_is_wrong()
 
 

@@ -184,8 +184,8 @@ def capturing_rename(monkeypatch):
                     return f.Occupies(vehicle, new)
                 case f.Some(variable, domain, body) | f.Every(variable, domain, body) if domain.of == old:
                     return type(current)(variable, f.Domain(domain.kind, new), body)
-                case f.Named(name, arguments, body):
-                    return f.Named(name, tuple(new if a == old else a for a in arguments), body)
+                case f.Application(name, arguments, body):
+                    return f.Application(name, tuple(new if a == old else a for a in arguments), body)
             return current
 
         return f.transform(formula, visit)

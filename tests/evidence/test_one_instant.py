@@ -208,7 +208,7 @@ def test_a_fault_in_the_text_is_caught(fault, monkeypatch):
 def lemma_answers(claim: str) -> set[str]:
     known = Atoms()
     named = known.abstract(read_claim(specification(), claim).formula)
-    literals = [(part.name, True) for part in f.subformulas(named) if isinstance(part, f.Named)]
+    literals = [(part.name, True) for part in f.subformulas(named) if isinstance(part, f.Application)]
     bounds = {name: p.bound for name, p in specification().library.parameters.items()}
     return {ask(query, meter=Effort(5).meter()) for query in derive_lemma_queries(known, literals, bounds)}
 
@@ -243,7 +243,9 @@ def positive(name, op=">"):
     return f.Compare(t.Signal(name, "SV"), op, t.number(0))
 
 
-NAMESAKES = f.Or((f.Named("near", ("SV",), positive("s")), f.Named("near", ("SV",), positive("d"))))
+NAMESAKES = f.Or(
+    (f.Application("near", ("SV",), positive("s")), f.Application("near", ("SV",), positive("d")))
+)
 
 
 def names_tell_apart(formula) -> bool:
@@ -267,7 +269,7 @@ def test_a_name_for_two_meanings_is_caught(monkeypatch):
     def by_text(self, formula):
         made = true_atom(self, formula)
         name = made.name.partition(" #")[0]
-        return f.Named(name, (), self.named[name])
+        return f.Application(name, (), self.named[name])
 
     monkeypatch.setattr(atoms_module.Atoms, "_atom", by_text)
     assert not names_tell_apart(NAMESAKES)
@@ -275,7 +277,9 @@ def test_a_name_for_two_meanings_is_caught(monkeypatch):
 
 def test_one_meaning_has_one_name():
     known = Atoms()
-    once = f.And((f.Named("near", ("SV",), positive("s")), f.Named("close", ("SV",), positive("s"))))
+    once = f.And(
+        (f.Application("near", ("SV",), positive("s")), f.Application("close", ("SV",), positive("s")))
+    )
     first, second = known.abstract(once).parts
     assert first == second
 

@@ -19,7 +19,7 @@ from fuzz.held import CALLS
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.driving import drive
 from roadproof.frontends.api.driving import motion as given
-from roadproof.frontends.api.traces import Monitored, monitor, of_file
+from roadproof.frontends.api.traces import MonitorAnswer, monitor, of_file
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
@@ -87,13 +87,13 @@ READERS: Mapping[str, Callable[[Subject, Path], Read]] = {
 }
 
 
-def spans(found: Monitored) -> list[list[tuple[float, float]]]:
+def spans(found: MonitorAnswer) -> list[list[tuple[float, float]]]:
     """When each named part is true, in the order in which they are found; lanes may be called otherwise."""
     return [[*x.true] for x in found.observed.strips]
 
 
 @cache
-def original(name: str) -> Monitored:
+def original(name: str) -> MonitorAnswer:
     """The drive's own samples."""
     file = kept()[name]
     return monitor(file.scenario or file.formula, file, view="recorded")

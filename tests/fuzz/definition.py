@@ -59,7 +59,7 @@ class Definition:
                 return all(self.holds(part, k) for part in parts)
             case f.Or(parts):
                 return any(self.holds(part, k) for part in parts)
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.holds(body, k)
             case f.Eventually(interval, body):
                 return any(self.holds(body, j) for j in self.window(interval, k))

@@ -27,7 +27,7 @@ from roadproof.logic.show import text
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.sampled import Batch, compile
-from roadproof.semantics.sampled.recursive import Reading, Trace
+from roadproof.semantics.sampled.recursive import Trace, TraceReader
 from roadproof.world.models import load_road
 
 METRES, SPEED, ACCELERATION, SECONDS, PLAIN = (1, 0), (1, -1), (1, -2), (0, 1), (0, 0)
@@ -220,7 +220,7 @@ def monitored(formula: Formula, traces: list[Held], answers: list[bool]):
     clipped = monitor.evaluate(batch, "clip").answers["it"]
     margin = monitor.measure(batch).margins["it"]
     for i, trace in enumerate(traces):
-        reading = Reading(_recorded(trace))
+        reading = TraceReader(_recorded(trace))
         if truth.true[i] and not answers[i]:
             yield i, "the monitor says true for every continuation"
         if truth.false[i] and answers[i]:

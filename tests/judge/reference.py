@@ -73,7 +73,7 @@ class Reference:
                     if self.holds(right, r) and all(self.holds(left, x) for x in before):
                         return True
                 return False
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.holds(body, region)
             case _:
                 return self.atom(formula, self.sample(region))

@@ -52,7 +52,7 @@ def possible(judgement: Judgement, known: Blame, formula: Formula) -> tuple[Trut
         case f.Not(body):
             least, most = possible(judgement, known, body)
             return complement(most), complement(least)
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             return possible(judgement, known, body)
         case f.And(parts) | f.Or(parts):
             join = intersection if isinstance(formula, f.And) else union

@@ -235,7 +235,7 @@ def test_three_vehicles_are_judged_with_little_work():
 
 
 def test_given_truth_sets_come_first_at_any_depth():
-    atom = f.Named("danger", ("SV", "POV"), f.TRUE)
+    atom = f.Application("danger", ("SV", "POV"), f.TRUE)
     formula = f.Eventually(f.FOREVER, f.And((atom, f.TRUE)))
     assert judge(formula, None, {atom: NEVER}).truth(formula) == NEVER
     assert judge(formula, None, {atom: span(3, 4)}).truth(formula) == span(0, 4)

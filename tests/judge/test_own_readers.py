@@ -23,7 +23,7 @@ from roadproof.recordings.evaluate.recheck import trace_of
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import compile
-from roadproof.semantics.sampled.recursive import Reading
+from roadproof.semantics.sampled.recursive import TraceReader
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_vehicle
 from roadproof.world.signals import KINDS, STARTING
@@ -143,7 +143,7 @@ def test_all_readers_agree(seed: int) -> None:
     monitor = compile({"asked": formula})
     answer = monitor.evaluate(batch).answers["asked"]
     assert (bool(answer.true[0]), bool(answer.false[0])) == (exact, not exact)
-    assert Reading(trace_of(batch)).holds(formula, 0, "strong") == exact
+    assert TraceReader(trace_of(batch)).holds(formula, 0, "strong") == exact
     margin = monitor.measure(batch).margins["asked"]
     assert (margin.low[0] >= 0) if exact else (margin.high[0] <= 0)
     assert encoded(formula, drive) == exact

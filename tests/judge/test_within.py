@@ -75,7 +75,7 @@ def test_along_lines_of_driver_models_it_is_what_the_judge_says(options, speed):
     ],
 )
 def test_planted_faults_are_noticed(monkeypatch, name, right, wrong):
-    owner = within._Ending if name == "signal" else within._Within
+    owner = within._EndedSignals if name == "signal" else within._RestrictedTruth
     found = []
 
     @settings(max_examples=400, deadline=None, derandomize=True, database=None)

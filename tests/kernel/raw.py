@@ -120,7 +120,7 @@ def formula(x, bound=None):
             return f"(Eventually {interval(within)} {formula(body, bound)})"
         case f.Always(within, body):
             return f"(Always {interval(within)} {formula(body, bound)})"
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             return formula(body, bound)
     raise AssertionError(x)
 
@@ -203,7 +203,9 @@ def random_formula(seed):
                 return (f.Some if word == "some" else f.Every)(name, a_domain(roads), inside)
             case "named":
                 arguments = tuple(r.choice(NAMES) for _ in range(r.randint(0, 3)))
-                return f.Named(r.choice([*NAMES, "scenario_4@ext"]), arguments, a_formula(deep - 1, roads))
+                return f.Application(
+                    r.choice([*NAMES, "scenario_4@ext"]), arguments, a_formula(deep - 1, roads)
+                )
         match r.randint(0, 3):
             case 0:
                 return f.Truth(r.random() < 0.5)

@@ -11,7 +11,7 @@ import pytest
 
 from roadproof.evidence.kernel.accept import (
     AXIOMS,
-    Prepared,
+    CoqModule,
     Ruling,
     Word,
     axioms_of,
@@ -19,17 +19,17 @@ from roadproof.evidence.kernel.accept import (
     file,
     judge,
 )
-from roadproof.evidence.kernel.coq import Ran
+from roadproof.evidence.kernel.coq import CoqRun
 from roadproof.evidence.kernel.source import Module
 
 KNOWN = "ClassicalDedekindReals.sig_forall_dec"
 OTHER = "Coq.Logic.any"
 
 
-def certificate(name: str, what: str) -> Prepared:
+def certificate(name: str, what: str) -> CoqModule:
     """A module of six lines, whose theorem is on the fifth; ``what`` Coq finds in it."""
     text = f"Module {name}.\n(* {what} *)\nlemma\nlemma\nTheorem proved.\nEnd {name}.\n"
-    return Prepared(Module(name, text, theorem=5, lemmas=(3, 4)))
+    return CoqModule(Module(name, text, theorem=5, lemmas=(3, 4)))
 
 
 @dataclass
@@ -42,7 +42,7 @@ class Player:
 
     files: list[list[str]] = field(default_factory=list)
 
-    def run(self, text: str) -> Ran:
+    def run(self, text: str) -> CoqRun:
         names = re.findall(r"^Module (\w+)\.\n\(\* (\w+) \*\)", text, re.MULTILINE)
         self.files.append([name for name, _ in names])
         said = [what for _, what in names]
@@ -61,8 +61,8 @@ class Player:
         return ran(0, "Axioms:\n" + "".join(f"{x} : forall x\n  , x\n" for x in axioms), "")
 
 
-def ran(code: int, said: str, complained: str) -> Ran:
-    return Ran(code=code, said=said, complained=complained, seconds=1.0, megabytes=2.0)
+def ran(code: int, said: str, complained: str) -> CoqRun:
+    return CoqRun(code=code, said=said, complained=complained, seconds=1.0, megabytes=2.0)
 
 
 def rulings(*kinds: str) -> dict[str, Ruling]:
@@ -111,7 +111,7 @@ def test_one_other_axiom_among_known_ones_refuses_all_of_the_file(
     said = listed if axioms else "Closed under the global context\n"
 
     class Says:
-        def run(self, text: str) -> Ran:
+        def run(self, text: str) -> CoqRun:
             return ran(0, said, "")
 
     made = {name: certificate(name, "good") for name in ("a", "b")}
@@ -150,7 +150,7 @@ def test_batches_have_each_certificate_once(count: int) -> None:
 
 def test_what_was_not_prepared_keeps_its_refusal() -> None:
     refusal = Ruling(Word.REFUSED, "it cannot be put to Coq")
-    made = {"a": Prepared(None, 0, refusal), "b": certificate("b", "good"), "c": certificate("c", "bad")}
+    made = {"a": CoqModule(None, 0, refusal), "b": certificate("b", "good"), "c": certificate("c", "bad")}
     player = Player()
     found = judge(player, made).rulings  # type: ignore[arg-type]
     assert [found[x].word for x in "abc"] == [Word.REFUSED, Word.ACCEPTED, Word.REFUSED]

@@ -9,7 +9,7 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.derivations import prepare as module
 from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.derivations.prepare import prepare
-from roadproof.evidence.kernel.accept import NO_PREMISES, Prepared, Ruling, Word
+from roadproof.evidence.kernel.accept import NO_PREMISES, CoqModule, Ruling, Word
 from roadproof.library.specification import bundled_library
 
 FILE = kept()["scenario-04-base"]
@@ -43,4 +43,4 @@ def test_a_drive_without_a_derivation_is_unknown(
         raise error
 
     monkeypatch.setattr(module, "derive", fail)
-    assert prepare("one", FILE, bundled_library()) == Prepared(None, refusal=Ruling(Word.UNKNOWN, reason))
+    assert prepare("one", FILE, bundled_library()) == CoqModule(None, refusal=Ruling(Word.UNKNOWN, reason))

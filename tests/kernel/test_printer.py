@@ -99,7 +99,7 @@ def test_a_definition_is_printed_as_a_function_once():
 def test_a_definition_called_like_a_word_of_the_file_is_called_otherwise(name):
     assert name in WORDS
     printer = Printer()
-    shown = printer.formula(f.Named(name, ("a",), f.Compare(t.Signal("s", "a"), "<", t.number(0))))
+    shown = printer.formula(f.Application(name, ("a",), f.Compare(t.Signal("s", "a"), "<", t.number(0))))
     assert shown.split(CLOSE)[0] == f"{name}_2"
 
 
@@ -107,7 +107,9 @@ def test_an_argument_is_no_word_that_the_body_says():
     """def s(danger: vehicle) would be read as another thing."""
     body = f.Compare(t.Signal("s", "rho"), "<", t.Parameter("rho"))
     printer = Printer({"near": (("rho", "vehicle"),)})
-    printer.formula(f.And((f.Compare(t.Parameter("rho"), ">", t.number(0)), f.Named("near", ("rho",), body))))
+    printer.formula(
+        f.And((f.Compare(t.Parameter("rho"), ">", t.number(0)), f.Application("near", ("rho",), body)))
+    )
     assert printer.definitions[0].replace(CLOSE, " ").startswith("Definition near (rho_2 : vehicle)")
 
 

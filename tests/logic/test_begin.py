@@ -38,7 +38,7 @@ def test_no_more_than_the_first_instant_is_read():
     assert demands(f.Not(f.Eventually(NOW, Q))) == no_q
     assert demands(f.Until(P, NOW, Q)) == f.Or((P, Q))
     assert demands(f.Not(f.Until(P, NOW, Q))) == no_q
-    assert demands(f.And((f.Named("x", (), P), f.Eventually(NOW, Q)))) == P
+    assert demands(f.And((f.Application("x", (), P), f.Eventually(NOW, Q)))) == P
 
 
 @settings(max_examples=100, deadline=None)

@@ -8,7 +8,7 @@ from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.initial_conditions import compared, narrowed
 
 A, B, C = (Compare(t.Signal("s", x), ">", t.number(0, (1, 0))) for x in ("A", "B", "C"))
-LATER = f.Named("later", (), f.Not(f.And((A, f.Or((B, f.Not(C)))))))
+LATER = f.Application("later", (), f.Not(f.And((A, f.Or((B, f.Not(C)))))))
 FORMULAS: tuple[Formula, ...] = (
     A,
     f.Not(A),
@@ -25,7 +25,7 @@ def holds(formula: Formula, true: dict[Formula, bool]) -> bool:
             return all(holds(x, true) for x in parts)
         case f.Or(parts):
             return any(holds(x, true) for x in parts)
-        case f.Not(body) | f.Named(_, _, body):
+        case f.Not(body) | f.Application(_, _, body):
             return holds(body, true) != isinstance(formula, f.Not)
         case f.Truth(value):
             return value

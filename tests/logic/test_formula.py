@@ -56,7 +56,7 @@ EVERY_NODE: list[Formula] = [
     f.Until(SLOW, f.FOREVER, NEAR),
     f.Eventually(f.FOREVER, SLOW),
     f.Always(f.FOREVER, SLOW),
-    f.Named("near", ("SV",), NEAR),
+    f.Application("near", ("SV",), NEAR),
 ]
 
 
@@ -72,7 +72,7 @@ def test_identity_is_structure() -> None:
     again = f.And((f.Compare(t.Signal("v_lon", "SV"), "<", t.Parameter("limit", (1, -1))), NEAR))
     assert again == f.And((SLOW, NEAR))
     assert hash(again) == hash(f.And((SLOW, NEAR)))
-    assert f.Named("a", ("SV",), SLOW) != f.Named("b", ("SV",), SLOW)
+    assert f.Application("a", ("SV",), SLOW) != f.Application("b", ("SV",), SLOW)
     assert f.Compare(NEAR.left, "<", NEAR.right) != NEAR
 
 
@@ -109,7 +109,7 @@ def test_values_replace_parameters_everywhere() -> None:
 
 
 def test_names_go_without_changing_the_rest() -> None:
-    formula = f.Not(f.Named("outer", (), f.And((f.Named("near", ("SV",), NEAR), SLOW))))
+    formula = f.Not(f.Application("outer", (), f.And((f.Application("near", ("SV",), NEAR), SLOW))))
     assert without_names(formula) == f.Not(f.And((NEAR, SLOW)))
 
 

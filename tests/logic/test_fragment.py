@@ -81,7 +81,7 @@ def test_affine(text: str, affine: bool) -> None:
 
 def test_sizes_count_distinct_parts_without_names() -> None:
     atom = f.Compare(SPEED, ">", t.number(0, (1, -1)))
-    twice = f.Named("both", (), f.And((f.Always(f.FOREVER, atom), f.Not(f.Named("p", (), atom)))))
+    twice = f.Application("both", (), f.And((f.Always(f.FOREVER, atom), f.Not(f.Application("p", (), atom)))))
     assert sizes(twice) == Sizes(subformulas=4, atoms=1, temporal=1, depth=3)
     whole = sizes(apply_definition(BASE, "scenario_4").formula)
     assert whole.temporal == 4  # initSafe, danger, and two untils

@@ -36,7 +36,7 @@ def test_text_of_a_formula_elaborates_to_the_formula(formula: Formula) -> None:
     assert canonical(collapsed, keep_names=True) == canonical(formula, keep_names=True)
     expanded = read_claim(specification, text(as_syntax(formula, expand=True), 80)).formula
     assert canonical(expanded) == canonical(formula)
-    assert not any(isinstance(part, f.Named) for part in f.subformulas(expanded))
+    assert not any(isinstance(part, f.Application) for part in f.subformulas(expanded))
 
 
 @pytest.mark.parametrize("set_name", ["base", "extA", "ext"])
@@ -45,7 +45,7 @@ def test_scenarios_read_back(set_name: str) -> None:
     for number in range(1, 25):
         formula = apply_definition(specification, f"scenario_{number}").formula
         assert read_claim(specification, text(as_syntax(formula))).formula == formula
-        assert isinstance(formula, f.Named)
+        assert isinstance(formula, f.Application)
         assert read_claim(specification, text(as_syntax(formula.body))).formula == formula.body
         expanded = read_claim(specification, text(as_syntax(formula, expand=True), 100)).formula
         assert canonical(expanded) == canonical(formula)
@@ -129,9 +129,9 @@ def test_numbers_keep_their_units() -> None:
 
 def test_arguments_without_names_are_written_out() -> None:
     body = f.Compare(t.Signal("v_lon", "SV"), ">", t.number(0))
-    assert text(as_syntax(f.Named("fast", ("SV",), body))) == "fast(SV)"
-    assert text(as_syntax(f.Named("faster", ("SV", "…"), body))) == "v_lon(SV) > 0"
-    assert text(as_syntax(f.Named("atLane", ("SV", "main-1"), body))) == "v_lon(SV) > 0"
+    assert text(as_syntax(f.Application("fast", ("SV",), body))) == "fast(SV)"
+    assert text(as_syntax(f.Application("faster", ("SV", "…"), body))) == "v_lon(SV) > 0"
+    assert text(as_syntax(f.Application("atLane", ("SV", "main-1"), body))) == "v_lon(SV) > 0"
 
 
 # --- equality up to what printing may change ------------------------------------------------------
@@ -181,9 +181,11 @@ def canonical(formula: Formula, keep_names: bool = False) -> Formula:
 
 def _renamed(formula: Formula, scope: Mapping[str, str], keep_names: bool) -> Formula:
     match formula:
-        case f.Named(name, arguments, body):
+        case f.Application(name, arguments, body):
             inner = _renamed(body, scope, keep_names)
-            return f.Named(name, tuple(scope.get(a, a) for a in arguments), inner) if keep_names else inner
+            return (
+                f.Application(name, tuple(scope.get(a, a) for a in arguments), inner) if keep_names else inner
+            )
         case f.Occupies(vehicle, lanelet):
             return f.Occupies(vehicle, scope.get(lanelet, lanelet))
         case f.Some(variable, domain, body) | f.Every(variable, domain, body):

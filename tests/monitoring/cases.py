@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.formula import Formula, Named, subformulas
+from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.semantics.sampled import Batch, Monitor, compile
 from roadproof.semantics.sampled.answers import Convention
-from roadproof.semantics.sampled.recursive import Reading, Trace
+from roadproof.semantics.sampled.recursive import Trace, TraceReader
 
 DT = Fraction(1, 25)
 IN_LANE = f.Some("l", f.Domain("lanelets", "L"), f.Occupies("SV", "l"))
@@ -69,7 +69,7 @@ def _larger_formulas(inner: st.SearchStrategy[Formula]) -> st.SearchStrategy[For
         st.builds(f.Eventually, intervals, inner),
         st.builds(f.Always, intervals, inner),
         st.builds(f.Until, inner, intervals, inner),
-        st.builds(f.Named, st.sampled_from("pq"), st.just(("SV", "L")), inner),
+        st.builds(f.Application, st.sampled_from("pq"), st.just(("SV", "L")), inner),
     )
 
 
@@ -89,7 +89,8 @@ def random_batch(seed: int, traces: int, longest: int, ties: bool = True) -> Bat
         signals[key] = values
     sizes: dict[tuple[t.SizeName, str], np.ndarray] = {("length", "SV"): rng.integers(1, 4, traces) / 2}
     given: dict[Formula, np.ndarray] = {
-        x: rng.random((longest, traces)) < 0.5 for x in (IN_LANE, f.Named("onMainRoad", ("POV",), ON_MAIN))
+        x: rng.random((longest, traces)) < 0.5
+        for x in (IN_LANE, f.Application("onMainRoad", ("POV",), ON_MAIN))
     }
     return Batch(DT, lengths, signals, sizes, given)
 
@@ -112,7 +113,7 @@ def boolean_differences(formula: Formula, batch: Batch, convention: Convention) 
     found = monitor.evaluate(batch, convention, at="all").answers["it"]
     at_start = monitor.evaluate(batch, convention).answers["it"]
     for i in range(batch.traces):
-        reading = Reading(trace_of(batch, i))
+        reading = TraceReader(trace_of(batch, i))
         for k in range(int(batch.lengths[i])):
             true = reading.holds(formula, k, "clip" if convention == "clip" else "strong")
             false = not reading.holds(formula, k, "clip" if convention == "clip" else "weak")
@@ -128,7 +129,7 @@ def margin_differences(formula: Formula, batch: Batch, convention: Convention) -
     found = monitor.measure(batch, convention, at="all", samples_in_block=50).margins["it"]
     at_start = monitor.measure(batch, convention).margins["it"]
     for i in range(batch.traces):
-        reading = Reading(trace_of(batch, i))
+        reading = TraceReader(trace_of(batch, i))
         for k in range(int(batch.lengths[i])):
             low = reading.margin(formula, k, "clip" if convention == "clip" else "strong")
             high = reading.margin(formula, k, "clip" if convention == "clip" else "weak")
@@ -155,7 +156,7 @@ def random_traffic(
     sizes = {(name, x): rng.uniform(2, 5, traces) for name in ("length", "width") for x in ("SV", "POV")}
     given = {}
     for node in dict.fromkeys(x for root in roots for x in subformulas(root)):  # the same in every run
-        if isinstance(node, Named) and node.name in ("atLane", "onMainRoad"):
+        if isinstance(node, Application) and node.name in ("atLane", "onMainRoad"):
             given[node] = rng.random((longest, traces)) < 0.95
         elif isinstance(node, f.Some) and node.domain.kind == "adjacent":
             given[node] = rng.random((longest, traces)) < 0.5

@@ -198,9 +198,9 @@ def test_single_precision_signals_are_widened_before_arithmetic() -> None:
 
 
 def test_given_truth_is_found_whatever_its_definitions_are_called() -> None:
-    named = f.Named("atLane", ("SV", "L"), IN_LANE)
+    named = f.Application("atLane", ("SV", "L"), IN_LANE)
     truth = np.array([[True, False]])
-    for asked, known in ((named, IN_LANE), (IN_LANE, named), (f.Named("x", (), named), named)):
+    for asked, known in ((named, IN_LANE), (IN_LANE, named), (f.Application("x", (), named), named)):
         batch = Batch(DT, np.array([1, 1]), given={known: truth})
         assert compile({"it": asked}).evaluate(batch).answers["it"].true.tolist() == [True, False]
         assert compile({"it": asked}).measure(batch).margins["it"].low.tolist() == [np.inf, -np.inf]

@@ -19,7 +19,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import bounds_of
 from roadproof.semantics.sampled import Batch, compile
-from roadproof.semantics.sampled.recursive import Reading, Trace
+from roadproof.semantics.sampled.recursive import Trace, TraceReader
 from roadproof.world.drive import Drive, Motion, Piece
 
 
@@ -39,7 +39,7 @@ class Endless:
                 return all(self.holds(p, k) for p in parts)
             case f.Or(parts):
                 return any(self.holds(p, k) for p in parts)
-            case f.Named(_, _, body) if formula not in self.trace.given:
+            case f.Application(_, _, body) if formula not in self.trace.given:
                 return self.holds(body, k)
             case f.Eventually(interval, body):
                 return any(self.holds(body, j) for j in self.window(interval, k))
@@ -51,7 +51,7 @@ class Endless:
                     self.holds(right, j) and all(self.holds(left, i) for i in window if i < j) for j in window
                 )
             case _:
-                return Reading(self.trace).holds(formula, k, "clip")
+                return TraceReader(self.trace).holds(formula, k, "clip")
 
     def window(self, interval: f.Interval, k: int) -> range:
         low, high = (None if x is None else x / DT for x in bounds_of(interval))

@@ -21,11 +21,11 @@ from roadproof.library.elaborate import apply_definition
 from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.formula import Formula, Named, subformulas
+from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.rewrite import with_values
 from roadproof.semantics.sampled import compile
 from roadproof.semantics.sampled.answers import Convention
-from roadproof.semantics.sampled.recursive import Reading, answer
+from roadproof.semantics.sampled.recursive import TraceReader, answer
 
 conventions = st.sampled_from(["truncated", "clip"])
 quick = settings(max_examples=400, deadline=None, derandomize=True)
@@ -91,7 +91,7 @@ def test_cut_and_started_traces_are_traces_of_their_own(one: Formula, two: Formu
         for name, formula in (("one", one), ("two", two)):
             got = "true" if found[name].true[i] else "false" if found[name].false[i] else "undecided"
             assert got == answer(formula, trace, int(starts[i]))
-            assert margins[name].low[i] == Reading(trace).margin(formula, int(starts[i]), "strong")
+            assert margins[name].low[i] == TraceReader(trace).margin(formula, int(starts[i]), "strong")
 
 
 @quick
@@ -99,15 +99,15 @@ def test_cut_and_started_traces_are_traces_of_their_own(one: Formula, two: Formu
 def test_named_parts_are_answered_at_every_sample(
     formula: Formula, seed: int, convention: Convention
 ) -> None:
-    named = f.Named("whole", (), formula)
+    named = f.Application("whole", (), formula)
     batch = random_batch(seed, 3, 8)
     monitor = compile({"it": named})
     verdicts = monitor.evaluate(batch, convention, named=True)
     margins = monitor.measure(batch, convention, named=True)
-    assert set(verdicts.named) == {x for x in subformulas(named) if isinstance(x, Named)}
+    assert set(verdicts.named) == {x for x in subformulas(named) if isinstance(x, Application)}
     view = "clip" if convention == "clip" else "strong"
     for i in range(batch.traces):
-        reading = Reading(trace_of(batch, i))
+        reading = TraceReader(trace_of(batch, i))
         for part, found in verdicts.named.items():
             for k in range(int(batch.lengths[i])):
                 assert found.true[k, i] == reading.holds(part, k, view)  # type: ignore[arg-type]
@@ -116,7 +116,7 @@ def test_named_parts_are_answered_at_every_sample(
 
 def test_named_parts_with_one_body_and_two_names_are_both_answered() -> None:
     body = f.Compare(t.Signal("v_lon", "SV"), ">", t.Signal("v_lon", "POV"))
-    formula = f.And((f.Named("faster", ("SV",), body), f.Not(f.Named("quicker", ("SV",), body))))
+    formula = f.And((f.Application("faster", ("SV",), body), f.Not(f.Application("quicker", ("SV",), body))))
     verdicts = compile({"it": formula}).evaluate(random_batch(1, 5, 5), named=True)
     assert {x.name for x in verdicts.named} == {"faster", "quicker"}
     assert verdicts.answers["it"].false.all()
@@ -138,7 +138,7 @@ def test_scenarios_on_random_traffic(set_name: str, rss_form: str) -> None:
     margins = monitor.measure(batch)
     seen = set()
     for i in range(batch.traces):
-        reading = Reading(trace_of(batch, i))
+        reading = TraceReader(trace_of(batch, i))
         for name, formula in scenarios.items():
             found = truncated.answers[name]
             got = "true" if found.true[i] else "false" if found.false[i] else "undecided"

@@ -116,7 +116,7 @@ def strictness_lost(patch: pytest.MonkeyPatch) -> None:
 
 
 def square_forgotten(patch: pytest.MonkeyPatch) -> None:
-    patch.setattr(arithmetic._Building, "power_of", lambda self, base, exponent: self.place(base))
+    patch.setattr(arithmetic._Builder, "power_of", lambda self, base, exponent: self.place(base))
 
 
 def inverse_of_zero_is_zero(patch: pytest.MonkeyPatch) -> None:

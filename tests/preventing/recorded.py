@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from fractions import Fraction
 
-from roadproof.drivers.driving import Reading, drive_of
+from roadproof.drivers.driving import DriverSettings, drive_of
 from roadproof.drivers.manoeuvres import Manoeuvre
 from roadproof.recordings.formats.recording import Recording
 from roadproof.world.motion import State, state_at
@@ -17,7 +17,11 @@ _RIGHT = -30.5  # m, the right edge of the middle lane
 
 
 def recorded(
-    manoeuvre: Manoeuvre, model: str, values: Mapping[str, Fraction], reading: Reading, seconds: int = 6
+    manoeuvre: Manoeuvre,
+    model: str,
+    values: Mapping[str, Fraction],
+    reading: DriverSettings,
+    seconds: int = 6,
 ) -> Recording:
     """Vehicles 1, 2 (and 3) are SV, POV (or POV1, POV2); the manoeuvre begins in frame BEFORE.
 

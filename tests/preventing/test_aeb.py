@@ -14,9 +14,9 @@ from preventing.labels import labels
 from preventing.read import boundary, specification, values
 from roadproof.analysis.preventable.sides import judged_drive
 from roadproof.drivers import driving
-from roadproof.drivers.braking import Aided, Ramp
+from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.claims import Side
-from roadproof.drivers.driving import Reading, drive_of
+from roadproof.drivers.driving import DriverSettings, drive_of
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.manoeuvres import CUT_IN, along_line
 from roadproof.drivers.models import models_for
@@ -143,7 +143,7 @@ READINGS = (
 def test_drives_follow_and_end_as_the_boundary_says(options):
     rng = random.Random(6)
     home, formula = specification(**options), boundary("cut-in", "careful", **options)
-    reading = Reading(values(), home.options)
+    reading = DriverSettings(values(), home.options)
     judged = 0
     while judged < 3:
         speed = Fraction(rng.randint(60, 400), 10)
@@ -175,8 +175,8 @@ def test_a_drive_of_another_reading_is_rejected(joined, other):
         {"Ve0": Fraction(30), "dV0": Fraction(20), "Vy": Fraction(5, 2), "dx0": Fraction(70)}
     )
     home = specification(cc_aeb=joined)
-    mine = judged_drive(CUT_IN, "careful", given, "preventable", home, Reading(values(), home.options))
-    made = drive_of(CUT_IN, "careful", given, Reading(values(), specification(cc_aeb=other).options))
+    mine = judged_drive(CUT_IN, "careful", given, "preventable", home, DriverSettings(values(), home.options))
+    made = drive_of(CUT_IN, "careful", given, DriverSettings(values(), specification(cc_aeb=other).options))
     assert_rejected(mine, made)
 
 
@@ -187,9 +187,9 @@ def test_a_drive_with_another_constant_is_rejected(joined, changed):
         {"Ve0": Fraction(30), "dV0": Fraction(20), "Vy": Fraction(5, 2), "dx0": Fraction(70)}
     )
     home = specification(cc_aeb=joined)
-    mine = judged_drive(CUT_IN, "careful", given, "preventable", home, Reading(values(), home.options))
+    mine = judged_drive(CUT_IN, "careful", given, "preventable", home, DriverSettings(values(), home.options))
     other = values() | {changed: values()[changed] * Fraction(101, 100)}
-    assert_rejected(mine, drive_of(CUT_IN, "careful", given, Reading(other, home.options)))
+    assert_rejected(mine, drive_of(CUT_IN, "careful", given, DriverSettings(other, home.options)))
 
 
 @pytest.mark.parametrize(("joined", "speed"), list(product(JOINED, (Fraction(5, 2), Fraction(9, 10)))))
@@ -205,7 +205,7 @@ def test_braking_at_another_instant_is_not_followed(joined, speed, late, monkeyp
 
     given = {"Ve0": Fraction(36), "dV0": Fraction(12), "Vy": speed, "dx0": Fraction(70)}
     home = specification(cc_aeb=joined)
-    reading, at = Reading(values(), home.options), CUT_IN.values(given)
+    reading, at = DriverSettings(values(), home.options), CUT_IN.values(given)
     judged_drive(CUT_IN, "careful", at, "preventable", home, reading)
     aeb = plain(at, reading)
     matters = late == "aeb" or joined == "add" or aeb.driver.onset < aeb.aeb.onset
@@ -230,7 +230,9 @@ def test_braking_that_jumps_is_not_followed():
     for options in ({}, {"cc_aeb": "max"}):
         home = specification(**options)
         given = CUT_IN.values({"dx0": Fraction(40)})
-        mine = judged_drive(CUT_IN, "careful", given, "preventable", home, Reading(values(), home.options))
+        mine = judged_drive(
+            CUT_IN, "careful", given, "preventable", home, DriverSettings(values(), home.options)
+        )
         drive = mine.file.drive
         pieces = list(drive.vehicles["SV"].pieces)
         ramp = next(k for k, piece in enumerate(pieces) if piece.j_lon)
@@ -249,7 +251,7 @@ def test_nothing_changes_but_cut_ins():
 
 def test_the_sum_of_two_ramps_is_capped():
     driver, aeb = Ramp(Fraction(1), Fraction(1), Fraction(6)), Ramp(Fraction(3, 2), Fraction(1), Fraction(8))
-    both = Aided(driver, aeb, "add")
+    both = AssistedBraking(driver, aeb, "add")
     assert [both.at(Fraction(k, 4)) for k in range(4, 12)] == [
         0,
         Fraction(3, 2),

@@ -9,8 +9,8 @@ import pytest
 from preventing.read import values
 from roadproof.analysis.preventable.sides import far_apart
 from roadproof.drivers.boundary import Plane
-from roadproof.drivers.braking import Aided, Ramp
-from roadproof.drivers.driving import Reading, _along
+from roadproof.drivers.braking import AssistedBraking, Ramp
+from roadproof.drivers.driving import DriverSettings, _along
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import Line, end_of, sides_in
 from roadproof.drivers.manoeuvres import MANOEUVRES
@@ -28,7 +28,7 @@ def test_braking_is_affine_between_knots(joined: str, seed: int) -> None:
     duration = Fraction(random.randint(1, 20), 10)
     onset, other = (Fraction(random.randint(0, 30), 10) for _ in range(2))
     harder = full + Fraction(random.randint(0, 40), 10)
-    braking = Aided(Ramp(onset, duration, full), Ramp(other, duration, harder), joined)
+    braking = AssistedBraking(Ramp(onset, duration, full), Ramp(other, duration, harder), joined)
     knots = braking.knots
     for begin, end in pairwise(knots):
         middle, near = (begin + end) / 2, end - (end - begin) / 1000
@@ -40,7 +40,7 @@ def test_braking_is_affine_between_knots(joined: str, seed: int) -> None:
 @pytest.mark.parametrize("model", ["rss", "r157", "eu1426"])
 @pytest.mark.parametrize("onset", [Fraction(0), Fraction(1, 2), Fraction(3)])
 def test_nobody_brakes_before_the_onset(model: str, onset: Fraction) -> None:
-    pieces = _along(model, Fraction(20), onset, Reading(values(), {}))
+    pieces = _along(model, Fraction(20), onset, DriverSettings(values(), {}))
     still = [(onset, Fraction(0), Fraction(0))] if onset else []
     assert pieces[: len(still)] == still
     _, *changes = pieces[len(still)]

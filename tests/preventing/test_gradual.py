@@ -16,15 +16,15 @@ from roadproof.analysis.preventable.sides import beside_boundary, first_drive, j
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.claims import SIDES
-from roadproof.drivers.driving import Reading, drive_of, motion_in_deceleration
+from roadproof.drivers.driving import DriverSettings, drive_of, motion_in_deceleration
 from roadproof.drivers.manoeuvres import DECELERATION, KMH
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.semantics.exact.algebraic import Root, approximate
 
 RATE = 1000
-SOFT = Reading(values(), specification().options)
-HARD = Reading(values(), specification(cc_threshold="hard").options)
+SOFT = DriverSettings(values(), specification().options)
+HARD = DriverSettings(values(), specification(cc_threshold="hard").options)
 
 
 def random_decelerations(cases: int, seed: int) -> list[dict[str, Fraction]]:
@@ -66,7 +66,7 @@ def stepped(cases: list[dict[str, Fraction]], at: str, seconds: int) -> np.ndarr
     return most
 
 
-def exactly(cases: list[dict[str, Fraction]], model: str, reading: Reading) -> np.ndarray:
+def exactly(cases: list[dict[str, Fraction]], model: str, reading: DriverSettings) -> np.ndarray:
     found = []
     for case in cases:
         motion = motion_in_deceleration(model, case, reading)
@@ -151,7 +151,7 @@ def test_a_drive_with_another_number_is_rejected(changed):
     if changed in given:
         given = given | {changed: given[changed] * more}
     else:
-        reading = Reading(values() | {changed: values()[changed] * more}, SOFT.options)
+        reading = DriverSettings(values() | {changed: values()[changed] * more}, SOFT.options)
     made = drive_of(DECELERATION, "careful", given, reading)
     library = specification().library
     assert judge_file(mine.file, library).accepted

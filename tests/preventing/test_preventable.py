@@ -11,7 +11,7 @@ from preventing.read import boundary, specification, values
 from roadproof.analysis.preventable.sides import beside_boundary, first_drive, judged_drive
 from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.claims import SIDES
-from roadproof.drivers.driving import Reading
+from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
 from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
@@ -50,7 +50,12 @@ def test_drives_on_both_sides_are_within_a_span_of_the_boundary(manoeuvre, model
     home = specification(**options)
     for side in SIDES:
         found = first_drive(
-            where, model, beside_boundary(where, true, side), side, home, Reading(values(), home.options)
+            where,
+            model,
+            beside_boundary(where, true, side),
+            side,
+            home,
+            DriverSettings(values(), home.options),
         )
         assert not isinstance(found, str), found
         at, judged = found
@@ -63,7 +68,7 @@ def test_a_drive_on_the_wrong_side_is_rejected(manoeuvre, model, options):
     where = plane(manoeuvre)
     true = lines_of(manoeuvre, model, options, where)
     home = specification(**options)
-    reading = Reading(values(), home.options)
+    reading = DriverSettings(values(), home.options)
     for side, other in (SIDES, SIDES[::-1]):
         found = first_drive(where, model, beside_boundary(where, true, side), side, home, reading)
         assert not isinstance(found, str)
@@ -77,11 +82,13 @@ def test_a_driver_with_another_constant_is_not_the_model(changed):
     home = specification()
     other = values() | {changed: values()[changed] * Fraction(101, 100)}
     given = CUT_IN.values({"dx0": Fraction(30)})
-    judged = judged_drive(CUT_IN, "careful", given, "preventable", home, Reading(values(), home.options))
+    judged = judged_drive(
+        CUT_IN, "careful", given, "preventable", home, DriverSettings(values(), home.options)
+    )
     assert judged.file.values[changed] == values()[changed]
     from roadproof.drivers.driving import drive_of
 
-    wrong = drive_of(CUT_IN, "careful", given, Reading(other, home.options))
+    wrong = drive_of(CUT_IN, "careful", given, DriverSettings(other, home.options))
     from dataclasses import replace
 
     from roadproof.evidence.judged import judge_file
@@ -153,7 +160,9 @@ def test_a_boundary_that_a_drive_contradicts_is_told():
     farther = tuple(union([x, moved_by(x, 2)]) for x in true)
     home = specification()
     places = beside_boundary(where, farther, "unpreventable")
-    found = first_drive(where, "careful", places, "unpreventable", home, Reading(values(), home.options))
+    found = first_drive(
+        where, "careful", places, "unpreventable", home, DriverSettings(values(), home.options)
+    )
     assert isinstance(found, str)
     assert "is not unpreventable, as the boundary says it is: " in found
 

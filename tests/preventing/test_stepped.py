@@ -15,7 +15,7 @@ from roadproof.analysis.preventable.sides import judged_drive
 from roadproof.drivers import stepped
 from roadproof.drivers.boundary import Plane
 from roadproof.drivers.claims import SIDES
-from roadproof.drivers.driving import Reading, drive_of
+from roadproof.drivers.driving import DriverSettings, drive_of
 from roadproof.drivers.fuzzy import Controller, Scale, scale_of
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
 from roadproof.drivers.models import models_for
@@ -24,9 +24,9 @@ from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 
 
-def reading() -> Reading:
+def reading() -> DriverSettings:
     home = specification()
-    return Reading(values(), home.options)
+    return DriverSettings(values(), home.options)
 
 
 def some_values(manoeuvre: str, count: int, seed: int) -> list[dict[str, F]]:

@@ -11,7 +11,7 @@ from roadproof.drivers.words import _PARTS, legend, words_of_parts
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.report.drive_data import strips_of
 from roadproof.frontends.report.preventable import as_text, shown_symbols
-from roadproof.logic.formula import And, Named, subformulas
+from roadproof.logic.formula import And, Application, subformulas
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def test_parts_speak_of_the_vehicles_around_them(drivers: Definitions) -> None:
 
 def test_other_parts_keep_their_names() -> None:
     formula = rp.load().read("scenario_4(SV,POV,L)").formula
-    assert any(isinstance(x, Named) for x in subformulas(formula))
+    assert any(isinstance(x, Application) for x in subformulas(formula))
     assert words_of_parts(formula) == {}
     assert words_of_parts(And(())) == {}
 

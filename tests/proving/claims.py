@@ -252,7 +252,7 @@ def is_false_on(countermodel: Countermodel, claim: str, set_name: str = "base") 
     }
     given: dict[Formula, TruthSet] = {}
     for part in _opaquely(claimed):
-        if isinstance(part, f.Named):
+        if isinstance(part, f.Application):
             truths = [_truth(part, instant, countermodel, rigid) for instant in countermodel.instants]
             given[_with_numbers(part, countermodel.parameters)] = _spread(countermodel, truths)
     return not judge(_with_numbers(claimed, countermodel.parameters), None, given).holds
@@ -260,11 +260,11 @@ def is_false_on(countermodel: Countermodel, claim: str, set_name: str = "base") 
 
 def _opaquely(formula: Formula) -> list[Formula]:
     """The parts of an abstracted claim, not looking into its atoms."""
-    inner = [] if isinstance(formula, f.Named) else f.children(formula)
+    inner = [] if isinstance(formula, f.Application) else f.children(formula)
     return [formula, *(part for child in inner for part in _opaquely(child))]
 
 
-def _truth(atom: f.Named, instant, countermodel: Countermodel, rigid: Mapping[str, Fraction]) -> bool:
+def _truth(atom: f.Application, instant, countermodel: Countermodel, rigid: Mapping[str, Fraction]) -> bool:
     meaning = without_names(atom)
     stated = instant.atoms[atom.name]
     if not any(isinstance(x, f.Occupies | f.Some | f.Every) for x in f.subformulas(meaning)):
@@ -307,7 +307,7 @@ def holds(formula: Formula, values: Mapping[str, Fraction]) -> bool:
             return all(holds(part, values) for part in parts)
         case f.Or(parts):
             return any(holds(part, values) for part in parts)
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             return holds(body, values)
         case f.Compare(left, op, right):
             x, y = value_of(left, values), value_of(right, values)

@@ -104,7 +104,7 @@ def test_a_step_inside_a_quantifier_is_left_out():
 # --- truth: judged on random traces, and planted faults -------------------------------------------
 
 
-SIGNAL = f.Named("p", (), f.Compare(t.Signal("s", "SV"), "<", t.Signal("s", "POV")))
+SIGNAL = f.Application("p", (), f.Compare(t.Signal("s", "SV"), "<", t.Signal("s", "POV")))
 ONE, TWO = (t.number(seconds, (0, 1)) for seconds in (1, 2))
 
 

@@ -22,7 +22,7 @@ from roadproof.evidence.certificate import certificate_data, read_certificate_da
 from roadproof.evidence.finding import Acceptance
 from roadproof.library import motion as spec_motion
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import SCHEMAS, Assumed, Axiom
+from roadproof.library.motion import SCHEMAS, Assumption, Axiom
 from roadproof.library.specification import bundled_library
 from roadproof.logic import motion
 from roadproof.logic import terms as t
@@ -124,13 +124,13 @@ def test_a_drive_refutes_within_the_limits_that_are_said():
 def test_a_trace_with_all_facts_at_its_instants_refutes_nothing():
     query = read_claim(specification, FALSE)
     for axioms in stages(specification, query):
-        result = prove(specification, query, Effort(0.5), assumed=Assumed(("motion",), axioms))
+        result = prove(specification, query, Effort(0.5), assumed=Assumption(("motion",), axioms))
         assert (result.verdict, result.countermodel) == (Verdict.UNKNOWN, None)
 
 
 def test_without_a_proof_and_without_a_drive_it_is_in_doubt(monkeypatch):
-    monkeypatch.setattr(settling._Settling, "_quick", lambda *x: None)
-    monkeypatch.setattr(settling._Settling, "_searched", lambda *x: None)
+    monkeypatch.setattr(settling._Settler, "_quick", lambda *x: None)
+    monkeypatch.setattr(settling._Settler, "_searched", lambda *x: None)
     found = settle(specification, read_claim(specification, FALSE), Effort(2), said=("motion",))
     assert found.verdict is Verdict.UNKNOWN
 
@@ -277,7 +277,7 @@ def test_a_mutant_of_a_schema_is_noticed_by_who_has_the_right_one(name, monkeypa
     with monkeypatch.context() as patch:
         patch.setattr(motion, name, wrong)
         query = read_claim(specification, claim)
-        result = prove(specification, query, Effort(5), assumed=Assumed(said, axioms_of(claim, said)))
+        result = prove(specification, query, Effort(5), assumed=Assumption(said, axioms_of(claim, said)))
         assert result.verdict in (Verdict.PROVED, Verdict.VACUOUS)
     assert refused(certificate_data(result.certificate)) is not None
 

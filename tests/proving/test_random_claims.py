@@ -112,7 +112,7 @@ def is_true_on(claim: str, trace) -> bool:
     given_sets = {
         part: named[part.name.replace(", ", ",")]
         for part in _opaquely(abstracted)
-        if isinstance(part, f.Named)
+        if isinstance(part, f.Application)
     }
     return judge(_with_numbers(abstracted, parameters), None, given_sets).holds
 

@@ -11,13 +11,13 @@ from roadproof.engines.prove.explanation import is_plain, reason
 from roadproof.evidence.atoms import Atoms
 from roadproof.library.elaborate import read_claim
 from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula, Named
+from roadproof.logic.formula import Application, Formula
 
 NAMES = ("p", "q", "r", "s")
 
 
 def atom(name: str) -> Formula:
-    return Named(name, (), f.Truth(True))
+    return Application(name, (), f.Truth(True))
 
 
 def random_formula(rng: random.Random, depth: int) -> Formula:
@@ -36,7 +36,7 @@ def value(formula: Formula, truths: dict[str, bool]) -> bool:
     match formula:
         case f.Truth(known):
             return known
-        case Named(name, _, _):
+        case Application(name, _, _):
             return truths[name]
         case f.Not(body):
             return not value(body, truths)

@@ -9,7 +9,7 @@ from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
-from roadproof.analysis.classify.study import Classified
+from roadproof.analysis.classify.study import ClassificationResult
 from roadproof.evidence.answers.classify import Doubt
 from roadproof.frontends.report.classify import as_table, compose_classes, summary
 from roadproof.library.words import Words
@@ -53,7 +53,7 @@ def test_without_shares_there_are_none() -> None:
 def test_doubts_are_told_and_traces_that_are_shown_twice() -> None:
     shares = shares_of(class_4=10)
     shares.repeated = 5
-    found = Classified(
+    found = ClassificationResult(
         (one((4,), None, Verdict.UNKNOWN),), (), (Doubt(about="what there is", reason="lost"),), shares
     )
     assert [*summary(found)] == [

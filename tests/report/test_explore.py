@@ -4,8 +4,8 @@ from dataclasses import replace
 from fractions import Fraction as F
 from typing import Any
 
-from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
-from roadproof.analysis.explore.knobs import Knob
+from roadproof.analysis.explore.answer import Boundary, Explorable, ExplorationResult, Extreme, PointFinding
+from roadproof.analysis.explore.knobs import Variable
 from roadproof.analysis.explore.measure import read_measure
 from roadproof.engines.search.ask import Search
 from roadproof.frontends.report.explore import as_text, draw_exploration, show
@@ -15,7 +15,7 @@ from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")
 QUERY = read_query(BASE, "4")[1]
-KNOB = Knob("minSafe", "s", F(0), F(3))
+KNOB = Variable("minSafe", "s", F(0), F(3))
 ASKED = Explorable(Search(BASE, QUERY, scenario=4), (KNOB,), 4)
 MEASURE = read_measure(BASE, "least", "v_lon(SV)")
 
@@ -24,7 +24,7 @@ def finding(at: str, verdict: Verdict, reason: str = "", number: int | None = No
     return PointFinding(tuple(map(F, at.split())), verdict, QUERY, reason, number=number)
 
 
-def exploration(**changed: Any) -> Explored:
+def exploration(**changed: Any) -> ExplorationResult:
     values = (
         finding("0", Verdict.WITNESSED, number=1),
         finding("1", Verdict.WITNESSED, number=1),
@@ -32,7 +32,7 @@ def exploration(**changed: Any) -> Explored:
         finding("3", Verdict.NONE_WITHIN, "no drive on main-2"),
     )
     bracket = Boundary(finding("3/2", Verdict.WITNESSED), values[2], values[3])
-    return replace(Explored(values, (bracket,), (), 5, 1, 1.5), **changed)
+    return replace(ExplorationResult(values, (bracket,), (), 5, 1, 1.5), **changed)
 
 
 def test_a_strip_and_both_sides_of_its_boundary() -> None:
@@ -67,7 +67,7 @@ def test_of_many_reasons_only_some_are_printed() -> None:
 
 
 def test_a_map_has_the_first_knob_across() -> None:
-    knobs = tuple(Knob(name, "s", F(0), F(1)) for name in ("a", "b"))
+    knobs = tuple(Variable(name, "s", F(0), F(1)) for name in ("a", "b"))
     verdicts = {"0 0": "WITNESSED", "0 1": "UNKNOWN", "1 0": "IMPOSSIBLE", "1 1": "NONE-WITHIN"}
     values = tuple(finding(at, Verdict(verdict), verdict) for at, verdict in verdicts.items())
     asked, explored = replace(ASKED, knobs=knobs, steps=2), exploration(findings=values, boundaries=())
@@ -81,7 +81,7 @@ def test_extremes_name_both_sides() -> None:
     extreme = Extreme(MEASURE, (), best, missed, missed, 3)
 
     def told(extreme: Extreme) -> str:
-        return as_text(replace(ASKED, knobs=()), Explored(extremes=(extreme,)))
+        return as_text(replace(ASKED, knobs=()), ExplorationResult(extremes=(extreme,)))
 
     text = "  least v_lon(SV) at the start: 0.041 m/s on a judged drive; at 0 m/s IMPOSSIBLE [1]"
     assert text in told(extreme)

@@ -10,7 +10,7 @@ import pytest
 import roadproof as rp
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.frontends.report.viewer_data import Asked, viewer_data
+from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
 from roadproof.frontends.report.viewer_files import viewer_modules, viewer_style
 from roadproof.frontends.report.viewer_page import json_in_html, viewer_page
 from roadproof.frontends.report.viewer_recorded import recorded_data
@@ -61,7 +61,11 @@ def test_every_part_is_in_the_tree_once() -> None:
 
 
 def test_a_formula_that_cannot_be_judged_says_why_and_leaves_the_others() -> None:
-    asked = [Asked("question", "danger(SV,POV2)"), Asked("watch", "v_lon(SV) > 1 m/s"), Asked("watch", "(")]
+    asked = [
+        ShownFormula("question", "danger(SV,POV2)"),
+        ShownFormula("watch", "v_lon(SV) > 1 m/s"),
+        ShownFormula("watch", "("),
+    ]
     wrong, right, broken = viewer_data(FILE, LIBRARY, asked)["formulas"]
     assert "speaks of POV2" in wrong["error"]
     assert right["holds"] is True
@@ -69,7 +73,9 @@ def test_a_formula_that_cannot_be_judged_says_why_and_leaves_the_others() -> Non
 
 
 def test_margins_are_left_out_where_bounds_are_too_fine() -> None:
-    [shown] = viewer_data(FILE, LIBRARY, [Asked("question", "F[0, 0.123 s] v_lon(SV) > 1 m/s")])["formulas"]
+    [shown] = viewer_data(FILE, LIBRARY, [ShownFormula("question", "F[0, 0.123 s] v_lon(SV) > 1 m/s")])[
+        "formulas"
+    ]
     assert shown["step"] == 0
     assert "margins" not in shown["parts"][0]
     assert shown["parts"][0]["true"]
@@ -80,7 +86,7 @@ def test_reasons_are_told_in_the_tree_and_in_the_texts_of_the_user() -> None:
         "mine", "set mine extends base {\n def danger(a, b: vehicle) := G[0, 1 s] v_lon(a) < 1 m/s\n}\n"
     )
     home = load_library([mine]).select("mine")
-    asked = Asked("question", "F danger(SV,POV)", home, explain=(0, Fraction(0)))
+    asked = ShownFormula("question", "F danger(SV,POV)", home, explain=(0, Fraction(0)))
     [shown] = viewer_data(FILE, LIBRARY, [asked])["formulas"]
     assert shown["holds"] is False
     because = [shown["parts"][int(k)]["text"] for k in shown["because"]]
@@ -92,9 +98,9 @@ def test_reasons_are_told_in_the_tree_and_in_the_texts_of_the_user() -> None:
     ]
     said = {(x["source"], *x["from"], *x["to"]) for x in shown["said"]}
     assert said == {("formula", 1, 3, 1, 17), ("mine", 2, 41, 2, 57)}
-    [refused] = viewer_data(FILE, LIBRARY, [Asked("question", "v_lon(SV) > 0", explain=(99, Fraction(0)))])[
-        "formulas"
-    ]
+    [refused] = viewer_data(
+        FILE, LIBRARY, [ShownFormula("question", "v_lon(SV) > 0", explain=(99, Fraction(0)))]
+    )["formulas"]
     assert "part=99" in refused["error"]
 
 
@@ -156,7 +162,7 @@ def test_samples_of_a_drive_are_shown_with_the_distances_and_margins_of_the_driv
     home = rp.load()
     observed = rp.monitor("danger(SV,POV)", trace, using=home, lanes={}).observed
     recorded = recorded_data(trace, [("question", observed)], home.specification, home.all_values())
-    document = viewer_data(FILE, LIBRARY, [Asked("question", "danger(SV,POV)")])
+    document = viewer_data(FILE, LIBRARY, [ShownFormula("question", "danger(SV,POV)")])
     assert recorded["drive"]["distances"] == document["drive"]["distances"] != []
     margins = [
         {x["text"]: x["margins"] for x in one["formulas"][0]["parts"] if "margins" in x}

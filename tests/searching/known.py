@@ -14,7 +14,7 @@ from itertools import combinations
 
 from roadproof.engines.encode.build import Assumptions
 from roadproof.engines.encode.unroll import Grid
-from roadproof.engines.search.question import Posed, assignments
+from roadproof.engines.search.question import SearchProblem, assignments
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import bundled_library
@@ -51,7 +51,9 @@ class Known:
         road = ROADS[self.road]
         vehicles = dict.fromkeys(query.vehicles, CAR)
         lanes = assignments(query, road, {})
-        return Posed(query, road, vehicles, VALUES, lanes, self.grid, Assumptions(reach=REACH).plain())
+        return SearchProblem(
+            query, road, vehicles, VALUES, lanes, self.grid, Assumptions(reach=REACH).plain()
+        )
 
 
 def known(seed):
@@ -243,7 +245,7 @@ def _holds(formula, states, k):
             return all(_holds(p, states, k) for p in parts)
         case f.Or(parts):
             return any(_holds(p, states, k) for p in parts)
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             return _holds(body, states, k)
         case f.Eventually(window, body):
             return any(_holds(body, states, j) for j in _samples(window, states, k))

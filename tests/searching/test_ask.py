@@ -6,14 +6,14 @@ from fractions import Fraction
 import pytest
 
 from asking import posed, search_for
-from roadproof.engines.prove.prover import Hunch, prove
+from roadproof.engines.prove.prover import ProofHeuristic, prove
 from roadproof.engines.search import ask, impossible
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.grid import make_grid
 from roadproof.errors import UsageError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import bundled_library
-from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_vehicle
@@ -59,7 +59,7 @@ def test_a_grid_takes_time(horizon, dt):
 
 def test_what_the_clock_cuts_off_is_unknown_on_its_road(monkeypatch):
     def late(request):
-        raise Late(3.0)
+        raise BudgetExceeded(3.0)
 
     monkeypatch.setattr(ask, "ask", late)
     outcome = answer(search_for("4"))
@@ -94,7 +94,7 @@ def test_a_core_does_not_rest_on_hunches(hunch, monkeypatch):
     query = read_claim(LIBRARY.select(), clash)
     right = impossible.show_impossible(LIBRARY.select(), query, Effort(5))
     assert right.told == ("v_lon(SV) > 3 m/s", "v_lon(SV) < 2 m/s")
-    monkeypatch.setattr(impossible.Hunch, "has_proof", lambda self, claim, effort: (hunch, 0.0))
+    monkeypatch.setattr(impossible.ProofHeuristic, "has_proof", lambda self, claim, effort: (hunch, 0.0))
     found = impossible.show_impossible(LIBRARY.select(), query, Effort(5))
     assert found.certificate == right.certificate
     assert found.told == (right.told if hunch else tuple(clash.split(" and ")))
@@ -112,7 +112,7 @@ def test_what_is_learnt_of_one_claim_does_not_change_the_next():
         "not (danger(SV, POV) and initSafe(SV, POV))",
         "not danger(SV, POV)",
     ]
-    together = Hunch(specification)
+    together = ProofHeuristic(specification)
     for text in texts:
         claim = read_claim(specification, text)
         alone = prove(specification, claim, Effort(5)).holds
@@ -125,7 +125,7 @@ def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatc
     def find(question, means, unlike=()):
         calls.append(len(unlike))
         if unlike:
-            raise Late(3.0)
+            raise BudgetExceeded(3.0)
         return true_find(question, means, unlike)
 
     monkeypatch.setattr(ask, "find_witness", find)

@@ -12,7 +12,7 @@ from roadproof.evidence.judged import judge_file
 from roadproof.library.compose import taken_from
 from roadproof.library.scenarios import read_query
 from roadproof.library.specification import bundled_library
-from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import Verdict
 
 LIBRARY = bundled_library()
@@ -57,7 +57,7 @@ def test_what_is_proved_only_where_no_drive_is_found_is_bounded():
 
 def test_what_the_clock_cuts_off_is_unknown(monkeypatch):
     def late(*_):
-        raise Late(7.0)
+        raise BudgetExceeded(7.0)
 
     monkeypatch.setattr(compare_module, "_decide", late)
     found = compared(FAST, FASTER)

@@ -80,8 +80,8 @@ def test_what_a_proof_does_not_decide_quickly_is_sampled(monkeypatch):
     found = settled(HOME, claim(FALSE), Effort(2e-6))
     assert found.verdict is Verdict.REFUTED
     assert found.refuted_by == "drive"
-    monkeypatch.setattr(settle._Settling, "_quick", lambda _: None)
-    monkeypatch.setattr(settle._Settling, "_searched", lambda *_: None)
+    monkeypatch.setattr(settle._Settler, "_quick", lambda _: None)
+    monkeypatch.setattr(settle._Settler, "_searched", lambda *_: None)
     assert settled(HOME, claim(FALSE), Effort(2e-6)).verdict is Verdict.UNKNOWN
 
 

@@ -84,7 +84,7 @@ def test_what_floating_point_sees_is_not_taken_for_granted(monkeypatch):
         return np.column_stack([x.values(spread[:, k]) for k, x in enumerate(self.axes)])
 
     formula = bound(STATES[0])
-    monkeypatch.setattr(sampling._Looking, "points", every_point)
+    monkeypatch.setattr(sampling._StateSampler, "points", every_point)
     found = states(formula, SPACE, 64)
     assert 0 < len(found) < 64
     assert all(holds(formula, state, SPACE.sizes) for state in found)

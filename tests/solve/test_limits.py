@@ -14,7 +14,7 @@ from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import Solution, box_of, solve_mixed
 from roadproof.engines.solve.smt import Session, ask, solve
 from roadproof.runtime import budget
-from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.budget import BudgetExceeded, Effort
 
 COLUMNS, ROWS = 40, 4
 LITTLE = Effort(0.001)
@@ -137,13 +137,13 @@ def test_an_exact_search_starts_again_with_another_seed_and_twice_the_work(monke
 
 @pytest.mark.parametrize("solver", ["z3", "cvc5"])
 def test_what_is_cut_off_by_the_clock_says_so(solver):
-    with pytest.raises(Late, match="cut off by the clock"):
+    with pytest.raises(BudgetExceeded, match="cut off by the clock"):
         ask(pigeons(15, 14) + "(check-sat)", solver, Effort(4000, 0.2).meter())
 
 
 def test_a_mixed_integer_search_cut_off_by_the_clock_says_so():
     problem = split()
-    with pytest.raises(Late):
+    with pytest.raises(BudgetExceeded):
         solve_mixed(problem, box_of(problem), meter=Effort(4000, 0.5).meter())
 
 
@@ -187,7 +187,7 @@ def test_what_was_found_when_the_clock_ended_the_search_is_not_used(monkeypatch)
         return run
 
     monkeypatch.setattr(milp, "_solve", solve_until("user_limit", 5.0))
-    with pytest.raises(Late):
+    with pytest.raises(BudgetExceeded):
         solve_mixed(problem, box_of(problem), meter=Effort(1, 4.0).meter())
     assert solve_mixed(problem, box_of(problem), meter=Effort(1, 40.0).meter()).status == "found"
     monkeypatch.setattr(milp, "_solve", solve_until("optimal", 50.0))

@@ -73,10 +73,10 @@ def test_occupying_is_overlapping_with_positive_area() -> None:
 
 def test_lanes_become_their_lanelets() -> None:
     made = bound("laneKeep(SV, L)")
-    assert made == f.Named(
+    assert made == f.Application(
         "laneKeep",
         ("SV", "main-1"),
-        f.Named(
+        f.Application(
             "atLane",
             ("SV", "main-1"),
             f.Or((occupies("SV", MERGE.lanelets[0]), occupies("SV", MERGE.lanelets[1]))),
@@ -91,7 +91,7 @@ def test_zones_adjacent_lanes_and_all_lanes() -> None:
     assert bound("every l in zone(depart): occ(SV, l)") == f.TRUE
     beside = bound("some K in adjacentLanes(L): laneKeep(SV, K)")
     assert isinstance(beside, f.Or)
-    assert [part.arguments for part in beside.parts if isinstance(part, f.Named)] == [
+    assert [part.arguments for part in beside.parts if isinstance(part, f.Application)] == [
         ("SV", "main-2"),
         ("SV", "ramp"),
     ]

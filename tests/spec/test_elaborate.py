@@ -74,7 +74,7 @@ def test_formulas(text: str, expected: Formula) -> None:
 def test_calls_are_named_and_substituted() -> None:
     made = formula("near(POV, SV)", "def near(a, b: vehicle) := s(a) <= s(b)")
     body = f.Compare(t.Signal("s", "POV"), "<=", t.Signal("s", "SV"))
-    assert made == f.Named("near", ("POV", "SV"), body)
+    assert made == f.Application("near", ("POV", "SV"), body)
 
 
 def test_functions_of_numbers_are_put_in_place() -> None:
@@ -92,9 +92,9 @@ def test_quantified_vehicles() -> None:
 def test_groups_take_what_other_arguments_leave() -> None:
     text = "def all(a: vehicle, others: vehicles, L: lane) := every x in others: aheadOf(a, x)"
     made = formula("all(SV, POV1, POV2, L)", text)
-    assert isinstance(made, f.Named)
+    assert isinstance(made, f.Application)
     assert isinstance(made.body, f.And)
-    assert [part.arguments for part in made.body.parts if isinstance(part, f.Named)] == [
+    assert [part.arguments for part in made.body.parts if isinstance(part, f.Application)] == [
         ("SV", "POV1"),
         ("SV", "POV2"),
     ]
@@ -102,13 +102,13 @@ def test_groups_take_what_other_arguments_leave() -> None:
 
 def test_bound_variables_never_capture_arguments() -> None:
     made = read("given M: lane: inAdjLanes(SV, POV, M)").formula
-    assert isinstance(made, f.Named)
+    assert isinstance(made, f.Application)
     assert isinstance(made.body, f.And)
     inner = made.body.parts[1]
     assert isinstance(inner, f.Some)
     assert inner.domain == f.Domain("adjacent", "M")
     assert inner.variable != "M"
-    assert isinstance(inner.body, f.Named)
+    assert isinstance(inner.body, f.Application)
     assert inner.body.arguments == ("POV", inner.variable)
 
 
@@ -126,7 +126,7 @@ def test_given_numbers_are_variables() -> None:
 
 def test_definitions_of_other_sets() -> None:
     ours, theirs = formula("accel(POV, SV, L)"), formula("accel@ext(POV, SV, L)")
-    assert isinstance(theirs, f.Named)
+    assert isinstance(theirs, f.Application)
     assert theirs.name == "accel@ext"
     assert theirs.body != ours
     ext = bundled_library().select("ext")

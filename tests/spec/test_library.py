@@ -38,7 +38,7 @@ def library(text: str, below: Library | None = None) -> Library:
 
 def body(of: Library, text: str, set_name: str = "one", **options: str) -> Formula:
     formula = read_claim(of.select(set_name, options), text).formula
-    assert isinstance(formula, f.Named)
+    assert isinstance(formula, f.Application)
     return formula.body
 
 

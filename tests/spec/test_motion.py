@@ -8,7 +8,7 @@ from roadproof.errors import InputError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import (
     SCHEMAS,
-    Assumed,
+    Assumption,
     Axiom,
     assumption,
     axiom_formula,
@@ -236,13 +236,13 @@ def test_refuses_what_is_no_fact_about_motion(schema, arguments, why):
 )
 def test_refuses_what_is_no_limit_in_evidence(said):
     with pytest.raises(InputError):
-        assumption(specification, ABOUT, Assumed(said))
+        assumption(specification, ABOUT, Assumption(said))
 
 
 def test_facts_about_motion_are_used_only_where_the_claim_says_so():
     with pytest.raises(InputError, match="does not say that it assumes motion"):
-        assumption(specification, ABOUT, Assumed((), (AXIOMS[0],)))
-    assert assumption(specification, ABOUT, Assumed()) == f.TRUE
+        assumption(specification, ABOUT, Assumption((), (AXIOMS[0],)))
+    assert assumption(specification, ABOUT, Assumption()) == f.TRUE
 
 
 def test_what_is_assumed_is_read_as_it_is_written():

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from roadproof.frontends.studio.worker_pool import Crew, FullError, Limits, Message
+from roadproof.frontends.studio.worker_pool import FullError, Limits, Message, WorkerPool
 from studio.serving import question
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="processes are killed by signals of POSIX")
@@ -20,8 +20,8 @@ SHORT = question("v_lon(SV) > 3 m/s")
 
 
 @asynccontextmanager
-async def crew(limits: Limits) -> AsyncIterator[Crew]:
-    made = Crew(limits)
+async def crew(limits: Limits) -> AsyncIterator[WorkerPool]:
+    made = WorkerPool(limits)
     await made.start()
     try:
         yield made
@@ -39,7 +39,7 @@ def conducted(test: Callable[[], Coroutine[Any, Any, None]]) -> Callable[[], Non
     return run
 
 
-async def answer(made: Crew, ask: dict[str, Any], seconds: float | None = None) -> Message:
+async def answer(made: WorkerPool, ask: dict[str, Any], seconds: float | None = None) -> Message:
     """The last word about a job."""
     async with aclosing(made.work("find", ask, seconds)) as told:
         return [message async for message in told][-1]

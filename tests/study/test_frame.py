@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
 from roadproof.library.specification import bundled_library
@@ -60,10 +60,10 @@ class Sums:
     def is_sure(self, answer: int | None) -> bool:
         return answer is not None
 
-    def record(self, name: str, answer: int | None, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: int | None, shelf: EvidenceStore) -> dict[str, Any]:
         return {"value": answer}
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, int | None]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, int | None]:
         raise AssertionError("nothing is kept")
 
 

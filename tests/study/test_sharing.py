@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from roadproof.analysis.claims import Answered, Claims, name_of
+from roadproof.analysis.claims import ClaimResult, Claims, name_of
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.executors import Cluster, Hands, Shard
+from roadproof.runtime.executors import Cluster, Executor, Shard
 from roadproof.runtime.files import hold_folder
 
 NAMES = [f"piece-{k}" for k in range(500)]
@@ -26,12 +26,12 @@ class Counted(Claims):
     notes: Path = Path("/dev/null")
     doubtful: str = ""
 
-    def settle(self, piece: Any) -> dict[str, Answered]:
+    def settle(self, piece: Any) -> dict[str, ClaimResult]:
         with self.notes.open("a") as file:
             file.write(f"{piece.claim}\n")
         return super().settle(piece)
 
-    def is_sure(self, answer: Answered) -> bool:
+    def is_sure(self, answer: ClaimResult) -> bool:
         return answer.task.claim != self.doubtful and super().is_sure(answer)
 
     @property
@@ -49,7 +49,7 @@ def some(notes: Path = Path("/dev/null")) -> Counted:
     return Counted(claims.tasks, claims.specifications, notes=notes)
 
 
-def plain(answers: Mapping[str, Answered]) -> dict[str, Any]:
+def plain(answers: Mapping[str, ClaimResult]) -> dict[str, Any]:
     return {name: (x.task, x.verdict, x.settled.result.certificate) for name, x in sorted(answers.items())}
 
 
@@ -67,9 +67,9 @@ def test_shares_make_up_the_whole(study: Counted, tmp_path: Path) -> None:
         with pytest.raises(
             SharedError, match=f"shard {number}/3 is done: . answers are kept; . claims are left"
         ):
-            conduct(study, folder, Hands(1, shard=Shard(number, 3)), what="claims")
+            conduct(study, folder, Executor(1, shard=Shard(number, 3)), what="claims")
     assert 0 < len(study.asked) < len(whole)
-    found = conduct(study, folder, Hands(1, shard=Shard(3, 3)))  # the last one has the whole
+    found = conduct(study, folder, Executor(1, shard=Shard(3, 3)))  # the last one has the whole
     assert len(study.asked) == len({*study.asked}) == len(whole)
     assert plain(found.answers) == plain(whole)
     assert plain(conduct(study, folder, 1).answers) == plain(whole)
@@ -78,7 +78,7 @@ def test_shares_make_up_the_whole(study: Counted, tmp_path: Path) -> None:
 
 def test_the_last_run_asks_what_a_run_that_never_came_was_to_ask(study: Counted, tmp_path: Path) -> None:
     with pytest.raises(SharedError):
-        conduct(study, tmp_path / "out", Hands(1, shard=Shard(1, 2)))
+        conduct(study, tmp_path / "out", Executor(1, shard=Shard(1, 2)))
     assert 0 < len(study.asked) < 7
     assert plain(conduct(study, tmp_path / "out", 1).answers) == plain(conduct(some(), hands=1).answers)
     assert len(study.asked) == len({*study.asked}) == 7
@@ -89,7 +89,7 @@ def test_a_doubt_is_told_and_left_to_the_last_run(study: Counted, tmp_path: Path
     doubtful = next(x.claim for x in study.tasks if first.has(name_of(x)))
     study = replace(study, doubtful=doubtful)
     with pytest.raises(SharedError) as raised:
-        conduct(study, tmp_path / "out", Hands(1, shard=first))
+        conduct(study, tmp_path / "out", Executor(1, shard=first))
     assert "1 in doubt, which are asked again" in str(raised.value)
     conduct(study, tmp_path / "out", 1)
     assert [x for x in study.asked if study.asked.count(x) > 1] == [doubtful] * 2
@@ -100,7 +100,7 @@ def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
         with pytest.raises(UsageError, match="write K/N with K from 1 to N"):
             Shard.read(text)
     with pytest.raises(UsageError, match="needs a folder"):
-        conduct(some(), hands=Hands(shard=Shard(1, 2)))
+        conduct(some(), hands=Executor(shard=Shard(1, 2)))
     for line, told in (
         ("--shard 1/2 --json -", "leave --json"),
         ("--tls-ca ca.pem", "--tls-ca is for a cluster"),

@@ -13,7 +13,7 @@ import pytest
 from evidence.folders import changes, check, places
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.overlap import Overlap, PairVerdict, name_of
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import UsageError
 from roadproof.evidence.finding import Acceptance
@@ -38,7 +38,7 @@ def answers() -> dict[str, PairVerdict]:
 def folder(tmp_path: Path) -> Path:
     """A folder as a run leaves it that was broken off before its index."""
     made = tmp_path / "out"
-    shelf = Shelf(made, STUDY.question)
+    shelf = EvidenceStore(made, STUDY.question)
     for name, answer in answers().items():
         shelf.keep(name, STUDY.record(name, answer, shelf), STUDY.is_sure(answer))
     return made
@@ -47,7 +47,7 @@ def folder(tmp_path: Path) -> Path:
 def kept(folder: Path, question: Question | None = None) -> tuple[list[str], list[str]]:
     """The names of the answers that count, and what is told of the others."""
     told: list[str] = []
-    found = [name for name, _ in Shelf(folder, question or STUDY.question).answers(told.append)]
+    found = [name for name, _ in EvidenceStore(folder, question or STUDY.question).answers(told.append)]
     return found, told
 
 
@@ -69,7 +69,7 @@ def test_answers_are_kept_and_checked(folder: Path) -> None:
 
 
 def test_what_is_kept_comes_back_as_it_was(folder: Path) -> None:
-    shelf = Shelf(folder, STUDY.question)
+    shelf = EvidenceStore(folder, STUDY.question)
     found = dict(STUDY.recall(record, shelf) for _, record in shelf.answers())
     for name, answer in answers().items():
         assert found[name].certificate == answer.certificate

@@ -13,7 +13,7 @@ from roadproof.logic.formula import Formula, transform
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.recordings.formats.recording import Recording
-from roadproof.semantics.sampled.recursive import Reading, Trace
+from roadproof.semantics.sampled.recursive import Trace, TraceReader
 
 Row = tuple[int, int, int | None, str, int, int, int, str, int]
 """sv, pov, pov2, lane, start_frame, end_frame, min_danger, set, scenario."""
@@ -98,7 +98,9 @@ class Reference:
                 return k
         raise AssertionError("off the road")
 
-    def cuts(self, frames: range, dangers: Reading, *safe: Reading) -> tuple[int | None, list[int | None]]:
+    def cuts(
+        self, frames: range, dangers: TraceReader, *safe: TraceReader
+    ) -> tuple[int | None, list[int | None]]:
         """Start frame, and the end frame for each minDanger; None where there is none."""
         settings, text = self.settings, "initSafe(SV, POV)"
         init = self.formula(settings.sets[0], text, 0)
@@ -112,16 +114,16 @@ class Reference:
         return (None if start is None else frames[start]), ends
 
     @cached_property
-    def violating(self) -> list[tuple[int, int, range, Reading]]:
+    def violating(self) -> list[tuple[int, int, range, TraceReader]]:
         """Pairs of one direction that violate the RSS distance at some time."""
         return list(self._pairs())
 
-    def _pairs(self) -> Iterator[tuple[int, int, range, Reading]]:
+    def _pairs(self) -> Iterator[tuple[int, int, range, TraceReader]]:
         violation = self.formula(self.settings.sets[0], "rssViolation(SV, POV)", 0)
         for a, b in combinations(self.eligible, 2):
             frames = self.common(a, b)
             if frames and self.ever_near(a, b, frames):
-                reading = Reading(self.trace(frames, {"SV": a, "POV": b}, {}))
+                reading = TraceReader(self.trace(frames, {"SV": a, "POV": b}, {}))
                 if any(reading.holds(violation, k, "strong") for k in range(len(frames))):
                     yield a, b, frames, reading
 
@@ -154,7 +156,7 @@ class Reference:
 
     def match_pair(self, sv: int, pov: int, start: int, end: int, k: int) -> Iterator[Row]:
         lanes = {"L": self.lane_at(sv, start), "L1": self.lane_at(pov, start)}
-        reading = Reading(self.trace(range(start, end + 1), {"SV": sv, "POV": pov}, lanes))
+        reading = TraceReader(self.trace(range(start, end + 1), {"SV": sv, "POV": pov}, lanes))
         ids = self.recording.vehicle_id
         for set_name in self.settings.sets:
             for number in self.settings.scenarios:
@@ -172,14 +174,14 @@ class Reference:
             frames = self.common(sv, pov1, pov2)
             if pov1 in (sv, pov2) or not self.ever_in_order(frames, sv, pov1, pov2):
                 continue
-            near, far = (Reading(self.trace(frames, {"SV": sv, "POV": x}, {})) for x in (pov1, pov2))
+            near, far = (TraceReader(self.trace(frames, {"SV": sv, "POV": x}, {})) for x in (pov1, pov2))
             start, ends = self.cuts(frames, far, near, far)
             for k, end in enumerate(ends):
                 if start is None or end is None:
                     continue
                 lane = self.lane_at(sv, start)
                 names = {"SV": sv, "POV1": pov1, "POV2": pov2}
-                reading = Reading(self.trace(range(start, end + 1), names, {"L": lane}))
+                reading = TraceReader(self.trace(range(start, end + 1), names, {"L": lane}))
                 for set_name in self.settings.sets:
                     formula = self.formula(set_name, "scenario_2(SV, POV1, POV2, L)", k)
                     if reading.holds(formula, 0, "strong"):

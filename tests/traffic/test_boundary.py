@@ -12,7 +12,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
 from roadproof.recordings.evaluate import boundary
-from roadproof.recordings.evaluate.boundary import Asked, uncertain
+from roadproof.recordings.evaluate.boundary import TraceQuestion, uncertain
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats.commonroad import read_commonroad
@@ -122,7 +122,7 @@ def pair(along: float) -> Recording:
 
 def is_uncertain(recording: Recording, formula: Formula) -> bool:
     one = np.array([0])
-    asked = Asked(formula, {"SV": one, "POV": one + 1}, one, one + 9, {}, {}, "truncated")
+    asked = TraceQuestion(formula, {"SV": one, "POV": one + 1}, one, one + 9, {}, {}, "truncated")
     return bool(uncertain(recording, asked)[0])
 
 
@@ -200,7 +200,11 @@ def test_a_wrong_polarity_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
     formula = f.Not(gap(21))
     assert is_uncertain(pair(0.6), formula)
     plant_fault(
-        monkeypatch, boundary._Bounded, "_made", "self._visit(body, not helps)", "self._visit(body, helps)"
+        monkeypatch,
+        boundary._BoundedFormula,
+        "_made",
+        "self._visit(body, not helps)",
+        "self._visit(body, helps)",
     )
     assert not is_uncertain(pair(0.6), formula)
 

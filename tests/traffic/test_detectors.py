@@ -14,12 +14,12 @@ from roadproof.recordings.evaluate.detectors import Detection, find_detections
 from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
 from roadproof.recordings.evaluate.results import add_findings, as_json, begin_totals
-from roadproof.recordings.formats.pairs import Sight, common_pairs
+from roadproof.recordings.formats.pairs import DetectionRange, common_pairs
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.simulate.plant import Place, plant
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.semantics.sampled.recursive import Reading
+from roadproof.semantics.sampled.recursive import TraceReader
 from traffic.drives import braking, cut_in
 from traffic.make_recording import LANES, Track, cruise, make_recording
 from traffic.reference import Reference
@@ -45,7 +45,7 @@ def brute(recording: Recording, questions: Questions) -> Shown:
         frames = reference.common(sv, pov)
         for k, lane in enumerate(LANES if frames else ()):
             if lane.direction == recording.direction[sv]:
-                reading = Reading(reference.trace(frames, {"SV": sv, "POV": pov}, {"L": k}))
+                reading = TraceReader(reference.trace(frames, {"SV": sv, "POV": pov}, {"L": k}))
                 ids = int(recording.vehicle_id[sv]), int(recording.vehicle_id[pov])
                 for name in COMPARISON:
                     if reading.holds(reference.formula("base", f"{name}(SV, POV, L)", 0), 0, "strong"):
@@ -108,7 +108,7 @@ def test_simulated_traffic_against_brute_force(busy: tuple[Recording, Shown], qu
     # Without the pre-filter the answer is the same; with one that sees too little it is not.
     assert questions.sight is not None
     assert shown(recording, replace(questions, sight=None)) == expected
-    assert shown(recording, replace(questions, sight=Sight(0.0, 0.0, 5.0))) != expected
+    assert shown(recording, replace(questions, sight=DetectionRange(0.0, 0.0, 5.0))) != expected
 
 
 def test_one_lane_only_is_caught(

@@ -19,7 +19,7 @@ from preventing.recorded import BEFORE, recorded
 from roadproof.analysis.preventable.sides import beside_boundary
 from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.claims import SIDES, Side
-from roadproof.drivers.driving import Reading
+from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre
 from roadproof.drivers.models import MODELS, SCENARIOS, course_in, foreseen
 from roadproof.errors import UsageError
@@ -34,7 +34,7 @@ from roadproof.recordings.formats.recording import Integers, Recording
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.semantics.sampled.recursive import Reading as Plain
+from roadproof.semantics.sampled.recursive import DriverSettings as Plain
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.test_windows import cut
 
@@ -68,7 +68,7 @@ def drives(name: str, model: str, side: Side, **options: str) -> list[tuple[dict
     lines = tuple(line(plane, boundary(name, model, **options), row) for row in plane.rows)
     home = specification(**options)
     near = islice(beside_boundary(plane, lines, side), 4)
-    return [(at, recorded(kind, model, at, Reading(values(), home.options))) for at in near]
+    return [(at, recorded(kind, model, at, DriverSettings(values(), home.options))) for at in near]
 
 
 def told(recording: Recording, asked: Questions, model: str) -> set[tuple[int, int | None, str]]:

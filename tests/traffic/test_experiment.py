@@ -23,7 +23,7 @@ from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.runtime.executors import Hands
+from roadproof.runtime.executors import Executor
 
 US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
 
@@ -114,12 +114,12 @@ def test_two_jobs_give_the_same_bytes(
     workers = []
     true_answers = module.answers_of
 
-    def answers_of(work: Any, jobs: Any, hands: Hands, **more: Any) -> Any:
+    def answers_of(work: Any, jobs: Any, hands: Executor, **more: Any) -> Any:
         workers.append(hands.processes)
         return true_answers(work, jobs, hands, **more)
 
     monkeypatch.setattr(module, "answers_of", answers_of)
-    run_experiment(Experiment(folder, tmp_path, default_settings(), Hands(2)))
+    run_experiment(Experiment(folder, tmp_path, default_settings(), Executor(2)))
     assert contents(tmp_path) == undisturbed
     assert workers == [2]
 

@@ -208,7 +208,7 @@ def test_parts_that_go_wrong_are_caught(
     monkeypatch.setattr(plausible, "_seconds", lambda recording, before: honest(recording, 0))
     assert in_windows(path, monkeypatch) != expected
     monkeypatch.undo()
-    monkeypatch.setattr(large._Reading, "cell", lambda self, row, column: (f"row {row}", ""))
+    monkeypatch.setattr(large._GroupReader, "cell", lambda self, row, column: (f"row {row}", ""))
     assert in_windows(path, monkeypatch) != expected
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from roadproof.recordings.formats.pairs import Reach, Sight, common_pairs, near_pairs, pairs_in_sight
+from roadproof.recordings.formats.pairs import DetectionRange, Reach, common_pairs, near_pairs, pairs_in_sight
 from roadproof.recordings.formats.recording import Recording
 from traffic.make_recording import Track, make_recording
 
@@ -49,7 +49,7 @@ def test_a_pair_is_near_up_to_its_bound_and_no_further(seed: int) -> None:
         assert is_near(tracks) == (beyond_s < 0 and beyond_d < 0), (beyond_s, beyond_d)
 
 
-def in_sight(r: Recording, sight: Sight) -> dict[tuple[int, int], int]:
+def in_sight(r: Recording, sight: DetectionRange) -> dict[tuple[int, int], int]:
     """By pair the lanes in which both are in a frame, one ahead of the other by no more than the bound."""
     rows = [range(r.start[k], r.start[k + 1]) for k in range(r.vehicles)]
     found: dict[tuple[int, int], int] = {}
@@ -86,9 +86,9 @@ def test_pairs_in_sight_are_those_of_a_brute_force(seed: int) -> None:
         ]
         tracks.append(Track(2, int(rng.integers(0, 6)), rows, float(rng.uniform(3, 16))))
     r = make_recording(tracks)
-    sight = Sight(*rng.uniform([0.1, 0.1, 1], [4, 2, 60]).tolist())
+    sight = DetectionRange(*rng.uniform([0.1, 0.1, 1], [4, 2, 60]).tolist())
     if seed % 2:  # the time to collision decides alone
-        sight = Sight(sight.ttc * 5, 0.01, 0.5)
+        sight = DetectionRange(sight.ttc * 5, 0.01, 0.5)
     pairs, lanes = pairs_in_sight(r, common_pairs(r, np.ones(r.vehicles, bool)), sight)
     found = zip(pairs.first.tolist(), pairs.second.tolist(), lanes.tolist(), strict=True)
     assert {(a, b): mask for a, b, mask in found} == in_sight(r, sight)

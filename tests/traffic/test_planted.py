@@ -15,7 +15,7 @@ from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats.highd import read_highd
 from roadproof.recordings.formats.overlaps import find_overlaps
 from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.plant import Place, Planted, plant
+from roadproof.recordings.simulate.plant import Place, PlantedDrive, plant
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 
@@ -26,7 +26,7 @@ SCENARIOS = range(1, 9)
 @pytest.fixture(scope="module", params=[1, 2])
 def found(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> tuple[Findings, dict[int, Planted]]:
+) -> tuple[Findings, dict[int, PlantedDrive]]:
     """All drives one after the other in one recording that went through its files."""
     recording = simulate(Traffic(seconds=70, flow=1000, lane_width=3.5), seed=12)
     right = min(x.d[0] for x in recording.lanes if x.direction == request.param and x.d)
@@ -46,7 +46,7 @@ def found(
 @pytest.mark.parametrize("number", SCENARIOS)
 @pytest.mark.parametrize("set_name", ["base", "extA", "ext"])
 def test_planted_scenario_is_found(
-    number: int, set_name: str, found: tuple[Findings, dict[int, Planted]]
+    number: int, set_name: str, found: tuple[Findings, dict[int, PlantedDrive]]
 ) -> None:
     findings, truths = found
     truth = truths[number]

@@ -22,7 +22,7 @@ from roadproof.recordings.evaluate import disturbances, evaluate
 from roadproof.recordings.evaluate.detectors import find_detections
 from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats import pairs
-from roadproof.recordings.formats.pairs import Reach, Sight, common_pairs
+from roadproof.recordings.formats.pairs import DetectionRange, Reach, common_pairs
 from roadproof.recordings.formats.recording import Recording
 from roadproof.verdict import Verdict
 from traffic.faults import faulty_library, plant_fault
@@ -228,7 +228,7 @@ def test_the_detectors_sight_is_sharp(
 
     def kept(front: int, gap: float) -> bool:
         r = two_cars(front, gap, -1.0, (12.0, 1.8))
-        return len(pairs.pairs_in_sight(r, common_pairs(r, np.ones(2, bool)), Sight(*sight))[0]) == 1
+        return len(pairs.pairs_in_sight(r, common_pairs(r, np.ones(2, bool)), DetectionRange(*sight))[0]) == 1
 
     def check() -> None:
         for front in (0, 1):

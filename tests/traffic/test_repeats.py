@@ -14,7 +14,7 @@ from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.library.bind import default_values
 from roadproof.library.scenarios import COMPARISON
 from roadproof.library.specification import bundled_library
-from roadproof.recordings.evaluate.counting import Counted
+from roadproof.recordings.evaluate.counting import Counts
 from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
 from roadproof.recordings.evaluate.questions import default_settings
 from roadproof.recordings.evaluate.results import Row, Totals
@@ -139,7 +139,7 @@ def test_moments_are_those_of_motion_not_of_place() -> None:
 
 
 def test_the_same_recording_repeats_nothing() -> None:
-    counted = Counted()
+    counted = Counts()
     assert counted.is_new("a", (1, 2), "trace", 0, (5, 6, 0))
     assert counted.is_new("a", (1, 2), "trace", 0, (6, 7))
     assert counted.is_new("b", (1, 2), "trace", 0, (0, 8))  # 0 is no moment

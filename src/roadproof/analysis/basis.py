@@ -74,6 +74,6 @@ class Basis:
         return Search(self.specification, query, setting, search_options)
 
     def proof_of(self, query: Query, units: float | None = None, label: str = "") -> Result:
-        """The prover's verdict on a claim with so many units of work (``proof``). Raises ``Late``."""
+        """The verdict on a claim with ``units`` of work (None: ``proof``). Raises ``BudgetExceeded``."""
         effort = self.effort.of(self.proof if units is None else units)
         return prove_of_scenarios(self.specification, query, effort, label)

@@ -6,16 +6,16 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from roadproof.analysis.study.evidence_store import Question, Shelf, specification_names
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
 from roadproof.engines.prove.doubt import Cause, Doubt, Stop, doubt_of
 from roadproof.engines.prove.properties import Task, find_label, name_of_claim
 from roadproof.engines.prove.prover import Result
-from roadproof.engines.search.settle import Settled, in_doubt, settle, settle_bounded
+from roadproof.engines.search.settle import Settlement, in_doubt, settle, settle_bounded
 from roadproof.errors import InputError
 from roadproof.evidence.answers import proofs as kept
 from roadproof.evidence.answers.proofs import SCHEMA
 from roadproof.evidence.codec import ABSENT, read, write
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.traces import read_trace
 from roadproof.library.elaborate import read_claim
@@ -33,11 +33,11 @@ _BY_TRACE, _BY_DRIVE = "trace", "trace or drive"
 
 
 @dataclass(frozen=True)
-class Answered:
+class ClaimResult:
     """A claim of the list or of the user, settled."""
 
     task: Task
-    settled: Settled
+    settled: Settlement
 
     @property
     def verdict(self) -> ClaimVerdict:
@@ -77,7 +77,7 @@ class Answered:
         )
 
 
-def _counterexample(settled: Settled) -> dict[str, Any] | None:
+def _counterexample(settled: Settlement) -> dict[str, Any] | None:
     """The refuting drive, or else the countermodel, as plain data."""
     if settled.drive is not None:
         return {"kind": "drive", "drive": settled.drive.as_data()}
@@ -128,15 +128,15 @@ class Claims:
         said = {"options": options, "specs": specification_names(self.library)}
         return Question(SCHEMA, said, {}, self.library, find_label)
 
-    def pieces(self, known: Mapping[str, Answered]) -> Sequence[Task]:
+    def pieces(self, known: Mapping[str, ClaimResult]) -> Sequence[Task]:
         return [task for name, task in self.named.items() if name not in known]
 
-    def settle(self, piece: Task) -> dict[str, Answered]:
+    def settle(self, piece: Task) -> dict[str, ClaimResult]:
         """One claim settled: in dense time, or within bounds."""
         with about(piece.name if piece.title else " ".join(piece.claim.split())):
             return self._settle(piece)
 
-    def _settle(self, piece: Task) -> dict[str, Answered]:
+    def _settle(self, piece: Task) -> dict[str, ClaimResult]:
         specification = self.specification_of(piece)
         query = read_claim(specification, piece.claim)
         if self.within is not None:
@@ -147,9 +147,9 @@ class Claims:
             label = piece.id + (f"-{piece.part}" if piece.part else "")
             more = piece.scenario, self.seek_drive, piece.assuming
             settled = self._explained(piece, query, settle(specification, query, self.effort, label, *more))
-        return {name_of(piece): Answered(piece, settled)}
+        return {name_of(piece): ClaimResult(piece, settled)}
 
-    def _explained(self, piece: Task, query: Query, settled: Settled) -> Settled:
+    def _explained(self, piece: Task, query: Query, settled: Settlement) -> Settlement:
         """The same, with the cause of an UNKNOWN."""
         result = settled.result
         if settled.verdict is not Verdict.UNKNOWN or result.stop is None:
@@ -158,17 +158,17 @@ class Claims:
         doubt = doubt_of(*asked, result.reason)
         return replace(settled, result=replace(result, reason=str(doubt), doubt=doubt))
 
-    def doubt(self, piece: Task, reason: str) -> dict[str, Answered]:
+    def doubt(self, piece: Task, reason: str) -> dict[str, ClaimResult]:
         settled = replace(in_doubt(reason, stop=Stop.PROCESS), bounded=self.within is not None)
         doubt = Doubt(Cause.PROCESS, (), self.effort.units, reason)
         settled = replace(settled, result=replace(settled.result, doubt=doubt))
-        return {name_of(piece): Answered(piece, settled)}
+        return {name_of(piece): ClaimResult(piece, settled)}
 
-    def is_sure(self, answer: Answered) -> bool:
+    def is_sure(self, answer: ClaimResult) -> bool:
         """Whether there is evidence; PROVED-BOUNDED has none, and is about other limits the next time."""
         return answer.verdict in (Verdict.PROVED, Verdict.VACUOUS, Verdict.REFUTED)
 
-    def record(self, name: str, answer: Answered, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: ClaimResult, shelf: EvidenceStore) -> dict[str, Any]:
         task, settled, result = answer.task, answer.settled, answer.settled.result
         evidence = shelf.certificate(f"{task.name}.json", result.certificate)
         if settled.drive is not None and result.certificate is None:
@@ -187,7 +187,7 @@ class Claims:
         record = kept.Record(claim=claim, reason=result.reason, seconds=result.seconds, asked=self._asked)
         return write(record)
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answered]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, ClaimResult]:
         found = read(kept.Record, record, "a kept answer")
         said, verdict = found.claim, found.claim.verdict
         name = name_of_claim(said.claim, said.set, said.assuming)
@@ -202,7 +202,7 @@ class Claims:
         if refuted and name in self.named:
             self._check_refuted(name, found.asked, drive)
         result = Result(verdict, found.reason, found.seconds, 0.0, certificate, trace)
-        return name, Answered(task, Settled(result, drive, None, refuted and self.within is not None))
+        return name, ClaimResult(task, Settlement(result, drive, None, refuted and self.within is not None))
 
     @property
     def _asked(self) -> str:
@@ -212,7 +212,7 @@ class Claims:
         place, search_options = self.within
         return f"{search_options.engine} {hashlib.sha256(repr(place).encode()).hexdigest()[:16]}"
 
-    def _check_refuted(self, name: str, asked: str, drive: Judged | None) -> None:
+    def _check_refuted(self, name: str, asked: str, drive: JudgedDrive | None) -> None:
         """Raises ``InputError`` where a kept counterexample is less than what is asked for now."""
         if asked == self._asked:
             return

@@ -14,7 +14,7 @@ from typing import Any
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.meeting import Meeting, conjunctions
 from roadproof.analysis.placing import placed
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain, parts, told_parts
@@ -22,14 +22,14 @@ from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both, either, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, likes_of, numbers_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import DriveVerdict, Verdict
 
@@ -61,7 +61,7 @@ class PairVerdict:
     reason: str = ""
     cores: tuple[Core, ...] = ()
     certificate: Certificate | None = None
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     seconds: float = 0.0
 
 
@@ -123,7 +123,7 @@ class Overlap:
 
     def settle(self, piece: Group) -> dict[str, PairVerdict]:
         """The seed is solved, and the others are answered with its help."""
-        deciding = _Deciding(self.basis, self.meeting)
+        deciding = _DecisionJobs(self.basis, self.meeting)
         begun = now()
         first = deciding.answer(piece.seed)
         found: dict[str, PairVerdict] = {}
@@ -145,7 +145,7 @@ class Overlap:
     def is_sure(self, answer: PairVerdict) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
-    def record(self, name: str, answer: PairVerdict, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: PairVerdict, shelf: EvidenceStore) -> dict[str, Any]:
         kept = kept_answers.Pair(
             a=answer.a.number,
             b=answer.b.number,
@@ -162,7 +162,7 @@ class Overlap:
         )
         return write(kept_answers.Record(verdict=kept))
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, PairVerdict]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, PairVerdict]:
         kept = read(kept_answers.Record, record, "a kept answer").verdict
         a, b = kept.scenarios
         cores = tuple(Core(self._read(x.formula), self._parts(x.parts)) for x in kept.cores)
@@ -202,7 +202,7 @@ def name_of(a: Scenario, b: Scenario) -> str:
 
 
 @dataclass(frozen=True)
-class _Deciding:
+class _DecisionJobs:
     basis: Basis
     meeting: Meeting
 
@@ -214,7 +214,7 @@ class _Deciding:
         try:
             followed = None if seed is None or first is None else self.follow(pair, seed, first)
             return followed or self.decide(pair)
-        except Late as late:
+        except BudgetExceeded as late:
             return _doubt(pair, self.queries(pair), str(late))
 
     def decide(self, pair: Pair) -> PairVerdict:

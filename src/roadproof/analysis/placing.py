@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from roadproof.engines.search.impossible import parts
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.bind import bind, values_with
 from roadproof.library.query import Query
 from roadproof.library.specification import Library
@@ -20,7 +20,7 @@ from roadproof.world.road import Lanelet, Road
 
 def placed(
     file: DriveFile, query: Query, library: Library, roads: Sequence[Road] | None = None
-) -> Judged | None:
+) -> JudgedDrive | None:
     """The motions of ``file`` on a road on which they satisfy ``query``, judged; None where none is.
 
     Tried are the drive's own road and the reference roads with the zones that ``query`` speaks of,
@@ -31,7 +31,7 @@ def placed(
     return placed_on(file, query, library, chosen)
 
 
-def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[Road]) -> Judged | None:
+def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[Road]) -> JudgedDrive | None:
     """The motions of ``file`` on the first of ``roads`` on which they satisfy ``query``, judged."""
     values = values_with(library, file.values)
     now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
@@ -46,11 +46,11 @@ def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[R
     return None
 
 
-def judged_as(file: DriveFile, query: Query, library: Library) -> Judged | None:
+def judged_as(file: DriveFile, query: Query, library: Library) -> JudgedDrive | None:
     """The drive where it is, as one of ``query``; None where the judge rejects that."""
     here = replace(file, formula=query.text, scenario=None)
     try:
-        return Judged(here, library)
+        return JudgedDrive(here, library)
     except RejectedError:
         return None
 

@@ -12,14 +12,14 @@ from typing import Any
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import judged_as, placed
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.engines.search.ask import Search, ask
 from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
 from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel, trace_data
 from roadproof.evidence.traces import read_trace
 from roadproof.library.bind import bind
@@ -41,7 +41,7 @@ from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
@@ -76,7 +76,7 @@ class ChangeFinding:
     verdict: Word
     claim: Query
     certificate: Certificate | None = None
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     trace: Countermodel | None = None
     reason: str = ""
     assuming: Query | None = None
@@ -105,18 +105,18 @@ def changes_of(specification: Specification, query: Query, whole: bool = False) 
         positive: bool,
         root: bool,
     ) -> Iterator[Change]:
-        if isinstance(current, f.Named) and (whole or not _is_simple(current)):
+        if isinstance(current, f.Application) and (whole or not _is_simple(current)):
             label = f"{current.name}({','.join(current.arguments)})"
             yield from walk(current.body, rebuild, (*where, label), positive, root)
             return
-        if isinstance(current, f.Truth) or (isinstance(current, f.Named) and current.body == f.TRUE):
+        if isinstance(current, f.Truth) or (isinstance(current, f.Application) and current.body == f.TRUE):
             return
         if not root:
             shown = text(as_syntax(current))
             for value in (True, False):
                 changed = Claim(query.claim.given, as_syntax(rebuild(f.Truth(value))))
                 yield Change(where, shown, value, elaborate(specification, changed), value == positive)
-        parts = () if isinstance(current, f.Named) else f.children(current)
+        parts = () if isinstance(current, f.Application) else f.children(current)
         for place, part in enumerate(parts):
             inside = _inside(current, parts, place, rebuild)
             yield from walk(part, inside, where, positive != isinstance(current, f.Not), False)
@@ -130,29 +130,29 @@ def _inside(
     return lambda new: rebuild(f.with_children(around, (*parts[:place], new, *parts[place + 1 :])))
 
 
-def _is_simple(formula: f.Named) -> bool:
+def _is_simple(formula: f.Application) -> bool:
     below = list(subformulas(formula.body))
     numbers = any(isinstance(x, f.Compare) for x in below)
     roads = any(isinstance(x, f.Occupies) for x in below)
-    alone = not any(isinstance(x, f.Named) for x in below)
+    alone = not any(isinstance(x, f.Application) for x in below)
     return is_state(formula) and (alone or (numbers and not roads))
 
 
 @dataclass(frozen=True)
-class Learned:
+class SharedFindings:
     """What one scenario leaves to those that differ from it in the road sector only.
 
     By the changed formula, without sectors: drives that told it apart; ``vain``: looked for in vain.
     """
 
-    drives: Mapping[Formula, Judged] = field(default_factory=dict)
+    drives: Mapping[Formula, JudgedDrive] = field(default_factory=dict)
     vain: frozenset[Formula] = frozenset()
 
 
-def learn(findings: ChangeFindings) -> Learned:
+def learn(findings: ChangeFindings) -> SharedFindings:
     """What the findings on one scenario teach about its likes."""
     vain = (x for x in findings if x.drive is None and not x.redundant and not x.late)
-    return Learned(
+    return SharedFindings(
         {_key(x.change): x.drive for x in findings if x.drive is not None},
         frozenset(_key(x.change) for x in vain),
     )
@@ -167,11 +167,11 @@ def _in_sector(change: Change) -> bool:
 
 
 @dataclass(frozen=True)
-class Examined:
+class ScenarioTask:
     """A scenario whose changes are to be decided, with what its likes have taught."""
 
     scenario: Scenario
-    learned: Learned = Learned()
+    learned: SharedFindings = SharedFindings()
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,7 @@ class Redundancy:
         more = {"whole": str(self.whole), "effort": f"{self.basis.effort.units:g}", **self.basis.models}
         return Question(SCHEMA, said, more, self.basis.library)
 
-    def pieces(self, known: Mapping[str, ChangeFindings]) -> Sequence[Examined]:
+    def pieces(self, known: Mapping[str, ChangeFindings]) -> Sequence[ScenarioTask]:
         """One scenario of each kind comes first; those that differ in their road sector learn from it."""
         first: dict[int, int] = {}
         for number in self.numbers:
@@ -199,9 +199,9 @@ class Redundancy:
         left = [n for n in self.numbers if name_of(n) not in known]
         leaders = [n for n in left if n in first.values()]
         if leaders:
-            return [Examined(self._scenario(n)) for n in leaders]
+            return [ScenarioTask(self._scenario(n)) for n in leaders]
         taught = {kind: learn(known[name_of(leader)]) for kind, leader in first.items()} if left else {}
-        return [Examined(self._scenario(n), taught[self._likes[n]]) for n in left]
+        return [ScenarioTask(self._scenario(n), taught[self._likes[n]]) for n in left]
 
     def _scenario(self, number: int) -> Scenario:
         return Scenario(number, self.basis.specification.set_name)
@@ -210,19 +210,19 @@ class Redundancy:
     def _likes(self) -> dict[int, int]:
         return likes_of(self.basis.specification)
 
-    def settle(self, piece: Examined) -> dict[str, ChangeFindings]:
-        examining = _Examining(self.basis, piece.scenario, piece.learned)
+    def settle(self, piece: ScenarioTask) -> dict[str, ChangeFindings]:
+        examining = _ExaminationJobs(self.basis, piece.scenario, piece.learned)
         return {name_of(piece.scenario.number): tuple(examining.run(self.whole))}
 
-    def doubt(self, piece: Examined, reason: str) -> dict[str, ChangeFindings]:
-        examining = _Examining(self.basis, piece.scenario)
+    def doubt(self, piece: ScenarioTask, reason: str) -> dict[str, ChangeFindings]:
+        examining = _ExaminationJobs(self.basis, piece.scenario)
         changes = changes_of(self.basis.specification, examining.query, self.whole)
         return {name_of(piece.scenario.number): tuple(examining.doubt(x, reason) for x in changes)}
 
     def is_sure(self, answer: ChangeFindings) -> bool:
         return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
-    def record(self, name: str, answer: ChangeFindings, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> dict[str, Any]:
         number = int(name.rpartition("-")[2])
         verdicts = tuple(
             Finding(
@@ -245,9 +245,9 @@ class Redundancy:
         )
         return write(Record(scenario=number, verdicts=verdicts))
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, ChangeFindings]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, ChangeFindings]:
         kept = read(Record, record, "a kept answer")
-        examining = _Examining(self.basis, self._scenario(kept.scenario))
+        examining = _ExaminationJobs(self.basis, self._scenario(kept.scenario))
         changes = list(changes_of(self.basis.specification, examining.query, self.whole))
         if len(changes) != len(kept.verdicts):
             raise InputError(
@@ -256,7 +256,7 @@ class Redundancy:
         findings = (self._recalled(x, y, shelf) for x, y in zip(changes, kept.verdicts, strict=True))
         return name_of(kept.scenario), tuple(findings)
 
-    def _recalled(self, change: Change, said: Finding, shelf: Shelf) -> ChangeFinding:
+    def _recalled(self, change: Change, said: Finding, shelf: EvidenceStore) -> ChangeFinding:
         specification = self.basis.specification
         if said.changed != change.changed.text:
             raise InputError(f"a finding on {said.changed}, where one on {change.changed.text} was kept")
@@ -284,14 +284,14 @@ def name_of(number: int) -> str:
     return f"scenario-{number:02}"
 
 
-class _Examining:
-    def __init__(self, basis: Basis, scenario: Scenario, learned: Learned = Learned()) -> None:
+class _ExaminationJobs:
+    def __init__(self, basis: Basis, scenario: Scenario, learned: SharedFindings = SharedFindings()) -> None:
         self.basis = basis
         self.values = basis.all_values()
         self.scenario = scenario
         self.query = applied(basis.specification, scenario)
         self.learned = learned
-        self.mine: list[Judged] = []
+        self.mine: list[JudgedDrive] = []
 
     def run(self, whole: bool) -> Iterator[ChangeFinding]:
         """The findings on every change, in the order of ``changes_of``."""
@@ -299,13 +299,13 @@ class _Examining:
         known: dict[Formula, ChangeFinding] = {}
         try:
             self._collect()
-        except Late as late:
+        except BudgetExceeded as late:
             known = {x.changed.formula: self.doubt(x, str(late)) for x in changes}
         for change in changes:
             if change.changed.formula not in known:
                 try:
                     known[change.changed.formula] = self._decide(change)
-                except Late as late:
+                except BudgetExceeded as late:
                     known[change.changed.formula] = self.doubt(change, str(late))
             yield replace(known[change.changed.formula], change=change)
 
@@ -327,7 +327,7 @@ class _Examining:
     def _search(self, query: Query) -> Search:
         return self.basis.search(query, usual_road(self.query.formula))
 
-    def _candidates(self, change: Change) -> Iterator[tuple[Judged, bool]]:
+    def _candidates(self, change: Change) -> Iterator[tuple[JudgedDrive, bool]]:
         """Known drives that may tell a change apart, and whether they are to be tried on other roads too."""
         yield from ((judged, False) for judged in self.mine)
         if _in_sector(change):
@@ -379,7 +379,7 @@ class _Examining:
             return None
         return ChangeFinding(change, Verdict.PROVED, claim, result.certificate, assuming=both(*moving))
 
-    def _tells_apart(self, judged: Judged, query: Query, elsewhere: bool) -> Judged | None:
+    def _tells_apart(self, judged: JudgedDrive, query: Query, elsewhere: bool) -> JudgedDrive | None:
         """The drive judged on ``query`` where it is, or also on roads of other zones."""
         file, library = judged.file, self.basis.library
         if not set(query.vehicles) <= set(file.drive.vehicles):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from roadproof.analysis.study.evidence_store import Question, Shelf, specification_names
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
 from roadproof.engines.search import ask
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.impossible import Impossibility
@@ -22,7 +22,7 @@ from roadproof.verdict import Verdict
 
 
 @dataclass(frozen=True)
-class Witnessing:
+class WitnessStudy:
     """Searches for drives, as a ``study.frame.Study``.
 
     ``finish`` is told of each outcome under its name, in the process that found it.
@@ -65,7 +65,7 @@ class Witnessing:
         """Whether all drives that were asked for are there, or a proof that there is none."""
         return answer.verdict is Verdict.IMPOSSIBLE or (bool(answer.drives) and not answer.reason)
 
-    def record(self, name: str, answer: Outcome, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: Outcome, shelf: EvidenceStore) -> dict[str, Any]:
         shown = answer.impossibility
         values = self.named[name].setting.values
         outcome = kept.OutcomeRecord(
@@ -89,7 +89,7 @@ class Witnessing:
         )
         return write(kept.Record(name=name, outcome=outcome, asked=_asked(self.named[name])))
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Outcome]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Outcome]:
         found = read(kept.Record, record, "a kept answer")
         name, said = found.name, found.outcome
         search = self.named.get(name)

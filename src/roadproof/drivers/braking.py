@@ -34,7 +34,7 @@ class Ramp:
 
 
 @dataclass(frozen=True)
-class Aided:
+class AssistedBraking:
     """The braking of a driver, and of AEB from its onset on, joined as the option ``cc_aeb`` says.
 
     AEB brakes at least as hard as the driver, in a ramp of the same duration; ``aeb`` None is no AEB.

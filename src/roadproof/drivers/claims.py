@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
-from roadproof.drivers.driving import Reading, is_aided, speeds_of
+from roadproof.drivers.driving import DriverSettings, is_aided, speeds_of
 from roadproof.drivers.manoeuvres import Manoeuvre, Values, lane_width
 from roadproof.drivers.models import GRADUAL, MODELS, follows, foreseen, touched, unpreventable, untouched
 
@@ -11,7 +11,7 @@ Side: TypeAlias = Literal["unpreventable", "preventable"]
 SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
 
 
-def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side, reading: Reading) -> str:
+def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side, reading: DriverSettings) -> str:
     """What the drive from these values shows: its side, the model followed, and what comes of it.
 
     Of a controller that is stepped: only how the drive begins, and what comes of it. Where POV's braking

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.drivers.braking import Aided, Ramp
+from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.manoeuvres import FIRST, OTHER, SECOND, Manoeuvre, Values, lane_width
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.stepped import course_of
@@ -24,14 +24,14 @@ _BOTH_LANES = (OWN_LANE, "left")
 
 
 @dataclass(frozen=True)
-class Reading:
+class DriverSettings:
     """Values of parameters (SI) and options, as the specification at hand has them."""
 
     values: Mapping[str, Fraction]
     options: Mapping[str, str]
 
 
-def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: Reading) -> Drive:
+def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: DriverSettings) -> Drive:
     """The drive from these initial values on. Raises ``InputError`` where an instant of it is irrational."""
     lane, width = lane_width(values), values["width"]
     middle = (lane + width) / 2
@@ -116,11 +116,11 @@ def _across(lane: Fraction, w: Fraction, past: Fraction = _STILL) -> list[Across
     return [*before, (steering, -w / steering)]
 
 
-def _reaction(reading: Reading) -> Fraction:
+def _reaction(reading: DriverSettings) -> Fraction:
     return reading.values["cc_evaluation"] + reading.values["cc_delay"]
 
 
-def _onset(model: str, values: Values, reading: Reading) -> Fraction | None:
+def _onset(model: str, values: Values, reading: DriverSettings) -> Fraction | None:
     """When SV begins to brake, or to respond, in a cut-in; None is never."""
     w, known = values["Vy"], reading.values
     intrusion = (values["dy0"] / 2 + known["r157_past"]) / w
@@ -135,7 +135,7 @@ def _onset(model: str, values: Values, reading: Reading) -> Fraction | None:
             return _careful_onset(values, reading)
 
 
-def _careful_onset(values: Values, reading: Reading) -> Fraction | None:
+def _careful_onset(values: Values, reading: DriverSettings) -> Fraction | None:
     w, known, options = values["Vy"], reading.values, reading.options
     weighed = known["cc_evaluation"] if options["cc_perception"] == "time" else _STILL
     match options["cc_perception"]:
@@ -155,26 +155,26 @@ def _careful_onset(values: Values, reading: Reading) -> Fraction | None:
     return max(seen + weighed, opens) + known["cc_delay"]
 
 
-def is_aided(model: str, reading: Reading) -> bool:
+def is_aided(model: str, reading: DriverSettings) -> bool:
     """Whether there is AEB in a cut-in of the model."""
     return model == "careful" and reading.options["cc_aeb"] != "none"
 
 
-def _cut_in(model: str, values: Values, reading: Reading) -> list[Along]:
+def _cut_in(model: str, values: Values, reading: DriverSettings) -> list[Along]:
     if is_aided(model, reading):
         return _aided(values, reading).pieces(values["Ve0"])
     return _along(model, values["Ve0"], _onset(model, values, reading), reading)
 
 
-def _aided(values: Values, reading: Reading) -> Aided:
+def _aided(values: Values, reading: DriverSettings) -> AssistedBraking:
     """The braking of the careful driver, who may never brake, and of AEB from full wrap on."""
     known, wrap = reading.values, (values["dy0"] + values["width"]) / values["Vy"]
     onset, ramp = _careful_onset(values, reading), known["cc_ramp"]
     driver = Ramp(wrap, ramp, _STILL) if onset is None else Ramp(onset, ramp, known["cc_braking"])
-    return Aided(driver, Ramp(wrap, ramp, known["aeb_braking"]), reading.options["cc_aeb"])
+    return AssistedBraking(driver, Ramp(wrap, ramp, known["aeb_braking"]), reading.options["cc_aeb"])
 
 
-def speeds_of(values: Values, reading: Reading) -> tuple[Fraction, ...]:
+def speeds_of(values: Values, reading: DriverSettings) -> tuple[Fraction, ...]:
     """What ``follows_cutIn_careful`` takes of AEB (m/s): the speeds from which the ramps would have begun.
 
     Where a ramp has no part in the motion it is a speed from which the braking would be full by then.
@@ -206,7 +206,7 @@ def speeds_of(values: Values, reading: Reading) -> tuple[Fraction, ...]:
             return tuple(by_then)
 
 
-def motion_in_deceleration(model: str, values: Values, reading: Reading) -> list[Along]:
+def motion_in_deceleration(model: str, values: Values, reading: DriverSettings) -> list[Along]:
     """How SV moves until it stands; nothing where it never brakes. Raises ``InputError`` as ``drive_of``."""
     hard = reading.values["cc_hard"]
     if model == "rss":
@@ -226,11 +226,11 @@ def _braking(speed: Fraction, values: Values) -> list[Along]:
     return (
         _brakes(speed, braking)
         if rate is None
-        else Aided(Ramp(_STILL, braking / rate, braking)).pieces(speed)
+        else AssistedBraking(Ramp(_STILL, braking / rate, braking)).pieces(speed)
     )
 
 
-def _along(model: str, speed: Fraction, onset: Fraction | None, reading: Reading) -> list[Along]:
+def _along(model: str, speed: Fraction, onset: Fraction | None, reading: DriverSettings) -> list[Along]:
     """SV goes on to its onset, and brakes until it stands."""
     known = reading.values
     if onset is None:
@@ -244,7 +244,7 @@ def _along(model: str, speed: Fraction, onset: Fraction | None, reading: Reading
         braking = known["r157_braking"] if model == "r157" else known["eu1426_braking"]
         return [*before, *_brakes(speed, braking)]
     braking, ramp = known["cc_braking"], known["cc_ramp"]
-    return Aided(Ramp(onset, ramp, braking)).pieces(speed)
+    return AssistedBraking(Ramp(onset, ramp, braking)).pieces(speed)
 
 
 def _brakes(speed: Fraction, braking: Fraction) -> list[Along]:

@@ -11,7 +11,7 @@ from functools import cmp_to_key
 from itertools import pairwise
 
 from roadproof.drivers.boundary import Plane
-from roadproof.drivers.driving import Reading, motion_in_deceleration
+from roadproof.drivers.driving import DriverSettings, motion_in_deceleration
 from roadproof.drivers.manoeuvres import Values, is_possible
 from roadproof.drivers.models import MODELS
 from roadproof.errors import UsageError
@@ -31,7 +31,7 @@ TOLD = (
 _Coefficients = list[Fraction]
 
 
-def check_gradual(model: str, values: Values, reading: Reading) -> None:
+def check_gradual(model: str, values: Values, reading: DriverSettings) -> None:
     """Raises ``UsageError`` for models and speeds of which nothing is worked out with a finite rate."""
     if MODELS[model].is_stepped:
         raise UsageError(
@@ -46,7 +46,7 @@ def check_gradual(model: str, values: Values, reading: Reading) -> None:
         )
 
 
-def line(plane: Plane, model: str, reading: Reading, row: Fraction) -> TruthSet:
+def line(plane: Plane, model: str, reading: DriverSettings, row: Fraction) -> TruthSet:
     """At which gaps on a row's line the collision is unpreventable; nowhere where POV would go backwards."""
     values = plane.values(row)
     if not is_possible(plane.manoeuvre, values):

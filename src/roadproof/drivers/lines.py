@@ -8,7 +8,7 @@ from typing import Any
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.claims import Side
-from roadproof.drivers.driving import Reading
+from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.models import unpreventable
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
@@ -49,7 +49,7 @@ def truths(
     are those of all parameters (SI).
     """
     if gradual.RATE in plane.fixed:
-        reading = Reading(values, specification.options)
+        reading = DriverSettings(values, specification.options)
         return (gradual.line(plane, model, reading, row) for row in plane.rows)
     text = unpreventable(plane.manoeuvre.name, model, plane.manoeuvre.vehicles)
     formula = bind(read_claim(specification, text).formula, _NO_ROAD, {}, values)

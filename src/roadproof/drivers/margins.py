@@ -125,18 +125,18 @@ def boundary_of(formula: Formula, model: str, values: Mapping[str, Fraction]) ->
 
 def holds_in(formula: Formula, state: State) -> bool:
     """Whether a formula about a state, without parameters, holds in this one; exact."""
-    return truth_within(formula, _Varied(state), Fraction(0), Fraction(1)).at(Fraction(0))
+    return truth_within(formula, _VariedState(state), Fraction(0), Fraction(1)).at(Fraction(0))
 
 
 def margin(state: State, boundary: Boundary, vehicles: tuple[str, ...]) -> Margin:
     """How far a state is from the boundary. Ends of what was looked at, as a gap of 0, are no changes."""
     last = vehicles[-1]
     room = state.gap(vehicles[-2], last)  # less is no such manoeuvre
-    shifted = _Varied(state, last, state.signals["s", last] - room)
+    shifted = _VariedState(state, last, state.signals["s", last] - room)
     farthest = max(room, Fraction(0)) + _FARTHEST
     gaps = _inside(truth_within(boundary.at_values, shifted, Fraction(0), farthest), farthest)
     latest = boundary.delay + _LATEST
-    delays = _inside(truth_within(boundary.delayed, _Varied(state), Fraction(0), latest), latest)
+    delays = _inside(truth_within(boundary.delayed, _VariedState(state), Fraction(0), latest), latest)
     return Margin(_distance(gaps, room), _distance(delays, boundary.delay))
 
 
@@ -163,7 +163,7 @@ def _varying(formula: Formula, name: str) -> Formula:
 
 
 @dataclass(frozen=True)
-class _Varied:
+class _VariedState:
     """A state as signals: what runs is where the rear of ``moved`` is, from ``begin`` on, or a parameter."""
 
     state: State

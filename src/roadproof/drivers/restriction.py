@@ -129,14 +129,16 @@ def said_in(query: Query, home: Specification, there: Specification) -> Query:
     called = {
         (x.name, x.arguments)
         for x in subformulas(query.formula)
-        if isinstance(x, f.Named)
-        and any(isinstance(y, f.Named) and y.name.partition("@")[0] in changed for y in subformulas(x))
+        if isinstance(x, f.Application)
+        and any(isinstance(y, f.Application) and y.name.partition("@")[0] in changed for y in subformulas(x))
     }
     if not called:
         return query
 
     def written_out(part: Formula) -> Formula:
-        return part.body if isinstance(part, f.Named) and (part.name, part.arguments) in called else part
+        return (
+            part.body if isinstance(part, f.Application) and (part.name, part.arguments) in called else part
+        )
 
     formula = f.transform(query.formula, written_out)
     again = elaborate(there, Claim(query.claim.given, as_syntax(formula)))

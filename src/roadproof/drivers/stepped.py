@@ -186,16 +186,16 @@ def _touches(other: _Other, now: _State, braking: int) -> bool:
     if begin > end:
         return False
     slows = other.braking if now.its_speed else 0
-    way = _Way(Fraction(now.gap), Fraction(now.speed - now.its_speed), Fraction(braking - slows))
+    way = _GapCourse(Fraction(now.gap), Fraction(now.speed - now.its_speed), Fraction(braking - slows))
     stands = Fraction(now.its_speed, slows) if slows else end
     if stands >= end:
         return way.meets(begin, end, other.lengths)
-    rest = _Way(way.at(stands), now.speed - braking * stands, Fraction(braking))
+    rest = _GapCourse(way.at(stands), now.speed - braking * stands, Fraction(braking))
     return way.meets(begin, stands, other.lengths) or rest.meets(Fraction(0), end - stands, other.lengths)
 
 
 @dataclass(frozen=True)
-class _Way:
+class _GapCourse:
     """The gap over time: ``gap - closing*s + bend*s^2/2``."""
 
     gap: Fraction

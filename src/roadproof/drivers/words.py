@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 from roadproof.drivers.manoeuvres import Quantity
-from roadproof.logic.formula import Formula, Named, children
+from roadproof.logic.formula import Application, Formula, children
 from roadproof.logic.rewrite import vehicles_of
 
 _CAREFUL, _R157, _EU1426, _RSS, _FSM = (
@@ -54,13 +54,13 @@ _ENDINGS = {"careful": _CAREFUL, "r157": _R157, "eu1426": _EU1426, "rss": _RSS, 
 _BEGINNINGS = {"unpreventable": "cannot prevent a collision", "follows": "moves as the model says"}
 
 
-def words_of_parts(formula: Formula) -> dict[Named, str]:
+def words_of_parts(formula: Formula) -> dict[Application, str]:
     """What parts of driver models say of their vehicles, with their names; other parts are left out.
 
     The arguments of many are numbers, so the vehicles are those of the nearest part around it that names two.
     """
     vehicles = {*vehicles_of(formula)}
-    found: dict[Named, str] = {}
+    found: dict[Application, str] = {}
     seen: set[Formula] = set()
     left: list[tuple[Formula, tuple[str, ...]]] = [(formula, ())]
     while left:
@@ -68,7 +68,7 @@ def words_of_parts(formula: Formula) -> dict[Named, str]:
         if part in seen:
             continue
         seen.add(part)
-        if isinstance(part, Named):
+        if isinstance(part, Application):
             own = tuple(x for x in part.arguments if x in vehicles)
             around = own if len(own) > 1 else around
             words = _words(part.name.partition("@")[0], around)

@@ -12,7 +12,7 @@ from itertools import combinations
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula, Named
+from roadproof.logic.formula import Application, Formula
 from roadproof.logic.node import once
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import rename, road_names, terms_of, without_names
@@ -30,7 +30,7 @@ class Atoms:
     named: dict[str, Formula] = field(default_factory=dict)
 
     def abstract(self, formula: Formula) -> Formula:
-        """``formula`` with each atom as ``Named(unique text, (), meaning)`` and no other names.
+        """``formula`` with each atom as ``Application(unique text, (), meaning)`` and no other names.
 
         The body of a quantifier over the road is left as it is, to be abstracted at each instance.
         """
@@ -42,7 +42,7 @@ class Atoms:
             return done[current]
 
         def descend(current: Formula) -> Formula:
-            if isinstance(current, Named):
+            if isinstance(current, Application):
                 return visit(current.body)
             if isinstance(current, f.Some | f.Every):
                 return current
@@ -56,7 +56,7 @@ class Atoms:
             raise InputError(f"'{name}' is no atom of the claim")
         return self.named[name]
 
-    def _atom(self, formula: Formula) -> Named:
+    def _atom(self, formula: Formula) -> Application:
         meaning = without_names(formula)
         key = up_to_variables(meaning)
         if key not in self.names:
@@ -67,7 +67,7 @@ class Atoms:
                 name = f"{shown} #{count}"
             self.names[key] = name
             self.named[name] = meaning
-        return Named(self.names[key], (), self.named[self.names[key]])
+        return Application(self.names[key], (), self.named[self.names[key]])
 
 
 def is_atom(formula: Formula) -> bool:
@@ -77,11 +77,11 @@ def is_atom(formula: Formula) -> bool:
             return True
         case f.Some() | f.Every():
             return not _is_open(formula) and f.is_state(formula)
-        case Named(_, _, body):
+        case Application(_, _, body):
             return (
                 f.is_state(body)
                 and not any(_is_open(part) for part in f.subformulas(body))
-                and any(not isinstance(part, Named | f.Truth) for part in _combined(body))
+                and any(not isinstance(part, Application | f.Truth) for part in _combined(body))
             )
         case _:
             return False

@@ -21,7 +21,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import (
     ALL_SCHEMAS,
     NOTHING,
-    Assumed,
+    Assumption,
     Axiom,
     assumption,
     value_texts,
@@ -60,7 +60,7 @@ class Certificate:
     names: Mapping[Site, str]
     lemmas: tuple[Lemma, ...]
     queries: tuple[tuple[str, str], ...]
-    assumed: Assumed = NOTHING
+    assumed: Assumption = NOTHING
     pinned: tuple[str, ...] = ()
     tableau: tuple[str, ...] | None = field(default=None, compare=False)
 
@@ -73,7 +73,7 @@ def certify(
     lemmas: tuple[Lemma, ...],
     label: str = "",
     scenario: int | None = None,
-    assumed: Assumed = NOTHING,
+    assumed: Assumption = NOTHING,
     pinned: tuple[str, ...] = (),
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof.
@@ -111,7 +111,7 @@ def certify(
 def goal_of(
     specification: Specification,
     query: Query,
-    assumed: Assumed,
+    assumed: Assumption,
     atoms: Atoms,
     pinned: Sequence[str],
 ) -> tuple[Formula, Formula]:
@@ -245,7 +245,7 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
     }
 
 
-def _assumed_data(assumed: Assumed) -> dict[str, Any]:
+def _assumed_data(assumed: Assumption) -> dict[str, Any]:
     """What is assumed, the facts about motion that are premises, and the limits that are none.
 
     Nothing where nothing is assumed.
@@ -304,7 +304,7 @@ def read_certificate_data(content: object, where: str) -> Certificate:
     )
 
 
-def _assumed(data: Fields) -> Assumed:
+def _assumed(data: Fields) -> Assumption:
     """The inverse of ``_assumed_data``."""
     if not {"assuming", "axioms", "unused"} & {*data.content}:
         return NOTHING
@@ -313,7 +313,7 @@ def _assumed(data: Fields) -> Assumed:
     if not said and not entries:
         raise InputError(f"{data.where}: 'axioms' is empty, and nothing is assumed: leave it out")
     unused = data.texts("unused") if "unused" in data.content else ()
-    return Assumed(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries), unused)
+    return Assumption(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries), unused)
 
 
 def _axiom(content: object, where: str) -> Axiom:

@@ -11,7 +11,7 @@ from roadproof.evidence.answers.proofs import misnamed, shown
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.finding import Acceptance, Finding, Ruled
+from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.library.bind import default_values, values_with
@@ -21,7 +21,7 @@ from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Library
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import parameters_of
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
 
@@ -39,7 +39,7 @@ class Checker:
     library: Library
     ask: Callable[[str], str]
     find_label: FindLabel
-    ruled: Ruled | None = None
+    ruled: OtherVerdict | None = None
 
     def check(self, path: Path) -> Finding:
         """What a file shows. Never fails for what is in the file."""
@@ -54,7 +54,7 @@ class Checker:
             raise InputError(f"its schema is {schema[:60]!r}, but must be {known}")
         except MissingSolverError:
             raise
-        except Late as late:
+        except BudgetExceeded as late:
             return Finding(str(path), "", Acceptance.UNDECIDED, str(late))
         except RoadproofError as error:
             return Finding(str(path), "", Acceptance.UNREADABLE, without_place(str(error), path))
@@ -73,7 +73,7 @@ class Checker:
             reason = with_hint(reason, file.claim)
         named = shown(label, file.set_name)
         told = statement(file.assumed.said, file.claim)
-        ruled = self.ruled or Ruled(outcome, reason, "")
+        ruled = self.ruled or OtherVerdict(outcome, reason, "")
         more = (ruled.checked, ruled.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
         return Finding(
             str(path), "certificate", outcome, reason, "PROVED", named, told, *more, kernel=ruled.word

@@ -64,7 +64,7 @@ def prefix_form(formula: Formula) -> str:
     match formula:
         case f.Truth(value):
             return str(value).lower()
-        case f.Named(name, _, _):
+        case f.Application(name, _, _):
             return f"|{name}|"
         case f.Not(body):
             return f"(not {prefix_form(body)})"
@@ -222,7 +222,7 @@ class _Derivation:
         match formula:
             case f.Truth(value):
                 return "true" if value == positive else "false"
-            case f.Named(name, _, _):
+            case f.Application(name, _, _):
                 return self.literal(name, positive, moment)
             case f.Not(body):
                 return self.truth(body, not positive, moment)

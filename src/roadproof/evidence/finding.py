@@ -79,7 +79,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Ruled:
+class OtherVerdict:
     """What another than solver and judge says: ``word`` in its own word."""
 
     outcome: Acceptance

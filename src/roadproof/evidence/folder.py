@@ -40,7 +40,7 @@ OTHER_LIBRARY = "whether its words meant the same in the other library that its 
 
 
 @dataclass
-class Told:
+class FolderStatements:
     """What the index and the journal of a folder say of the files in it and below it.
 
     ``specs`` are the specification files beside them; ``problems`` are found before any file is checked;
@@ -77,14 +77,14 @@ class Survey:
     """The files to be checked with the specification files of each, and what is said of them."""
 
     files: Mapping[Path, tuple[Path, ...]]
-    told: tuple[Told, ...]
+    told: tuple[FolderStatements, ...]
     problems: tuple[Finding, ...]
 
 
 def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel) -> Survey:
     """What is in files and folders. Raises ``InputError`` for a path that is not there or holds nothing."""
     files: dict[Path, tuple[Path, ...]] = {}
-    told: list[Told] = []
+    told: list[FolderStatements] = []
     problems: list[Finding] = []
     for path in paths:
         if not path.is_dir():
@@ -132,8 +132,8 @@ def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
     return files, links
 
 
-def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Told:
-    told = Told(home)
+def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> FolderStatements:
+    told = FolderStatements(home)
     try:
         journal = read_kept(home)
     except RoadproofError as error:
@@ -162,7 +162,7 @@ def _unreadable(path: Path, fault: str) -> Finding:
     return Finding(str(path), "index", Acceptance.UNREADABLE, without_place(fault, path))
 
 
-def _without_twins(told: Told, entries: Sequence[Entry]) -> Iterator[Entry]:
+def _without_twins(told: FolderStatements, entries: Sequence[Entry]) -> Iterator[Entry]:
     seen: dict[tuple[object, ...], Entry] = {}
     for entry in entries:
         first = seen.setdefault(entry.key, entry)
@@ -172,7 +172,7 @@ def _without_twins(told: Told, entries: Sequence[Entry]) -> Iterator[Entry]:
         yield entry
 
 
-def _add_journal(told: Told, journal: Journal, library: Library, find_label: FindLabel) -> None:
+def _add_journal(told: FolderStatements, journal: Journal, library: Library, find_label: FindLabel) -> None:
     """The answers of a journal that the index does not say in the same words; of one file each the last."""
     index = None if told.index is None else IndexLines(told.index)
     try:
@@ -224,7 +224,7 @@ def conclude(surveyed: Survey, found: Mapping[Path, Finding]) -> Iterator[Findin
     yield from surveyed.problems
 
 
-def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
+def _of_entry(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) -> Finding:
     """The entry's own words, where its evidence shows them."""
     finding = _bound(entry, told, found)
     reason = finding.reason.removeprefix(f"{entry.where}: ").removeprefix(f"{entry.where} ")
@@ -233,7 +233,7 @@ def _of_entry(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Findin
     return replace(finding, unchecked=(*finding.unchecked, *told.unchecked))
 
 
-def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
+def _bound(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) -> Finding:
     verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
     claim = statement(entry.assuming, entry.claim) if entry.claim else ""
     said = Finding(entry.where, "index", Acceptance.ACCEPTED, "", verdict, entry.label, claim)
@@ -267,7 +267,7 @@ def _bound(entry: Entry, told: Told, found: Mapping[Path, Finding]) -> Finding:
     return replace(said, claim=claim or finding.claim, checked=finding.checked, unchecked=unchecked)
 
 
-def _strays(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:
+def _strays(told: FolderStatements, found: Mapping[Path, Finding]) -> Iterator[Finding]:
     """Files that no entry names. Where the index cannot be read, or is none, they stand for themselves."""
     mentioned = {entry.file for entry in told.entries}
     readable = (told.entries or told.index is not None) and not told.alone
@@ -280,7 +280,7 @@ def _strays(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:
             yield finding
 
 
-def _of_whole(told: Told, found: Mapping[Path, Finding]) -> Iterator[Finding]:
+def _of_whole(told: FolderStatements, found: Mapping[Path, Finding]) -> Iterator[Finding]:
     if told.index is None or told.library is None:
         return
     formulas = {

@@ -77,7 +77,7 @@ class RejectedError(InputError):
 
 
 @dataclass(frozen=True, init=False)
-class Judged:
+class JudgedDrive:
     """A drive file that stands: its formula holds on its drive. Only judging makes one.
 
     ``natural``: whether it was looked for among natural drives (``encode.build.Assumptions``), None where it

@@ -74,7 +74,7 @@ def judge_periodic(formula: Formula, given: Mapping[Formula, TruthSet], loop: Lo
                 return intersection([visit(part) for part in parts])
             case f.Or(parts):
                 return union([visit(part) for part in parts])
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return visit(body)
             case f.Eventually(window, body):
                 low, high = _within(window, loop)

@@ -127,7 +127,7 @@ def without_empty_windows(formula: Formula) -> Formula:
                 return f.FALSE
             case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
                 return current
-            case f.Named():
+            case f.Application():
                 return current
             case _:
                 assert_never(current)

@@ -154,7 +154,7 @@ def state(formula: Formula) -> str:
             return f"(and {' '.join(map(state, parts))})"
         case f.Or(parts):
             return f"(or {' '.join(map(state, parts))})"
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             return state(body)
         case f.Until() | f.Eventually() | f.Always():
             raise ValueError("a state formula has no temporal operator")

@@ -51,7 +51,7 @@ def _bound(
     formula: Formula, road: Road, lanes: tuple[tuple[str, str], ...], values: tuple[tuple[str, Fraction], ...]
 ) -> Formula:
     refuse_variables(formula)
-    return with_values(_Grounding(road, dict(lanes)).visit(formula, {}), dict(values))
+    return with_values(_Grounder(road, dict(lanes)).visit(formula, {}), dict(values))
 
 
 def refuse_variables(formula: Formula) -> None:
@@ -81,7 +81,7 @@ def occupies(vehicle: str, lanelet: Lanelet) -> Formula:
     return f.conjunction(*inside)
 
 
-class _Grounding:
+class _Grounder:
     def __init__(self, road: Road, lanes: Mapping[str, str]) -> None:
         self.road = road
         self.lanes = lanes
@@ -107,9 +107,9 @@ class _Grounding:
                 return f.conjunction(
                     *(self.visit(body, {**scope, variable: e}) for e in self._elements(domain, scope))
                 )
-            case f.Named(name, arguments, body):
+            case f.Application(name, arguments, body):
                 shown = tuple(scope.get(a, self.lanes.get(a, a)) for a in arguments)
-                return f.Named(name, shown, self.visit(body, scope))
+                return f.Application(name, shown, self.visit(body, scope))
             case _:
                 parts = tuple(self.visit(child, scope) for child in f.children(formula))
                 return f.with_children(formula, parts)

@@ -1,6 +1,6 @@
 """One walk over one claim, from syntax to formula; ``spec.elaborate`` has the doors to it.
 
-Applying a definition puts its body in place of the call, wrapped in ``Named``; vehicles and lanes
+Applying a definition puts its body in place of the call, wrapped in ``Application``; vehicles and lanes
 are names from the start, so what comes out speaks of SV, POV and L and nothing else.
 """
 
@@ -161,10 +161,12 @@ class Elaborator:
             return made
         if self.home is not None:
             here = self.home.apply(self.home.specification.definitions[definition.name], bound, at)
-            if isinstance(here, f.Named) and here.body == made:
+            if isinstance(here, f.Application) and here.body == made:
                 return here
-            return f.Named(f"{definition.name}@{self.specification.set_name}", scopes.names_in(bound), made)
-        return f.Named(definition.name, scopes.names_in(bound), made)
+            return f.Application(
+                f"{definition.name}@{self.specification.set_name}", scopes.names_in(bound), made
+            )
+        return f.Application(definition.name, scopes.names_in(bound), made)
 
     def body_of(self, name: str, scope: Scope) -> Formula | Quantity:
         """The body of a definition, with mistakes in it located in its own text."""
@@ -268,7 +270,7 @@ class Elaborator:
                 if left is not None:
                     return f.Until(self.formula(left, scope), interval, goal)
                 return f.Eventually(interval, goal) if op == "F" else f.Always(interval, goal)
-            case syntax.Quantified():
+            case syntax.Quantification():
                 return self._quantified(expression, scope)
 
     def _name(self, name: str, at: Position, scope: Scope) -> Formula | Quantity:
@@ -354,7 +356,7 @@ class Elaborator:
 
     # --- quantifiers and built-in names ----------------------------------------------------------
 
-    def _quantified(self, expression: syntax.Quantified, scope: Scope) -> Formula:
+    def _quantified(self, expression: syntax.Quantification, scope: Scope) -> Formula:
         variable = expression.variable
         scopes.refuse_signal(variable, self.specification.library.signals, expression.at)
         vehicles = scopes.vehicles_in(expression.domain, scope, self._open)

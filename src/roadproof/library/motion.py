@@ -86,7 +86,7 @@ class Axiom:
 
 
 @dataclass(frozen=True)
-class Assumed:
+class Assumption:
     """``said``: nothing, or motion and then limits and then values of parameters, as words; or values alone.
 
     ``axioms``: the facts about motion that a proof has as premises. ``unused``: limits that are said and that
@@ -119,14 +119,14 @@ class Assumed:
 
 
 @dataclass(frozen=True)
-class Under:
+class AssumedClaim:
     """A claim, and what it says that it assumes."""
 
     query: Query
     said: tuple[str, ...] = ()
 
 
-NOTHING = Assumed()
+NOTHING = Assumption()
 
 
 # --- words ---------------------------------------------------------------------------------------
@@ -182,13 +182,13 @@ def _unknown_word(written: str, place: int, what: str, source: str) -> TextError
     return TextError(told, position, hint).locate(source, written)
 
 
-def read_under(specification: Specification, written: str, source: str = "claim") -> Under:
+def read_under(specification: Specification, written: str, source: str = "claim") -> AssumedClaim:
     """A claim with what it says that it assumes. Raises ``InputError``."""
     said, claim = split(written, source)
     return under(specification, read_claim(specification, claim, source), said)
 
 
-def under(specification: Specification, query: Query, said: Sequence[str]) -> Under:
+def under(specification: Specification, query: Query, said: Sequence[str]) -> AssumedClaim:
     """A claim under what is assumed, each limit and value written alike whoever wrote it.
 
     Values of parameters that the claim does not speak of are left out. Raises ``InputError``.
@@ -197,10 +197,12 @@ def under(specification: Specification, query: Query, said: Sequence[str]) -> Un
     spoken = {*parameters_of(query.formula)}
     values = {name: x for name, x in values_said(specification, said).items() if name in spoken}
     told = dict.fromkeys([*said[: is_moving(said)], *limits])
-    return Under(query, (*told, *value_texts(specification, values)))
+    return AssumedClaim(query, (*told, *value_texts(specification, values)))
 
 
-def at_values(specification: Specification, claim: Under, values: Mapping[str, Fraction]) -> Under:
+def at_values(
+    specification: Specification, claim: AssumedClaim, values: Mapping[str, Fraction]
+) -> AssumedClaim:
     """``claim`` at ``values`` (SI) as well, of which it may say others itself. Raises ``InputError``."""
     known = {*values_said(specification, claim.said)}
     more = {name: value for name, value in values.items() if name not in known}
@@ -301,7 +303,7 @@ def _limit(specification: Specification, query: Query, written: str) -> Query:
 # --- axioms --------------------------------------------------------------------------------------
 
 
-def assumption(specification: Specification, query: Query, assumed: Assumed) -> Formula:
+def assumption(specification: Specification, query: Query, assumed: Assumption) -> Formula:
     """All that ``query`` is proved under, made anew from words. Raises ``InputError`` where it is not true
     of every motion within the limits that are said, or speaks of what the claim does not."""
     if under(specification, query, assumed.said).said != assumed.said:
@@ -317,7 +319,7 @@ def assumption(specification: Specification, query: Query, assumed: Assumed) -> 
     return f.conjunction(*limits, *axioms)
 
 
-def limit_formulas(specification: Specification, query: Query, assumed: Assumed) -> dict[str, Formula]:
+def limit_formulas(specification: Specification, query: Query, assumed: Assumption) -> dict[str, Formula]:
     """What the limits that are premises say at all times, by their texts. Raises ``InputError``."""
     made = zip(limits_said(assumed.said), _limits(specification, query, assumed.said), strict=True)
     return {x: motion.limit(y.formula) for x, y in made if x not in assumed.unused}

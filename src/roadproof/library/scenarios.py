@@ -136,7 +136,7 @@ def read_query(specification: Specification, text: str, source: str = "claim") -
 def scenario_number(query: Query) -> int | None:
     """The number of the scenario that a query is, as a whole; None where it is none."""
     whole = query.formula
-    return number_in(whole.name.partition("@")[0]) if isinstance(whole, f.Named) else None
+    return number_in(whole.name.partition("@")[0]) if isinstance(whole, f.Application) else None
 
 
 def lane_owner(specification: Specification, scenario: Scenario) -> str:
@@ -218,7 +218,7 @@ def without_sectors(formula: Formula) -> Formula:
     """``formula`` without names, and with every application of a road sector replaced by true."""
 
     def change(part: Formula) -> Formula:
-        if not isinstance(part, f.Named):
+        if not isinstance(part, f.Application):
             return part
         return f.TRUE if is_sector(part.name) else part.body
 
@@ -457,7 +457,7 @@ def beside_lane(specification: Specification, vehicle: str, lane: str = LANE) ->
     """A vehicle occupies a lanelet of a lane beside ``lane``."""
     beside = syntax.Call("adjacentLanes", (syntax.Name(lane),))
     inside = syntax.Call("atLane", (syntax.Name(vehicle), syntax.Name("M")))
-    return elaborate(specification, syntax.Claim((), syntax.Quantified("some", "M", beside, inside)))
+    return elaborate(specification, syntax.Claim((), syntax.Quantification("some", "M", beside, inside)))
 
 
 def is_violation(name: str) -> bool:

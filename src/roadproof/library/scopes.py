@@ -181,7 +181,7 @@ def sort_of(value: Value) -> str:
 
 
 def names_in(bound: Scope) -> tuple[str, ...]:
-    """The arguments of an application as ``Named`` shows them."""
+    """The arguments of an application as ``Application`` shows them."""
     names: list[str] = []
     for value in bound.values():
         match value:

@@ -19,7 +19,7 @@ from roadproof.errors import InputError, Position, TextError, raise_all
 from roadproof.logic.custom_names import freedom_of, own_signal
 from roadproof.logic.each import instances
 from roadproof.logic.parse import parse_bundled, parse_library
-from roadproof.logic.recover import Parsed, parse_pieces
+from roadproof.logic.recover import ParseResult, parse_pieces
 from roadproof.logic.syntax import (
     Binding,
     Definition,
@@ -228,17 +228,17 @@ def build_library(
     return gathered.library
 
 
-def _parsed(source: Source, parse: Parse = parse_library) -> Parsed:
+def _parsed(source: Source, parse: Parse = parse_library) -> ParseResult:
     """What is read of a text; the whole at once, which is quicker where it has no mistake."""
     try:
-        return Parsed(parse(source.text, source.name))
+        return ParseResult(parse(source.text, source.name))
     except TextError as error:
         pieces = parse_pieces(source.text, source.name)
         return pieces if pieces.errors else replace(pieces, errors=(error,))
 
 
 @dataclass(frozen=True)
-class Gathered:
+class ReadOutcome:
     """What could be read of texts, all that could not, in their order, and how names look that are lost."""
 
     library: Library
@@ -246,21 +246,21 @@ class Gathered:
     lost: tuple[re.Pattern[str], ...] = ()
 
 
-def gather(readings: Mapping[Source, Parsed], below: Library | None = None) -> Gathered:
+def gather(readings: Mapping[Source, ParseResult], below: Library | None = None) -> ReadOutcome:
     """What was read of texts, put into its mappings."""
-    building, errors, lost = _Building(below), list[TextError](), list[re.Pattern[str]]()
+    building, errors, lost = _Builder(below), list[TextError](), list[re.Pattern[str]]()
     for source, parsed in readings.items():
         errors += sorted([*parsed.errors, *building.add(parsed.statements, source)], key=place_of)
         lost += parsed.lost
     lost += (re.compile(re.escape(name)) for name in building.refused)
-    return Gathered(building.library(), tuple(errors), tuple(lost))
+    return ReadOutcome(building.library(), tuple(errors), tuple(lost))
 
 
-def gather_files(files: Iterable[Path | Source]) -> Gathered:
+def gather_files(files: Iterable[Path | Source]) -> ReadOutcome:
     """As ``load_library``, with all that is wrong. Raises ``InputError`` where a file is no text."""
     extra = sources_of(files)
     if not extra:
-        return Gathered(bundled_library())
+        return ReadOutcome(bundled_library())
     gathered = gather({source: _parsed(source) for source in extra}, bundled_library())
     return replace(gathered, library=replace(gathered.library, files=tuple(extra)))
 
@@ -270,7 +270,7 @@ def place_of(error: TextError) -> tuple[int, int]:
     return (0, 0) if error.position is None else (error.position.line, error.position.column)
 
 
-class _Building:
+class _Builder:
     def __init__(self, below: Library | None) -> None:
         self.parameters = dict(below.parameters) if below else {}
         self.options = dict(below.options) if below else {}

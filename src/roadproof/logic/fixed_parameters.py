@@ -23,7 +23,7 @@ def pins(formula: Formula) -> dict[str, Fraction]:
     is valid if and only if it is with 0.6 s in place of minDanger. A parameter that would need two values at
     once is left out.
     """
-    bounds = _Reading().implied(formula, False)
+    bounds = _Reader().implied(formula, False)
     most = {(name, value) for name, sign, value in bounds if sign == 1}
     least = {(name, value) for name, sign, value in bounds if sign == -1}
     both = sorted(most & least)
@@ -31,7 +31,7 @@ def pins(formula: Formula) -> dict[str, Fraction]:
     return {name: value for name, value in both if names.count(name) == 1}
 
 
-class _Reading:
+class _Reader:
     def __init__(self) -> None:
         self.known: dict[tuple[Formula, bool], _Bounds] = {}
 
@@ -48,7 +48,7 @@ class _Reading:
                 return _NONE
             case f.Compare(left, op, right):
                 return _compared(left, op, right) if value else _NONE
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.implied(body, value)
             case f.Not(body):
                 return self.implied(body, not value)

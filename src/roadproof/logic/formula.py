@@ -1,7 +1,7 @@
 """The formula tree: signal temporal logic over comparisons of terms.
 
 Sugar dies at construction: there is no implication node, and ``!=`` is a negated equality.
-``Named`` remembers which definition a sub-formula came from; it means what its body means.
+``Application`` remembers which definition a sub-formula came from; it means what its body means.
 Quantifiers over lanes and lanelets stay in the tree until a road is chosen (``spec.bind``).
 
 Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dense and starts at 0.
@@ -116,7 +116,7 @@ class Always:
 
 
 @node
-class Named:
+class Application:
     """An application of a definition, kept for reading and for opaque atoms; means ``body``."""
 
     name: str
@@ -126,7 +126,7 @@ class Named:
 
 State: TypeAlias = Truth | Compare | Occupies
 Temporal: TypeAlias = Until | Eventually | Always
-Formula: TypeAlias = State | Some | Every | Not | And | Or | Temporal | Named
+Formula: TypeAlias = State | Some | Every | Not | And | Or | Temporal | Application
 
 TRUE = Truth(True)
 FALSE = Truth(False)
@@ -186,7 +186,7 @@ def children(formula: Formula) -> tuple[Formula, ...]:
             | Always(_, body)
             | Some(_, _, body)
             | Every(_, _, body)
-            | Named(_, _, body)
+            | Application(_, _, body)
         ):
             return (body,)
         case _:
@@ -214,8 +214,8 @@ def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
             return Some(variable, domain, new[0])
         case Every(variable, domain, _):
             return Every(variable, domain, new[0])
-        case Named(name, arguments, _):
-            return Named(name, arguments, new[0])
+        case Application(name, arguments, _):
+            return Application(name, arguments, new[0])
         case _:
             assert_never(formula)
 
@@ -225,7 +225,7 @@ def intervals(formula: Formula) -> tuple[Interval, ...]:
     match formula:
         case Until(_, interval, _) | Eventually(interval, _) | Always(interval, _):
             return (interval,)
-        case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Named():
+        case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Application():
             return ()
         case _:
             assert_never(formula)
@@ -240,7 +240,7 @@ def with_intervals(formula: Formula, change: Callable[[Interval], Interval]) -> 
             return Eventually(change(interval), body)
         case Always(interval, body):
             return Always(change(interval), body)
-        case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Named():
+        case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Application():
             return formula
         case _:
             assert_never(formula)
@@ -260,9 +260,9 @@ def subformulas(*formulas: Formula) -> Iterator[Formula]:
             waiting.extend(reversed(children(current)))
 
 
-def nesting(formula: Formula) -> dict[Named, int]:
+def nesting(formula: Formula) -> dict[Application, int]:
     """Every application of a definition, as ``subformulas`` orders them, and in how many others it is."""
-    found: dict[Named, int] = {}
+    found: dict[Application, int] = {}
     seen: set[Formula] = set()
     waiting = [(formula, 0)]
     while waiting:
@@ -270,7 +270,7 @@ def nesting(formula: Formula) -> dict[Named, int]:
         if current in seen:
             continue
         seen.add(current)
-        if isinstance(current, Named):
+        if isinstance(current, Application):
             found[current] = depth
             depth += 1
         waiting.extend((child, depth) for child in reversed(children(current)))

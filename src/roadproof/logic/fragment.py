@@ -36,7 +36,7 @@ def _reach(formula: Formula, below: list[Seconds | None]) -> Seconds | None:
             return None if high is None or farthest is None else high + farthest
         case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
             return farthest
-        case f.Named():
+        case f.Application():
             return farthest
         case _:
             assert_never(formula)
@@ -120,7 +120,7 @@ def sizes(formula: Formula) -> Sizes:
     atoms = temporal = count = 0
     for current in f.subformulas(formula):
         match current:
-            case f.Named():
+            case f.Application():
                 continue
             case f.Compare() | f.Occupies():
                 atoms += 1
@@ -140,7 +140,7 @@ def _depth(formula: Formula) -> int:
     def visit(current: Formula) -> int:
         if current not in done:
             below = max((visit(child) for child in f.children(current)), default=0)
-            done[current] = below if isinstance(current, f.Named) else below + 1
+            done[current] = below if isinstance(current, f.Application) else below + 1
         return done[current]
 
     return visit(formula)

@@ -22,7 +22,7 @@ def conjuncts(formula: Formula, positive: bool = True) -> Iterator[Formula]:
                 yield from conjuncts(part, positive)
         case f.Not(body):
             yield from conjuncts(body, not positive)
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             yield from conjuncts(body, positive)
         case _:
             yield formula if positive else f.negation(formula)
@@ -33,7 +33,7 @@ def compared(formula: Formula) -> Iterator[f.Compare]:
     match formula:
         case f.Compare():
             yield formula
-        case f.And() | f.Or() | f.Not() | f.Named():
+        case f.And() | f.Or() | f.Not() | f.Application():
             for part in f.children(formula):
                 yield from compared(part)
         case _:
@@ -53,7 +53,7 @@ def narrowed(formula: Formula, without: Collection[f.Compare], positive: bool = 
             return f.disjunction(*(narrowed(part, without, positive) for part in parts))
         case f.Not(body):
             return f.negation(narrowed(body, without, not positive))
-        case f.Named(_, _, body) if any(x in without for x in compared(body)):
+        case f.Application(_, _, body) if any(x in without for x in compared(body)):
             return narrowed(body, without, positive)
         case _:
             return formula
@@ -80,7 +80,7 @@ def demands(formula: Formula) -> Formula:
                 return f.conjunction(*below) if both else f.disjunction(*below)
             case f.Not(body):
                 return visit(body, not positive)
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return visit(body, positive)
             case f.Always(interval, body) if positive and _has_now(interval):
                 return visit(body, True)

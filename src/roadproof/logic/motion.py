@@ -132,7 +132,7 @@ def is_open(formula: Formula, positive: bool = True) -> bool:
             return is_open(body, not positive)
         case f.And(parts) | f.Or(parts):
             return all(is_open(part, positive) for part in parts)
-        case f.Some(_, _, body) | f.Every(_, _, body) | f.Named(_, _, body):
+        case f.Some(_, _, body) | f.Every(_, _, body) | f.Application(_, _, body):
             return is_open(body, positive)
         case f.Until() | f.Eventually() | f.Always():
             return False

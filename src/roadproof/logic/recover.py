@@ -25,7 +25,7 @@ _INDEX = re.compile(r"\\\{[^{}]*\\\}")
 
 
 @dataclass(frozen=True)
-class Parsed:
+class ParseResult:
     """What was read of a text, what was not, and how names look that what was not read declares."""
 
     statements: tuple[Statement, ...]
@@ -33,7 +33,7 @@ class Parsed:
     lost: tuple[re.Pattern[str], ...] = ()
 
 
-def parse_pieces(text: str, source: str) -> Parsed:
+def parse_pieces(text: str, source: str) -> ParseResult:
     """All statements of a specification file that parse, and every error, in order. Never raises.
 
     Pieces are kept, so that a text of which one statement was changed is read in the time of that one.
@@ -51,7 +51,7 @@ def parse_pieces(text: str, source: str) -> Parsed:
             joined = block is not None and piece.outer == block.outer and block.line < piece.line
             statements = _join(statements, read) if joined else [*statements, *read]
         block = (block if piece.inner else piece) if piece.opens else block if piece.heads else None
-    return Parsed(tuple(statements), tuple(errors), tuple(lost))
+    return ParseResult(tuple(statements), tuple(errors), tuple(lost))
 
 
 @dataclass(frozen=True)

@@ -40,9 +40,9 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
         case f.Occupies(vehicle, lanelet):
             return Call("occ", (Name(vehicle), Name(lanelet)))
         case f.Some(variable, domain, body):
-            return syntax.Quantified("some", variable, _domain(domain), as_syntax(body, expand))
+            return syntax.Quantification("some", variable, _domain(domain), as_syntax(body, expand))
         case f.Every(variable, domain, body):
-            return syntax.Quantified("every", variable, _domain(domain), as_syntax(body, expand))
+            return syntax.Quantification("every", variable, _domain(domain), as_syntax(body, expand))
         case f.Not(body):
             return Prefix("not", as_syntax(body, expand))
         case f.And((f.Compare(a, "<=", b), f.Compare(c, ">=", d))) if (a, b) == (c, d):
@@ -67,7 +67,7 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
             return syntax.Temporal("F", _bounds(interval), None, as_syntax(body, expand))
         case f.Always(interval, body):
             return syntax.Temporal("G", _bounds(interval), None, as_syntax(body, expand))
-        case f.Named(name, arguments, body):
+        case f.Application(name, arguments, body):
             if expand or not all(_NAME.fullmatch(argument) for argument in arguments):
                 return as_syntax(body, expand)
             return Call(name, tuple(Name(argument) for argument in arguments))

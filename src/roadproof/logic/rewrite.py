@@ -5,12 +5,12 @@ from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.logic.formula import (
+    Application,
     Compare,
     Domain,
     Every,
     Formula,
     Interval,
-    Named,
     Occupies,
     Some,
     children,
@@ -82,8 +82,8 @@ def _giving(values: Mapping[str, Fraction]) -> Callable[[Term], Term]:
 
 
 def without_names(formula: Formula) -> Formula:
-    """``formula`` with every ``Named`` node replaced by its body."""
-    return transform(formula, lambda f: f.body if isinstance(f, Named) else f)
+    """``formula`` with every ``Application`` node replaced by its body."""
+    return transform(formula, lambda f: f.body if isinstance(f, Application) else f)
 
 
 def terms_of(*formulas: Formula) -> Iterator[Term]:
@@ -146,8 +146,8 @@ def rename(formula: Formula, old: str, new: str) -> Formula:
                     variable = _free_name(variable, road_names(body) | {old})
                     body = rename(body, new, variable)
                 return type(current)(variable, inside, visit(body))
-            case Named(name, arguments, body):
-                return Named(name, tuple(new if a == old else a for a in arguments), visit(body))
+            case Application(name, arguments, body):
+                return Application(name, tuple(new if a == old else a for a in arguments), visit(body))
             case _:
                 return with_children(current, tuple(visit(child) for child in children(current)))
 
@@ -188,8 +188,8 @@ def rename_vehicles(formula: Formula, roles: Mapping[str, str]) -> Formula:
         match current:
             case Occupies(vehicle, lanelet):
                 return Occupies(roles.get(vehicle, vehicle), lanelet)
-            case Named(name, arguments, body):
-                return Named(name, tuple(roles.get(a, a) for a in arguments), body)
+            case Application(name, arguments, body):
+                return Application(name, tuple(roles.get(a, a) for a in arguments), body)
             case _:
                 return current
 

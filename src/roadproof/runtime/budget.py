@@ -2,7 +2,7 @@
 
 One unit is about a second of a solver on an idle machine; each solver's own count (z3's resource limit,
 HiGHS' iterations and nodes) is converted where the solver lives. Wall clock is a backstop for the case
-that counting fails, and what it cuts off is in doubt: ``Late``.
+that counting fails, and what it cuts off is in doubt: ``BudgetExceeded``.
 """
 
 import math
@@ -17,7 +17,7 @@ SECONDS_A_UNIT = 60.0
 LEAST_BACKSTOP = 600.0
 
 
-class Late(RoadproofError):
+class BudgetExceeded(RoadproofError):
     """The backstop has passed: what was asked stays unanswered, whatever was found of it by then."""
 
     exit_code = 20
@@ -29,8 +29,8 @@ class Late(RoadproofError):
         )
         self.seconds = seconds
 
-    def __reduce__(self) -> tuple[type["Late"], tuple[float]]:
-        return Late, (self.seconds,)
+    def __reduce__(self) -> tuple[type["BudgetExceeded"], tuple[float]]:
+        return BudgetExceeded, (self.seconds,)
 
 
 @dataclass(frozen=True)
@@ -47,14 +47,14 @@ class Effort:
         """Other units under the same backstop."""
         return replace(self, units=units)
 
-    def meter(self) -> "Meter":
+    def meter(self) -> "Budget":
         """A meter that begins to count now."""
         seconds = self.timeout if self.timeout is not None else backstop(self.units)
-        return Meter(self.units, seconds)
+        return Budget(self.units, seconds)
 
 
 @dataclass
-class Meter:
+class Budget:
     """The work left for one search: ``limit`` units in all, ``seconds`` of wall clock from ``begun``.
 
     A part of a search has a meter of its own (``part``), which spends from the whole's as well.
@@ -62,7 +62,7 @@ class Meter:
 
     limit: float
     seconds: float
-    whole: "Meter | None" = None
+    whole: "Budget | None" = None
     spent: float = 0.0
     begun: float = field(default_factory=lambda: time.monotonic())
 
@@ -78,26 +78,26 @@ class Meter:
             self.whole.spend(units)
 
     def effort(self) -> Effort:
-        """What is left, for a search with a meter of its own. Raises ``Late``."""
+        """What is left, for a search with a meter of its own. Raises ``BudgetExceeded``."""
         return Effort(max(1.0, self.left()), self.seconds_left())
 
-    def part(self, limit: float) -> "Meter":
+    def part(self, limit: float) -> "Budget":
         """A meter for a part of the search, of at most ``limit`` units."""
-        return Meter(limit, self.seconds, self, begun=self.begun)
+        return Budget(limit, self.seconds, self, begun=self.begun)
 
-    def apart(self, limit: float) -> "Meter":
+    def apart(self, limit: float) -> "Budget":
         """A meter of ``limit`` units of its own, whatever is left of these, under the same backstop."""
-        return Meter(limit, self.seconds, begun=self.begun)
+        return Budget(limit, self.seconds, begun=self.begun)
 
     def seconds_left(self) -> float:
-        """Wall-clock seconds until the backstop. Raises ``Late``."""
+        """Wall-clock seconds until the backstop. Raises ``BudgetExceeded``."""
         left = self.seconds - (time.monotonic() - self.begun)
         if left <= 0:
-            raise Late(self.seconds)
+            raise BudgetExceeded(self.seconds)
         return left
 
     def is_out(self) -> bool:
-        """Whether the units are used up. Raises ``Late``."""
+        """Whether the units are used up. Raises ``BudgetExceeded``."""
         self.seconds_left()
         return self.left() <= 0
 

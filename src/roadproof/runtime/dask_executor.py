@@ -12,7 +12,7 @@ from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.runtime import process_pool
 from roadproof.runtime.executors import Cluster
 from roadproof.runtime.memory import keep_freed_memory
-from roadproof.runtime.process_pool import Lost
+from roadproof.runtime.process_pool import LostJob
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -33,7 +33,7 @@ _AHEAD = 2  # jobs for each worker that the scheduler has at once, so that none 
 
 def answers_of(
     function: Callable[[Job], Answer], jobs: Sequence[Job], cluster: Cluster
-) -> Generator[tuple[int, Answer | Lost], None, None]:
+) -> Generator[tuple[int, Answer | LostJob], None, None]:
     """As ``workers.answers_of``, on a cluster. What a job needs of files has to be where workers see it.
 
     Raises ``MissingSolverError`` where dask is not installed, ``InputError`` where no scheduler answers,
@@ -49,7 +49,7 @@ def answers_of(
         with closing(_try_once(client, shared, jobs, [place], again)) as found:
             yield from found
         if again:
-            yield place, Lost("its workers ended each time, the last time while no other job ran")
+            yield place, LostJob("its workers ended each time, the last time while no other job ran")
 
 
 def _try_once(

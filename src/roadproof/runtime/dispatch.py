@@ -4,16 +4,16 @@ from collections.abc import Callable, Generator, Sequence
 from typing import TypeVar
 
 from roadproof.runtime import process_pool
-from roadproof.runtime.executors import Hands
-from roadproof.runtime.process_pool import Lost
+from roadproof.runtime.executors import Executor
+from roadproof.runtime.process_pool import LostJob
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
 
 def answers_of(
-    function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Hands, fresh: bool = False
-) -> Generator[tuple[int, Answer | Lost], None, None]:
+    function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Executor, fresh: bool = False
+) -> Generator[tuple[int, Answer | LostJob], None, None]:
     """``function`` of every job with its place, as ``answers_of`` of ``workers`` or ``cluster`` give it."""
     if hands.cluster is None:
         yield from process_pool.answers_of(function, jobs, hands.processes, fresh)

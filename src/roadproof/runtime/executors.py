@@ -79,7 +79,7 @@ class Cluster:
 
 
 @dataclass(frozen=True)
-class Hands:
+class Executor:
     """``processes`` here, one a core where None; or a ``cluster``; for all of a question or a ``shard``."""
 
     processes: int | None = None
@@ -87,13 +87,13 @@ class Hands:
     shard: Shard | None = None
 
 
-Jobs: TypeAlias = int | Hands | None
+Jobs: TypeAlias = int | Executor | None
 """So many processes, one a core where None, or all that can be said of who does the work."""
 
 
-def hands_of(jobs: Jobs) -> Hands:
+def hands_of(jobs: Jobs) -> Executor:
     """Who does the work, in one form. Raises ``UsageError`` where no process would be left."""
-    hands = jobs if isinstance(jobs, Hands) else Hands(jobs)
+    hands = jobs if isinstance(jobs, Executor) else Executor(jobs)
     if hands.processes is not None and hands.processes < 1:
         raise UsageError(f"--jobs {hands.processes} must be greater than 0")
     return hands

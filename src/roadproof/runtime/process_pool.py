@@ -25,7 +25,7 @@ _PATIENCE = 0.5  # seconds that a worker has to remove half-written files when i
 
 
 @dataclass(frozen=True)
-class Lost:
+class LostJob:
     """In place of an answer: the process of the job ended twice, the second time while no other ran."""
 
     reason: str
@@ -33,7 +33,7 @@ class Lost:
 
 def answers_of(
     function: Callable[[Job], Answer], jobs: Sequence[Job], most: int | None = None, fresh: bool = False
-) -> Generator[tuple[int, Answer | Lost], None, None]:
+) -> Generator[tuple[int, Answer | LostJob], None, None]:
     """``function`` of every job, each with its place in ``jobs``, in the order in which they are done.
 
     A job whose process dies is tried again when the others are done, alone. ``fresh`` processes share
@@ -48,7 +48,7 @@ def answers_of(
         again: dict[int, str] = {}
         yield from _try_once(function, jobs, [place], 1, fresh, again)
         if again:
-            yield place, Lost(f"its process ended twice, the second time alone: {again[place]}")
+            yield place, LostJob(f"its process ended twice, the second time alone: {again[place]}")
 
 
 def _try_once(

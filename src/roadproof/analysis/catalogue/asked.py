@@ -44,7 +44,7 @@ NOWHERE = "no class"
 
 
 @dataclass(frozen=True)
-class Happens:
+class ScenarioQuestion:
     """The scenario ``number`` holds."""
 
     number: int
@@ -65,15 +65,15 @@ class In:
 
 
 @dataclass(frozen=True)
-class Endangered:
+class DangerQuestion:
     """The vehicles are safe now, and come into danger."""
 
 
-Key: TypeAlias = Happens | Row | In | Endangered
+Key: TypeAlias = ScenarioQuestion | Row | In | DangerQuestion
 
 
 @dataclass
-class Asked:
+class Questions:
     """The questions to tests about scenarios ``numbers``; ``classes`` None where they are not divided.
 
     Formulas are kept by roles and vehicles; bound ones also by road and lane.
@@ -147,10 +147,10 @@ class Asked:
 
     def _queries(self, roles: tuple[str, ...], vehicles: tuple[str, ...]) -> dict[Key, Query]:
         home = self.specification
-        asked: dict[Key, Query] = {Endangered(): danger_comes(home, *endangered(vehicles))}
+        asked: dict[Key, Query] = {DangerQuestion(): danger_comes(home, *endangered(vehicles))}
         for number in self.numbers:
             if self._vehicles[number] == roles:
-                asked[Happens(number)] = applied(home, Scenario(number, home.set_name), vehicles)
+                asked[ScenarioQuestion(number)] = applied(home, Scenario(number, home.set_name), vehicles)
         if self.classes is not None:
             for group in self.classes.plan.groups:
                 if group.vehicles == roles:
@@ -200,7 +200,7 @@ class Asked:
 
         A class that is proved to be empty is shown as ``NOWHERE``: the readers contradict each other.
         """
-        names = [name_of(key.number) for key in true if isinstance(key, Happens)]
+        names = [name_of(key.number) for key in true if isinstance(key, ScenarioQuestion)]
         rows = tuple(sorted(key.number for key in true if isinstance(key, Row)))
         sectors = tuple(sorted(key.number for key in true if isinstance(key, In)))
         if self.classes is not None and rows and (sectors or not self.classes.plan.has_places):

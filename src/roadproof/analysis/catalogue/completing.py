@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.far import FACTORS, far_from, nearest
 from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, begins_of
@@ -21,12 +21,12 @@ from roadproof.engines.search.ask import answer
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
 from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
 from roadproof.library.specification import Specification
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
 
 Begins: TypeAlias = Mapping[str, float]
@@ -41,7 +41,7 @@ class Completion:
     """
 
     target: str
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     empty: Certificate | None = None
     reason: str = ""
     name: str = ""
@@ -49,7 +49,7 @@ class Completion:
 
 
 @dataclass(frozen=True)
-class Known:
+class PriorResults:
     """What is known before drives are looked for.
 
     By target, ``tests``: how many show it, and ``begins``: how each concrete one of these begins; ``gaps``:
@@ -75,12 +75,12 @@ _Job: TypeAlias = tuple[Class, ...] | int | _Further
 
 
 @dataclass(frozen=True)
-class _Completing:
+class _CompletionJobs:
     """Jobs for other processes: classes in which the same happens, one scenario, or drives far apart."""
 
     basis: Basis
     classes: Basis
-    asked: Asked
+    asked: Questions
 
     def settled(self, job: _Job) -> list[Completion]:
         match job:
@@ -98,7 +98,7 @@ class _Completing:
         judged = self._as_target(found.drive.file, name)
         return Completion(name, judged, reason="" if judged else "the judge rejects its drive")
 
-    def _as_target(self, file: DriveFile, target: str) -> Judged | None:
+    def _as_target(self, file: DriveFile, target: str) -> JudgedDrive | None:
         """A drive as one of the formula of a target, which needs no definition of classes."""
         home = self.basis.specification
         here = replace(file, set_name=home.set_name)
@@ -111,7 +111,7 @@ class _Completing:
         name = name_of(number)
         try:
             outcome = answer(replace(self.basis.search(query, explain=True), scenario=number))
-        except Late as late:
+        except BudgetExceeded as late:
             return Completion(name, reason=str(late))
         proof = None if outcome.impossibility is None else outcome.impossibility.certificate
         return Completion(name, next(iter(outcome.drives), None), proof, outcome.told(()))
@@ -131,7 +131,7 @@ class _Completing:
             points.append(begins)
         return found
 
-    def _far(self, target: str, points: Sequence[Begins]) -> Judged | None:
+    def _far(self, target: str, points: Sequence[Begins]) -> JudgedDrive | None:
         for factor in FACTORS if points else FACTORS[-1:]:
             more = far_from(points, factor, self.classes.specification)
             file = self._found(target, more)
@@ -153,9 +153,9 @@ class _Completing:
 
 def complete(
     basis: Basis,
-    asked: Asked,
+    asked: Questions,
     missing: Sequence[str],
-    known: Known | None = None,
+    known: PriorResults | None = None,
     spread: int = 1,
     hands: Jobs = None,
     progress: Progress | None = None,
@@ -166,8 +166,8 @@ def complete(
     class has so many tests in the end, or each scenario where there are no classes; drives are like
     ``basis.objective``.
     """
-    known = known or Known()
-    working = _Completing(basis, replace(basis, specification=specification_of(asked), sets=()), asked)
+    known = known or PriorResults()
+    working = _CompletionJobs(basis, replace(basis, specification=specification_of(asked), sets=()), asked)
     found: list[Completion] = []
 
     def ask(jobs: Sequence[_Job]) -> None:
@@ -183,14 +183,14 @@ def complete(
     return [replace(x, name=x.name or x.target) for x in found]
 
 
-def specification_of(asked: Asked) -> Specification:
+def specification_of(asked: Questions) -> Specification:
     """The set in which classes have names; that of the scenarios where there are none."""
     if asked.classes is None:
         return asked.specification
     return with_classes(write_classes(asked.classes, asked.specification), asked.specification)
 
 
-def _of_classes(asked: Asked, missing: Sequence[str]) -> list[tuple[Class, ...]]:
+def _of_classes(asked: Questions, missing: Sequence[str]) -> list[tuple[Class, ...]]:
     if asked.classes is None:
         return []
     wanted = {*missing}
@@ -198,11 +198,11 @@ def _of_classes(asked: Asked, missing: Sequence[str]) -> list[tuple[Class, ...]]
     return [x for x in groups if x]
 
 
-def _shown(drive: Judged, asked: Asked) -> set[str]:
+def _shown(drive: JudgedDrive, asked: Questions) -> set[str]:
     return {x.what for x in all_shown_by(drive.file, asked, Freedom())}
 
 
-def _of_gaps(basis: Basis, asked: Asked, missing: Sequence[str], known: Known) -> list[Completion]:
+def _of_gaps(basis: Basis, asked: Questions, missing: Sequence[str], known: PriorResults) -> list[Completion]:
     """The drives that were found when it was asked which classes are empty; one may be for several."""
     found: list[Completion] = []
     shown: set[str] = set()
@@ -218,7 +218,7 @@ def _of_gaps(basis: Basis, asked: Asked, missing: Sequence[str], known: Known) -
     return found
 
 
-def _reshaped(basis: Basis, drive: Judged, name: str, asked: Asked) -> Judged | None:
+def _reshaped(basis: Basis, drive: JudgedDrive, name: str, asked: Questions) -> JudgedDrive | None:
     """Another drive of the same gap, as the basis wants them."""
     query = read_claim(basis.specification, drive.file.formula)
     try:
@@ -228,7 +228,9 @@ def _reshaped(basis: Basis, drive: Judged, name: str, asked: Asked) -> Judged | 
     return next((x for x in outcome.drives if name in _shown(x, asked)), None)
 
 
-def _further(asked: Asked, found: Sequence[Completion], known: Known, spread: int) -> list[_Further]:
+def _further(
+    asked: Questions, found: Sequence[Completion], known: PriorResults, spread: int
+) -> list[_Further]:
     """What is asked for until each class has so many tests; or each scenario, where there are no classes."""
     if asked.classes is None:
         names = [name_of(number) for number in asked.numbers]

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
 from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, kind_of
@@ -63,10 +63,10 @@ def examine(
     tests = _read(request.paths, unrestricted(plain), home)
     kinds = gap_kinds(basis, numbers) if request.gaps else None
 
-    def ask(set_name: str) -> Asked:
+    def ask(set_name: str) -> Questions:
         here = replace(basis, specification=home.in_set(set_name), sets=())
         made = _divided(here, numbers, jobs, progress) if request.classes else None
-        return Asked(here.specification, numbers, made, basis.all_values())
+        return Questions(here.specification, numbers, made, basis.all_values())
 
     asked, *others = (ask(name) for name in request.sets)
     concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
@@ -94,7 +94,7 @@ def _read(paths: Sequence[str | Path], plain: Specification, asked: Specificatio
     return replace(tests, entries=entries)
 
 
-def _reaches(asked: Asked, concrete: Sequence[ConcreteAnswer]) -> Iterator[Reach]:
+def _reaches(asked: Questions, concrete: Sequence[ConcreteAnswer]) -> Iterator[Reach]:
     """How far drives can go of the classes that concrete tests show; of scenarios, where there are none."""
     found = tested(asked, concrete, (), (), targets_of(asked), 0.0, None).targets
     kind = SCENARIOS if asked.classes is None else CLASSES
@@ -126,6 +126,6 @@ def _shown(
 
 
 def _batch(
-    asked: Asked, freedom: Freedom, drivers: Drivers | None, entries: Sequence[Concrete]
+    asked: Questions, freedom: Freedom, drivers: Drivers | None, entries: Sequence[Concrete]
 ) -> list[ConcreteAnswer]:
     return [show(entry, asked, freedom, drivers) for entry in entries]

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal, TypeAlias, get_args
 
-from roadproof.analysis.study.evidence_store import Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import rational
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim
@@ -46,7 +46,7 @@ class Fact:
     conclusion: Query | None = None
     reason: str = ""
     certificate: Certificate | None = None
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     also: tuple[str, ...] = ()
     term: str = ""
     sense: str = ""
@@ -70,7 +70,7 @@ class Fact:
                 return both(self.premise, self.conclusion)
 
 
-def record_of(fact: Fact, name: str, shelf: Shelf) -> dict[str, Any]:
+def record_of(fact: Fact, name: str, shelf: EvidenceStore) -> dict[str, Any]:
     """A fact as plain data; its evidence goes to the shelf."""
     return {
         "test": fact.test,
@@ -90,7 +90,7 @@ def record_of(fact: Fact, name: str, shelf: Shelf) -> dict[str, Any]:
     }
 
 
-def read_fact(said: Mapping[str, Any], specification: Specification, shelf: Shelf) -> Fact:
+def read_fact(said: Mapping[str, Any], specification: Specification, shelf: EvidenceStore) -> Fact:
     """The inverse of ``record_of``. Raises ``InputError``."""
     relation = said["relation"]
     if relation not in get_args(Relation):

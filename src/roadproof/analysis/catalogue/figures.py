@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.tested import Target, TestedGaps, sectors_of, targets_of
@@ -38,7 +38,7 @@ def figures(set_name: str, targets: Sequence[Target], gaps: TestedGaps) -> tuple
 
 
 def figures_beside(
-    asked: Asked, concrete: Sequence[ConcreteAnswer], facts: Sequence[Fact]
+    asked: Questions, concrete: Sequence[ConcreteAnswer], facts: Sequence[Fact]
 ) -> tuple[Figure, ...]:
     """The figures of another set: what concrete tests show there, and what abstract ones imply there."""
     name, sectors = asked.specification.set_name, sectors_of(asked)

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact, Relation, read_fact, record_of
@@ -24,17 +24,17 @@ from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides,
 from roadproof.analysis.coverage import pieces
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.placing import judged_as
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.engines.search.ask import Outcome, Search, answer
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
 from roadproof.evidence.answers.catalogue import SCHEMA
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both
 from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
@@ -45,7 +45,7 @@ class Pair:
 
     one: Abstract
     other: Abstract
-    drive: Judged
+    drive: JudgedDrive
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ class Meanings:
 
     basis: Basis
     entries: tuple[Abstract, ...]
-    asked: Asked
-    beside: tuple[Asked, ...] = ()
+    asked: Questions
+    beside: tuple[Questions, ...] = ()
     gaps: GapKinds | None = None
     shown: frozenset[str] = frozenset()
     reaches: tuple[Reach, ...] = ()
@@ -178,7 +178,7 @@ class Meanings:
             found += [] if implied is None else [implied]
         return (alone, *found)
 
-    def _in_set(self, entry: Abstract, asked: Asked, drive: Judged) -> Iterator[Fact]:
+    def _in_set(self, entry: Abstract, asked: Questions, drive: JudgedDrive) -> Iterator[Fact]:
         """The scenarios of another set that a test implies, among those that its drive shows."""
         shown = {x.what for x in shown_by(drive.file, asked, Freedom())}
         set_name = asked.specification.set_name
@@ -194,7 +194,9 @@ class Meanings:
             return Fact(entry.id, "", "open", entry.query, reason=reason)
         return Fact(entry.id, "", "empty", entry.query, certificate=outcome.impossibility.certificate)
 
-    def _of_scenario(self, entry: Abstract, name: str, query: Query, drive: Judged, shown: Names) -> Fact:
+    def _of_scenario(
+        self, entry: Abstract, name: str, query: Query, drive: JudgedDrive, shown: Names
+    ) -> Fact:
         if name in shown:
             here = Fact(entry.id, name, "shows", entry.query, query, also=shown)
             judged = judged_as(drive.file, here.query, self.basis.library)
@@ -209,7 +211,7 @@ class Meanings:
         drive = outcome.drives[0]
         return Fact(entry.id, name, "shows", entry.query, query, drive=drive, also=self._shown(drive))
 
-    def _implied(self, one: Abstract, other: Abstract, drive: Judged) -> Facts:
+    def _implied(self, one: Abstract, other: Abstract, drive: JudgedDrive) -> Facts:
         formula = bind(other.query.formula, drive.file.road, drive.file.lanes, self.asked.values)
         if not judge(formula, drive.file.drive).holds:
             return ()
@@ -220,7 +222,7 @@ class Meanings:
         fact = Fact(entry.id, name, relation, entry.query, conclusion)
         try:
             result = self.basis.proof_of(fact.query)
-        except Late:
+        except BudgetExceeded:
             return None
         return replace(fact, certificate=result.certificate) if result.verdict is Verdict.PROVED else None
 
@@ -229,7 +231,7 @@ class Meanings:
         options = SearchOptions("smooth", effort=self.basis.effort, explain=explain)
         return answer(Search(self.basis.specification, query, setting, options))
 
-    def _shown(self, drive: Judged) -> tuple[str, ...]:
+    def _shown(self, drive: JudgedDrive) -> tuple[str, ...]:
         return tuple(sorted({x.what for x in all_shown_by(drive.file, self.asked, Freedom())}))
 
     def doubt(self, piece: Piece, reason: str) -> dict[str, Kept]:
@@ -252,7 +254,7 @@ class Meanings:
             return self.survey is not None and self.survey.is_sure(answer.answer)
         return all(fact.relation != "open" for fact in answer)
 
-    def record(self, name: str, answer: Kept, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> dict[str, Any]:
         if isinstance(answer, AboutGaps):
             assert self.survey is not None
             said = self.survey.record(name.removeprefix(GAPS), answer.answer, shelf)
@@ -260,7 +262,7 @@ class Meanings:
         facts = [record_of(fact, f"{name}-{k}", shelf) for k, fact in enumerate(answer)]
         return {"name": name, "facts": facts, "gaps": None}
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Kept]:
         if record.get("gaps") is None:
             return record["name"], tuple(
                 read_fact(said, self.basis.specification, shelf) for said in record["facts"]
@@ -297,5 +299,5 @@ def _name(one: str, other: str = "") -> str:
     return f"test-{digest[:12]}"
 
 
-def _drive(facts: Facts) -> Judged | None:
+def _drive(facts: Facts) -> JudgedDrive | None:
     return next((fact.drive for fact in facts if fact.relation == "runs"), None)

@@ -39,7 +39,7 @@ class FalsePart:
     of the signals and sizes that it speaks of. ``score``: the share of the formula's parts that hold.
     """
 
-    part: f.Named | None
+    part: f.Application | None
     part_needed: bool
     comparison: f.Compare
     needed: bool
@@ -64,7 +64,7 @@ def first_false_part(formula: Formula, signals: Signals, horizon: Fraction) -> F
     if judgement.holds:
         return None
     courses = Courses(signals)
-    looking = _Looking(judgement, courses, horizon)
+    looking = _NearestSearch(judgement, courses, horizon)
     found = looking.leaf(formula, Fraction(0), True, (None, True))
     if found is None:
         return None
@@ -82,12 +82,12 @@ def _is_known(leaf: Term) -> bool:
     return isinstance(leaf, t.Signal | t.Size)
 
 
-_Within: TypeAlias = tuple[f.Named | None, bool]
+_Within: TypeAlias = tuple[f.Application | None, bool]
 _Leaf: TypeAlias = tuple[_Within, f.Compare, bool, Fraction]
 
 
 @dataclass(frozen=True)
-class _Looking:
+class _NearestSearch:
     judgement: Judgement
     courses: Courses
     horizon: Fraction
@@ -101,7 +101,7 @@ class _Looking:
                 return None if has_inverse else (within, part, needed, at)
             case f.Truth():
                 return None
-            case f.Named():
+            case f.Application():
                 return self.leaf(part.body, at, needed, (part, needed))
         return next(
             (self.leaf(x, when, value, within) for x, when, value in self.blamed(part, at, needed)), None
@@ -148,7 +148,7 @@ class _Looking:
                 return
             case f.Not(body):
                 yield body, at, not needed
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 yield body, at, needed
             case f.And(parts) | f.Or(parts):
                 wrong = [x for x in parts if self.judgement.truth(x).at(at) is not needed]
@@ -217,7 +217,7 @@ class _Looking:
 
 def _bare(part: Formula) -> Formula:
     """A part without the names and negations around it."""
-    while isinstance(part, f.Named | f.Not):
+    while isinstance(part, f.Application | f.Not):
         part = part.body
     return part
 

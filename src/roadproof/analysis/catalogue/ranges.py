@@ -11,19 +11,19 @@ from pathlib import Path
 from typing import get_args
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
-from roadproof.analysis.explore.extreme import Sought, find_extreme
+from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme
 from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.analysis.placing import judged_as
 from roadproof.evidence.drive_file import load_drive
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.elaborate import read_term
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.world.units import unit_text
 
 EFFORT = 6.0
@@ -41,7 +41,7 @@ class Reach:
     target: str
     term: str
     query: Query
-    known: tuple[Judged, ...] = ()
+    known: tuple[JudgedDrive, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
     still_open = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
     try:
         found = find_extreme(
-            Sought(search, measure, _PRECISION[reach.term.partition("(")[0]], seeds=reach.known)
+            ExtremeQuestion(search, measure, _PRECISION[reach.term.partition("(")[0]], seeds=reach.known)
         )
-    except Late as late:
+    except BudgetExceeded as late:
         return replace(still_open, reason=f"{told}: {late}")
     beyond = "" if found.missed is None else found.missed.reason
     if found.best is None:
@@ -128,7 +128,9 @@ def _span(target: str, term: str, unit: str, tested: tuple[float, float], ends: 
 
 
 def reaches_of(
-    asked: Asked, targets: Mapping[str, Mapping[str, tuple[float, float]]], concrete: Sequence[ConcreteAnswer]
+    asked: Questions,
+    targets: Mapping[str, Mapping[str, tuple[float, float]]],
+    concrete: Sequence[ConcreteAnswer],
 ) -> Iterator[Reach]:
     """What is to be asked of targets that tests show: each number of how these begin."""
     for name, covered in targets.items():
@@ -138,12 +140,12 @@ def reaches_of(
 
 
 def _known(
-    asked: Asked,
+    asked: Questions,
     name: str,
     query: Query,
     covered: Mapping[str, tuple[float, float]],
     concrete: Sequence[ConcreteAnswer],
-) -> Iterator[Judged]:
+) -> Iterator[JudgedDrive]:
     """The drives among tests that are at the ends of where tests are."""
     home = asked.specification
     for x in concrete:

@@ -13,7 +13,7 @@ from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers, sc
 from roadproof.analysis.catalogue.ranges import Span, spans_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
-from roadproof.analysis.catalogue.tested import Remark, Target, Tested, all_facts, targets_of, tested
+from roadproof.analysis.catalogue.tested import Remark, Target, Targets, all_facts, targets_of, tested
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
 from roadproof.library.bind import values_with
@@ -45,7 +45,7 @@ class Result:
         return self.examination.tests
 
     @cached_property
-    def tested(self) -> Tested:
+    def tested(self) -> Targets:
         """What is tested, what is missing, and what is to be said of tests."""
         facts = all_facts(self.answers)
         words = targets_of(self.study.asked)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.analysis.catalogue.asked import Asked, Endangered, Key
+from roadproof.analysis.catalogue.asked import DangerQuestion, Key, Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
 from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.analysis.catalogue.entries import Concrete
@@ -99,7 +99,9 @@ class ConcreteAnswer:
         return frozenset(x.what for x in self.shown)
 
 
-def show(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers | None = None) -> ConcreteAnswer:
+def show(
+    entry: Concrete, asked: Questions, freedom: Freedom, drivers: Drivers | None = None
+) -> ConcreteAnswer:
     """Look at one test. A test that cannot be read is answered with a fault.
 
     ``drivers``: the models that are asked what becomes of the scenarios that it shows.
@@ -121,7 +123,7 @@ def show(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers | Non
 
 
 def _of_drive(
-    entry: Concrete, file: DriveFile, asked: Asked, freedom: Freedom, drivers: Drivers | None
+    entry: Concrete, file: DriveFile, asked: Questions, freedom: Freedom, drivers: Drivers | None
 ) -> ConcreteAnswer:
     claims = entry.claims
     if file.scenario is not None and file.set_name == asked.specification.set_name and not claims:
@@ -157,7 +159,7 @@ def _of_drive(
     )
 
 
-def why_not(file: DriveFile, played: DriveFile, asked: Asked, freedom: Freedom) -> Why | None:
+def why_not(file: DriveFile, played: DriveFile, asked: Questions, freedom: Freedom) -> Why | None:
     """Why a drive shows no scenario; ``played``: with vehicles called as their roles."""
     chosen = choices(asked.roles, asked.all_roles, tuple(played.drive.vehicles), freedom.roles)
     named = tuple(x for x in chosen if asked.role_names >= {*x[1]})
@@ -188,7 +190,7 @@ def _as_written(file: DriveFile, specification: Specification) -> DriveFile:
     return replace(file, options={**changed, **file.options})
 
 
-def _made_with(file: DriveFile, asked: Asked, drivers: Drivers | None) -> Iterator[str]:
+def _made_with(file: DriveFile, asked: Questions, drivers: Drivers | None) -> Iterator[str]:
     """What the file was made with, and is not asked with; nothing of what the definitions do not speak of."""
     home = asked.specification
     options, values = dict(home.options), dict(asked.values)
@@ -200,13 +202,13 @@ def _made_with(file: DriveFile, asked: Asked, drivers: Drivers | None) -> Iterat
     yield from (f"{k} = {v} (SI)" for k, v in file.values.items() if values.get(k, v) != v)
 
 
-def all_shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
+def all_shown_by(file: DriveFile, asked: Questions, freedom: Freedom) -> tuple[Shown, ...]:
     """As ``shown_by``, gaps too."""
     shown = shown_by(file, asked, freedom)
     return (*shown, *_gap(file, asked, shown))
 
 
-def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Shown]:
+def _gap(file: DriveFile, asked: Questions, shown: tuple[Shown, ...]) -> Iterator[Shown]:
     """The danger of a drive, from its start on, where no scenario holds for any lane and in any roles.
 
     Nothing where scenarios begin as a driver model says: a drive that does not is no gap.
@@ -221,7 +223,7 @@ def _gap(file: DriveFile, asked: Asked, shown: tuple[Shown, ...]) -> Iterator[Sh
             yield from (replace(danger, what=what) for what in (GAP, *kinds))
 
 
-def shown_by(file: DriveFile, asked: Asked, freedom: Freedom) -> tuple[Shown, ...]:
+def shown_by(file: DriveFile, asked: Questions, freedom: Freedom) -> tuple[Shown, ...]:
     """What a drive shows, judged in dense time: all formulas at once, since they share their parts."""
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
     for roles, vehicles in choices(asked.roles, asked.all_roles, tuple(file.drive.vehicles), freedom.roles):
@@ -252,16 +254,18 @@ def _instants(
         yield cut, frozenset(key for key, truth in truths.items() if bisect_right(truth.cuts, cut) % 2)
 
 
-def _what(asked: Asked, roles: tuple[str, ...], true: frozenset[Key]) -> Iterator[str]:
+def _what(asked: Questions, roles: tuple[str, ...], true: frozenset[Key]) -> Iterator[str]:
     yield from asked.shown(roles, true)
-    if Endangered() in true:
+    if DangerQuestion() in true:
         yield ENDANGERED
 
 
 # --- samples -------------------------------------------------------------------------------------
 
 
-def _of_traces(entry: Concrete, asked: Asked, freedom: Freedom, drivers: Drivers | None) -> ConcreteAnswer:
+def _of_traces(
+    entry: Concrete, asked: Questions, freedom: Freedom, drivers: Drivers | None
+) -> ConcreteAnswer:
     decisions: dict[tuple[str, tuple[str, ...]], tuple[Decision, ...]] = {}
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
     begins: dict[str, float] = {}
@@ -307,7 +311,7 @@ def _has_scenario(shown: Iterable[Shown]) -> bool:
     return any(number_in(x.what) is not None for x in shown)
 
 
-def _why(trace: OneTrace, asked: Asked, freedom: Freedom) -> Why | None:
+def _why(trace: OneTrace, asked: Questions, freedom: Freedom) -> Why | None:
     """Why no scenario holds from the first sample on; None on measured roads, whose lanes are not known."""
     if trace.batch.given:
         return None
@@ -318,7 +322,7 @@ def _why(trace: OneTrace, asked: Asked, freedom: Freedom) -> Why | None:
 
 
 def _monitored(
-    trace: OneTrace, asked: Asked, roles: tuple[str, ...], vehicles: tuple[str, ...], lane: str
+    trace: OneTrace, asked: Questions, roles: tuple[str, ...], vehicles: tuple[str, ...], lane: str
 ) -> Iterator[tuple[str, float]]:
     """What is shown, whatever comes after the trace, with the time of the first sample (s)."""
     monitor = compile(asked.on(trace.road, roles, vehicles, lane))
@@ -332,7 +336,7 @@ def _monitored(
             yield what, float(sample * trace.batch.dt)
 
 
-def _gap_in_samples(trace: OneTrace, asked: Asked, danger: Shown) -> Iterator[Shown]:
+def _gap_in_samples(trace: OneTrace, asked: Questions, danger: Shown) -> Iterator[Shown]:
     """The danger of SV and POV as a gap, where no scenario covers it, whatever comes after the trace."""
     sample = round(danger.at / float(trace.batch.dt))
     kinds = () if asked.gaps is None else asked.gaps.of_trace(trace, sample)

@@ -10,7 +10,7 @@ from functools import cache
 from typing import get_args
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, course_of
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact
@@ -21,7 +21,7 @@ from roadproof.drivers.restriction import Restriction, Side, check_library, file
 from roadproof.engines.search.ask import Search, answer
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.scenarios import Scenario, applied, number_in
 from roadproof.library.specification import Library, Source, Specification, load_library
@@ -36,7 +36,7 @@ class Sides:
 
     entry: Abstract
     scenario: str
-    drives: tuple[Judged, ...]
+    drives: tuple[JudgedDrive, ...]
 
 
 def side_name(scenario: str, side: str, model: str) -> str:
@@ -64,7 +64,7 @@ def _models(drivers: Drivers, scenario: str) -> Iterator[str]:
 
 
 def decisions_of(
-    drives: Iterable[Judged], scenarios: Sequence[str], asked: Asked, drivers: Drivers
+    drives: Iterable[JudgedDrive], scenarios: Sequence[str], asked: Questions, drivers: Drivers
 ) -> list[Decision]:
     """What becomes of these scenarios on each of the drives that shows them."""
     return [
@@ -75,7 +75,7 @@ def decisions_of(
     ]
 
 
-def facts_on_sides(basis: Basis, asked: Asked, drivers: Drivers, piece: Sides) -> tuple[Fact, ...]:
+def facts_on_sides(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides) -> tuple[Fact, ...]:
     """A drive for each side of each model that the known drives are not on, or that none was found."""
     scenario = piece.scenario
     found = decisions_of(piece.drives, [scenario], asked, drivers)
@@ -100,7 +100,7 @@ def unanswered_sides(drivers: Drivers, piece: Sides, reason: str) -> tuple[Fact,
     )
 
 
-def _fact(basis: Basis, asked: Asked, drivers: Drivers, piece: Sides, wanted: Restriction) -> Fact:
+def _fact(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides, wanted: Restriction) -> Fact:
     entry, home = piece.entry, basis.specification
     number = number_in(piece.scenario)
     assert number is not None

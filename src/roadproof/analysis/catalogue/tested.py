@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from roadproof.analysis.catalogue.asked import NOWHERE, Asked
+from roadproof.analysis.catalogue.asked import NOWHERE, Questions
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import PREFIX
@@ -62,7 +62,7 @@ class TestedGaps:
 
 
 @dataclass(frozen=True)
-class Tested:
+class Targets:
     """The targets in order, and what is remarked: ``faults`` of tests that are not what they claim or show
     nothing, ``doubts``, tests that are ``alike``, and ``contradictions`` between what was proved and seen.
     """
@@ -86,14 +86,14 @@ class Tested:
 
 
 def tested(
-    asked: Asked,
+    asked: Questions,
     concrete: Sequence[ConcreteAnswer],
     abstract: Sequence[Abstract],
     facts: Sequence[Fact],
     words: Mapping[str, str],
     near: float,
     surveyed: Mapping[str, ClassAnswer | None] | None,
-) -> Tested:
+) -> Targets:
     """All of it. ``words``: each target by name, in words, in order; ``near``: how far tests that say the
     same may begin apart, in m and m/s; ``surveyed``: what is known of each class of gaps by name, None of
     those that tests show, where gaps are to be tested too. What tests claim is of scenarios as they are: it
@@ -108,7 +108,7 @@ def tested(
         if restricted
         else (*_of_concrete(concrete, known, gaps.asked), *_of_abstract(asked, abstract, facts))
     )
-    return Tested(
+    return Targets(
         tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
         gaps,
         (*_unreadable(concrete), *_rejected(concrete), *claimed),
@@ -119,7 +119,7 @@ def tested(
 
 
 def _gaps(
-    asked: Asked,
+    asked: Questions,
     concrete: Sequence[ConcreteAnswer],
     facts: Sequence[Fact],
     surveyed: Mapping[str, ClassAnswer | None] | None,
@@ -156,7 +156,7 @@ def _shown_though_empty(gaps: TestedGaps) -> Iterator[Remark]:
             yield Remark((test,), f"shows {target.name}, though that is proved to be empty")
 
 
-def targets_of(asked: Asked) -> dict[str, str]:
+def targets_of(asked: Questions) -> dict[str, str]:
     """Every scenario and every class by name, with what it is in words."""
     words = called(asked.specification, asked.numbers)
     targets = {name_of(number): x.name or f"scenario {number}" for number, x in words.items()}
@@ -167,7 +167,7 @@ def targets_of(asked: Asked) -> dict[str, str]:
     return targets
 
 
-def sectors_of(asked: Asked) -> dict[str, str]:
+def sectors_of(asked: Questions) -> dict[str, str]:
     """The road sector of each scenario and class by name; none where there are no classes or one sector."""
     if asked.classes is None or not asked.classes.plan.has_places:
         return {}
@@ -253,7 +253,7 @@ def _with_other_values(answer: ConcreteAnswer) -> str:
 _NO_TARGET = "but there is no scenario and no class of that name: classes that are proved empty are left out"
 
 
-def _why_of_formula(runs: Fact, asked: Asked) -> str:
+def _why_of_formula(runs: Fact, asked: Questions) -> str:
     """Why the drive of a test with a formula shows no scenario."""
     if runs.drive is None:
         return ""
@@ -265,7 +265,7 @@ def _why_of_formula(runs: Fact, asked: Asked) -> str:
     return "" if why is None else f"; on the drive that was found: {why}"
 
 
-def _of_abstract(asked: Asked, abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
+def _of_abstract(asked: Questions, abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
     by_test: dict[str, dict[str, Fact]] = {}
     for x in facts:
         by_test.setdefault(x.test, {}).setdefault(x.other, x)

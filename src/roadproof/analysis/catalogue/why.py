@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.analysis.catalogue.asked import Asked, Happens
+from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.nearest import FalsePart, first_false_part, told
 from roadproof.errors import RoadproofError
 from roadproof.library.scenarios import name_of, numbers_of
@@ -52,7 +52,7 @@ class Why:
         return f"{where}{'; ' if others else ''}{others}"
 
 
-def why_none(course: Course, asked: Asked) -> Why | None:
+def why_none(course: Course, asked: Questions) -> Why | None:
     """Why no scenario holds from time 0 on; None where one does, or where no comparison is to blame."""
     if any(judge(formula, course.signals).holds for *_, formula in _applied(course, asked)):
         return None
@@ -82,24 +82,26 @@ def _lacks(part: FalsePart) -> str:
     )
 
 
-def _applied(course: Course, asked: Asked) -> Iterator[tuple[Happens, tuple[str, ...], str, Formula]]:
+def _applied(
+    course: Course, asked: Questions
+) -> Iterator[tuple[ScenarioQuestion, tuple[str, ...], str, Formula]]:
     for roles, vehicles in course.roles:
         for lane in course.lanes:
             for key, formula in asked.on(course.road, roles, vehicles, lane).items():
-                if isinstance(key, Happens):
+                if isinstance(key, ScenarioQuestion):
                     yield key, vehicles, lane, formula
 
 
-def _others(asked: Asked) -> Iterable[str]:
+def _others(asked: Questions) -> Iterable[str]:
     return (x for x in asked.specification.library.sets if x != asked.specification.set_name)
 
 
-def _held_in(course: Course, asked: Asked, set_name: str) -> tuple[str, ...]:
+def _held_in(course: Course, asked: Questions, set_name: str) -> tuple[str, ...]:
     """The scenarios of another spec set that hold; none of a set that cannot be asked about."""
     try:
         there = asked.specification.in_set(set_name)
         numbers = tuple(x for x in asked.numbers if x in numbers_of(there))
-        other = Asked(there, numbers, None, asked.values)
+        other = Questions(there, numbers, None, asked.values)
         names = {
             name_of(key.number)
             for key, *_, formula in _applied(course, other)

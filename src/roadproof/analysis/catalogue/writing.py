@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Listed:
+class CatalogueEntry:
     """An entry: a concrete test in ``file``; ``copy_of``: the test of which it is the same drive, if any."""
 
     id: str
@@ -16,12 +16,12 @@ class Listed:
     copy_of: str = ""
 
 
-def catalogue_text(entries: Iterable[Listed]) -> str:
+def catalogue_text(entries: Iterable[CatalogueEntry]) -> str:
     """The entries as TOML."""
     return "\n".join(map(_entry, entries))
 
 
-def _entry(entry: Listed) -> str:
+def _entry(entry: CatalogueEntry) -> str:
     said: dict[str, str | list[str]] = {
         "id": entry.id,
         "title": entry.title,

@@ -58,7 +58,7 @@ def query_of(axis: Axis, cell: Cell) -> Query:
 def outline(axis: Axis, basis: Basis) -> Outline:
     """The cells of an axis but for those that are proved empty, each with ``basis.proof`` units of work.
 
-    Raises ``Late``: a proof that the clock cut off would make other classes.
+    Raises ``BudgetExceeded``: a proof that the clock cut off would make other classes.
     """
     empty: list[Query] = []
 
@@ -98,7 +98,8 @@ def _larger(level: Sequence[tuple[int, ...]], possible: set[tuple[int, ...]]) ->
 def refine(axis: Axis, basis: Basis, holds: Sequence[int], others: Sequence[int]) -> Cell:
     """The cell where ``holds`` hold and ``others`` do not, without what is proved to follow from the rest.
 
-    A part of a row stands in its place where the two are proved to be the same there. Raises ``Late``.
+    A part of a row stands in its place where the two are proved to be the same there.
+    Raises ``BudgetExceeded``.
     """
 
     def follows(said: Sequence[int], denied: Iterable[Query], conclusion: Query) -> bool:

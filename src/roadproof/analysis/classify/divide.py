@@ -16,7 +16,7 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
 from roadproof.evidence.answers.classify import Doubt
 from roadproof.library.query import Query
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
 
 
@@ -35,7 +35,7 @@ class Division:
 
 
 @dataclass(frozen=True)
-class Refining:
+class CellTask:
     """One cell that is to be said with few words; ``name`` is that of its definition."""
 
     name: str
@@ -45,7 +45,7 @@ class Refining:
 
 
 @dataclass(frozen=True)
-class _Dividing:
+class _DivisionJobs:
     """Jobs for other processes. The answer to each is one, or with a reason why there is a doubt."""
 
     basis: Basis
@@ -53,17 +53,17 @@ class _Dividing:
     def outlined(self, axis: Axis) -> Outline | str:
         try:
             return outline(axis, self.basis)
-        except Late as late:
+        except BudgetExceeded as late:
             return str(late)
 
-    def refined(self, job: Refining) -> tuple[Cell, str]:
+    def refined(self, job: CellTask) -> tuple[Cell, str]:
         try:
             return refine(job.axis, self.basis, job.holds, job.others), ""
-        except Late as late:
+        except BudgetExceeded as late:
             return in_full(job, str(late))
 
 
-def in_full(job: Refining, reason: str) -> tuple[Cell, str]:
+def in_full(job: CellTask, reason: str) -> tuple[Cell, str]:
     """The cell where nothing is known of what follows from what."""
     return whole_cell(job.axis, job.holds, job.others), reason
 
@@ -79,7 +79,7 @@ def divide(
 
     ``in_few_words``: whether each cell is said in few words, which takes longer than to find them all.
     """
-    specification, dividing = basis.specification, _Dividing(basis)
+    specification, dividing = basis.specification, _DivisionJobs(basis)
     axes = [what_axis(plan, group, specification) for group in plan.groups]
     if plan.has_places:
         axes.append(where_axis(plan, specification))
@@ -92,7 +92,7 @@ def divide(
         doubts = tuple(Doubt(about="which classes there are", reason=reason) for reason in reasons)
         return Division(Classes(plan, ((),) * len(plan.groups), ()), {}, doubts, cut_off=True)
     jobs = [
-        Refining(plan.what(cell[0]) if k < len(plan.groups) else plan.where(cell[0]), axes[k], *cell)
+        CellTask(plan.what(cell[0]) if k < len(plan.groups) else plan.where(cell[0]), axes[k], *cell)
         for k, each in enumerate(outlines)
         for cell in each.cells
     ]
@@ -105,7 +105,7 @@ def divide(
 
 
 def _division(
-    plan: Plan, outlines: list[Outline], jobs: list[Refining], cells: list[tuple[Cell, str]]
+    plan: Plan, outlines: list[Outline], jobs: list[CellTask], cells: list[tuple[Cell, str]]
 ) -> Division:
     waiting = iter(cells)
     by_axis = [tuple(next(waiting)[0] for _ in made.cells) for made in outlines]

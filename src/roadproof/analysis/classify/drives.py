@@ -13,11 +13,11 @@ from roadproof.analysis.placing import placed, placed_on, zones_of
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.question import usual_road
 from roadproof.evidence.answers.classify import Word
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.query import Query
 from roadproof.library.scenarios import sector
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
@@ -34,22 +34,22 @@ class Example:
     one: Class
     verdict: Word
     reason: str = ""
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
 
 
 def find_examples(
-    basis: Basis, classes: Sequence[Class], known: Sequence[Judged] = (), more: Query | None = None
+    basis: Basis, classes: Sequence[Class], known: Sequence[JudgedDrive] = (), more: Query | None = None
 ) -> list[Example]:
     """Examples of classes in which the same happens in different places; ``basis`` is about their set.
 
     ``known``: drives of others of these classes; ``more``: what is to hold beside.
     """
-    searching = _Searching(basis, known, more)
+    searching = _DriveJobs(basis, known, more)
     return [searching.example(one) for one in classes]
 
 
-class _Searching:
-    def __init__(self, basis: Basis, known: Sequence[Judged], more: Query | None) -> None:
+class _DriveJobs:
+    def __init__(self, basis: Basis, known: Sequence[JudgedDrive], more: Query | None) -> None:
         self.basis = basis
         self.more = [] if more is None else [more]
         self.found = list(known)
@@ -59,7 +59,7 @@ class _Searching:
         """A drive of a class; UNKNOWN where none was found, or where the clock cut the search off."""
         try:
             return self._find(one)
-        except Late as late:
+        except BudgetExceeded as late:
             return Example(one, Verdict.UNKNOWN, str(late))
 
     def _find(self, one: Class) -> Example:
@@ -81,7 +81,7 @@ class _Searching:
         self.failures += 1
         return Example(one, Verdict.UNKNOWN, "; ".join(reasons))
 
-    def _elsewhere(self, judged: Judged, query: Query) -> Judged | None:
+    def _elsewhere(self, judged: JudgedDrive, query: Query) -> JudgedDrive | None:
         """The motions of a drive on another road, or on their own with other zones."""
         file, library = judged.file, self.basis.library
         return placed(file, query, library) or placed_on(file, query, library, patched(file.road, file.drive))

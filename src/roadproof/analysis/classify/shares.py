@@ -20,7 +20,7 @@ from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.recordings.evaluate.counting import Counted, without_repeats
+from roadproof.recordings.evaluate.counting import Counts, without_repeats
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE
 from roadproof.recordings.evaluate.questions import (
@@ -85,7 +85,7 @@ def count_shares(
     ``values``: parameters in SI units; ``kinds``: the vehicles that are looked at. What an earlier recording
     has shown is left out. Raises ``InputError``.
     """
-    shares, counted = Shares(source=source), Counted()
+    shares, counted = Shares(source=source), Counts()
     settings = Settings(
         specification.library,
         specification.options,

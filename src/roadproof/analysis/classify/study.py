@@ -11,14 +11,14 @@ from roadproof.analysis.classify.divide import Division
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.text import ClassClaim, claims_of, with_classes, write_classes
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.answers.classify import SCHEMA, Doubt
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.judged import Judged
-from roadproof.runtime.budget import Late
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import ProofVerdict, Verdict
 
 CLAIMS_IN_A_PIECE = 8
@@ -46,18 +46,18 @@ class Alike:
     """Classes in which the same happens, that want drives; ``known`` are drives of others of these."""
 
     classes: tuple[Class, ...]
-    known: tuple[Judged, ...] = ()
+    known: tuple[JudgedDrive, ...] = ()
 
 
 @dataclass(frozen=True)
-class Claimed:
+class ProofClaims:
     """Claims that want proofs."""
 
     claims: tuple[ClassClaim, ...]
 
 
 @dataclass(frozen=True)
-class Classified:
+class ClassificationResult:
     """All answers together; ``doubts`` are about the division, ``shares`` None where none were counted."""
 
     examples: tuple[Example, ...]
@@ -94,9 +94,9 @@ class Classification:
         named: list[Class | ClassClaim] = [*self.classes.all(), *self.claims]
         return {x.name: x for x in named}
 
-    def pieces(self, known: Mapping[str, Example | Decision]) -> Sequence[Alike | Claimed]:
+    def pieces(self, known: Mapping[str, Example | Decision]) -> Sequence[Alike | ProofClaims]:
         """Classes in which the same happens are one piece: a drive of one may do for another."""
-        pieces: list[Alike | Claimed] = []
+        pieces: list[Alike | ProofClaims] = []
         for alike in self.classes.alike():
             left = tuple(one for one in alike if one.name not in known)
             drives = [x.drive for one in alike if isinstance(x := known.get(one.name), Example) and x.drive]
@@ -104,35 +104,35 @@ class Classification:
                 pieces.append(Alike(left, tuple(drives)))
         claims = [claim for claim in self.claims if claim.name not in known]
         for first in range(0, len(claims), CLAIMS_IN_A_PIECE):
-            pieces.append(Claimed(tuple(claims[first : first + CLAIMS_IN_A_PIECE])))
+            pieces.append(ProofClaims(tuple(claims[first : first + CLAIMS_IN_A_PIECE])))
         return pieces
 
-    def settle(self, piece: Alike | Claimed) -> dict[str, Example | Decision]:
+    def settle(self, piece: Alike | ProofClaims) -> dict[str, Example | Decision]:
         match piece:
             case Alike(classes, known):
                 return {x.one.name: x for x in find_examples(self.basis, classes, known)}
-            case Claimed(claims):
+            case ProofClaims(claims):
                 return {claim.name: self._decide(claim) for claim in claims}
 
     def _decide(self, claim: ClassClaim) -> Decision:
         try:
             result = self.basis.proof_of(claim.query, CLAIM * self.basis.effort.units, claim.name)
-        except Late as late:
+        except BudgetExceeded as late:
             return Decision(claim, Verdict.UNKNOWN, str(late), seconds=late.seconds)
         assert result.verdict is not Verdict.PROVED_BOUNDED
         return Decision(claim, result.verdict, result.reason, result.certificate, result.seconds)
 
-    def doubt(self, piece: Alike | Claimed, reason: str) -> dict[str, Example | Decision]:
+    def doubt(self, piece: Alike | ProofClaims, reason: str) -> dict[str, Example | Decision]:
         match piece:
             case Alike(classes):
                 return {one.name: Example(one, Verdict.UNKNOWN, reason) for one in classes}
-            case Claimed(claims):
+            case ProofClaims(claims):
                 return {claim.name: Decision(claim, Verdict.UNKNOWN, reason) for claim in claims}
 
     def is_sure(self, answer: Example | Decision) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.PROVED, Verdict.VACUOUS)
 
-    def record(self, name: str, answer: Example | Decision, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: Example | Decision, shelf: EvidenceStore) -> dict[str, Any]:
         match answer:
             case Example(one, verdict, reason, drive):
                 kept_class = kept.KeptClass(
@@ -160,7 +160,7 @@ class Classification:
                 )
                 return write(kept.Record(classes=(), claims=(kept_claim,)))
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Example | Decision]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Example | Decision]:
         said = _read(record)
         entries: list[kept.KeptClass | kept.Claim] = [*said.classes, *said.claims]
         if len(entries) != 1:
@@ -177,10 +177,10 @@ class Classification:
 
     def classified(
         self, answers: Mapping[str, Example | Decision], shares: Shares | None = None
-    ) -> Classified:
+    ) -> ClassificationResult:
         """The answers in the order of the classes and of the claims."""
         found = [answers[name] for name in self._named]
-        return Classified(
+        return ClassificationResult(
             tuple(x for x in found if isinstance(x, Example)),
             tuple(x for x in found if isinstance(x, Decision)),
             self.doubts,
@@ -188,7 +188,7 @@ class Classification:
         )
 
     def index(
-        self, classified: Classified, records: Mapping[str, Mapping[str, Any]], seconds: float
+        self, classified: ClassificationResult, records: Mapping[str, Mapping[str, Any]], seconds: float
     ) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
         shares = classified.shares

@@ -6,11 +6,11 @@ from typing import Any
 
 from roadproof.analysis.coverage.classes import GapGroup
 from roadproof.analysis.coverage.parts import Part
-from roadproof.analysis.study.evidence_store import Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
@@ -27,11 +27,11 @@ class Gap:
     given for whole components.
     """
 
-    drive: Judged
+    drive: JudgedDrive
     first: str
     caught_by: tuple[tuple[str, ...], ...]
     classes: tuple[str, ...]
-    elsewhere: Mapping[str, Judged] = field(default_factory=dict)
+    elsewhere: Mapping[str, JudgedDrive] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -63,14 +63,14 @@ def group_name(group: GapGroup) -> str:
     return group.title.replace(" ", "-")
 
 
-def record_of(group: GapGroup, answers: Answers, shelf: Shelf) -> kept.Record:
+def record_of(group: GapGroup, answers: Answers, shelf: EvidenceStore) -> kept.Record:
     """The answers for a group as they are kept; their evidence goes to the shelf."""
     stems = (f"{group_name(group)}-{k}" for k in range(len(answers)))
     classes = tuple(_kept_class(x, stem, shelf) for stem, x in zip(stems, answers, strict=True))
     return kept.Record(group=group.title, classes=classes)
 
 
-def _kept_class(answer: ClassAnswer, stem: str, shelf: Shelf) -> kept.KeptClass:
+def _kept_class(answer: ClassAnswer, stem: str, shelf: EvidenceStore) -> kept.KeptClass:
     assert answer.verdict is not Verdict.CROSSCHECK_FAILED  # that is said of recordings alone
     return kept.KeptClass(
         **names_of(answer.part),
@@ -93,7 +93,7 @@ def names_of(part: Part | None) -> dict[str, Any]:
     }
 
 
-def _kept_gap(gap: Gap, name: str, shelf: Shelf) -> kept.Gap:
+def _kept_gap(gap: Gap, name: str, shelf: EvidenceStore) -> kept.Gap:
     file = gap.drive.file
     return kept.Gap(
         road=file.road.name,
@@ -107,7 +107,7 @@ def _kept_gap(gap: Gap, name: str, shelf: Shelf) -> kept.Gap:
 
 
 def answers_in(
-    classes: Sequence[kept.KeptClass], group: GapGroup, specification: Specification, shelf: Shelf
+    classes: Sequence[kept.KeptClass], group: GapGroup, specification: Specification, shelf: EvidenceStore
 ) -> Answers:
     """The inverse of ``record_of``, with every drive judged again. Raises ``InputError``."""
     named = [{name: getattr(x, name) for name in names_of(None)} for x in classes]
@@ -118,7 +118,7 @@ def answers_in(
 
 
 def _read_class(
-    part: Part | None, said: kept.KeptClass, specification: Specification, shelf: Shelf
+    part: Part | None, said: kept.KeptClass, specification: Specification, shelf: EvidenceStore
 ) -> ClassAnswer:
     return ClassAnswer(
         part,
@@ -131,7 +131,7 @@ def _read_class(
     )
 
 
-def _read_gap(said: kept.Gap, shelf: Shelf) -> Gap:
+def _read_gap(said: kept.Gap, shelf: EvidenceStore) -> Gap:
     drives = {road: shelf.read_drive(file) for road, file in said.elsewhere.items()}
     drive = shelf.read_drive(said.drive)
     assert drive is not None

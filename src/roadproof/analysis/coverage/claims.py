@@ -30,7 +30,7 @@ from roadproof.library.scenarios import (
 from roadproof.library.specification import Library, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
 
@@ -38,7 +38,7 @@ PROOF = 60.0  # units of work for a claim of coverage
 
 
 @dataclass(frozen=True)
-class Covered:
+class CoverageResult:
     """The answer to one claim of coverage, with a certificate where it is proved."""
 
     claim: Query
@@ -91,14 +91,14 @@ def claims_of(specification: Specification) -> tuple[Query, ...]:
     return (*claims, implication(somewhere, some_sector))
 
 
-def prove_claim(basis: Basis, claim: Query) -> Covered:
+def prove_claim(basis: Basis, claim: Query) -> CoverageResult:
     """Try to prove one claim; in doubt where the clock cuts it off."""
     try:
         result = basis.proof_of(claim, PROOF, "coverage")
-    except Late as late:
-        return Covered(claim, Verdict.UNKNOWN, None, str(late))
+    except BudgetExceeded as late:
+        return CoverageResult(claim, Verdict.UNKNOWN, None, str(late))
     assert result.verdict is not Verdict.PROVED_BOUNDED
-    return Covered(claim, result.verdict, result.certificate, result.reason)
+    return CoverageResult(claim, result.verdict, result.certificate, result.reason)
 
 
 def starts(specification: Specification) -> tuple[Query, ...]:

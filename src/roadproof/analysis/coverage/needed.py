@@ -17,13 +17,13 @@ from roadproof.analysis.coverage.trial import Trials
 from roadproof.engines.prove.prover import prove
 from roadproof.evidence.answers.coverage import NeedVerdict
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import PAIR, danger_comes
 from roadproof.library.specification import Specification
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
@@ -43,7 +43,7 @@ class Need:
     definition: str
     parent: str
     verdict: NeedVerdict
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
 
 
 # Two cars fit side by side in its lane, as they do not on the reference roads.
@@ -93,11 +93,11 @@ def _dangerous(trials: Trials, road: Road) -> Iterator[Drive]:
             yield drive
 
 
-def _judged(basis: Basis, without: Specification, file: DriveFile) -> Judged:
+def _judged(basis: Basis, without: Specification, file: DriveFile) -> JudgedDrive:
     """The drive as one that is missed without the definition, judged as a reader would."""
     query = missed(without, two_vehicle_numbers(without))
     formula = text(as_syntax(query.formula, expand=True))
-    return Judged(replace(file, formula=formula), basis.library)
+    return JudgedDrive(replace(file, formula=formula), basis.library)
 
 
 def _covers(basis: Basis, without: Specification) -> NeedVerdict:
@@ -105,6 +105,6 @@ def _covers(basis: Basis, without: Specification) -> NeedVerdict:
     effort = basis.effort.of(PROOF)
     try:
         proved = all(prove(without, x, effort).verdict is Verdict.PROVED for x in claims_of(without))
-    except Late:
+    except BudgetExceeded:
         return Verdict.UNKNOWN
     return Verdict.PROVED if proved else Verdict.UNKNOWN

@@ -67,14 +67,14 @@ def parts_of(specification: Specification, number: int) -> tuple[Part, ...]:
     return tuple(found)
 
 
-def _components(whole: Formula, number: int) -> Iterator[tuple[f.Named, Rebuild]]:
+def _components(whole: Formula, number: int) -> Iterator[tuple[f.Application, Rebuild]]:
     """The conjuncts of the disturbance, each with what puts another formula in its place."""
 
-    def walk(current: Formula, rebuild: Rebuild, inside: bool) -> Iterator[tuple[f.Named, Rebuild]]:
+    def walk(current: Formula, rebuild: Rebuild, inside: bool) -> Iterator[tuple[f.Application, Rebuild]]:
         match current:
-            case f.Named(name, _, body) if not inside:
+            case f.Application(name, _, body) if not inside:
                 yield from walk(body, rebuild, is_disturbance(name, number))
-            case f.Named():
+            case f.Application():
                 yield current, rebuild
             case f.And(parts):
                 for place, part in enumerate(parts):
@@ -94,7 +94,7 @@ def _conditions(
         case f.And(parts):
             for place, part in enumerate(parts):
                 below += _conditions(part, _inside(current, place, rebuild), where, until)
-        case f.Named(name, _, body) if not _is_simple(current):
+        case f.Application(name, _, body) if not _is_simple(current):
             below += _conditions(body, rebuild, name, until)
         case f.Eventually(_, body) | f.Always(_, body):
             below += _conditions(body, _inside(current, 0, rebuild), where, until)
@@ -122,7 +122,7 @@ def _inside(around: Formula, place: int, rebuild: Rebuild) -> Rebuild:
     return put
 
 
-def _is_simple(formula: f.Named) -> bool:
+def _is_simple(formula: f.Application) -> bool:
     """Whether a definition speaks of one instant, and there of lanes only or of numbers only."""
     below = list(subformulas(formula))
     lanes = any(isinstance(x, f.Occupies) for x in below)
@@ -131,6 +131,6 @@ def _is_simple(formula: f.Named) -> bool:
 
 
 def _body(formula: Formula) -> Formula:
-    while isinstance(formula, f.Named):
+    while isinstance(formula, f.Application):
         formula = formula.body
     return formula

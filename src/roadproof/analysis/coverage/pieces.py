@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.analysis.coverage.answers import Answers
-from roadproof.analysis.coverage.claims import Covered
+from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.coverage.found import FoundGap
 from roadproof.analysis.coverage.needed import Need
 from roadproof.library.query import Query
@@ -39,7 +39,7 @@ class Component:
 
 
 @dataclass(frozen=True)
-class Looked:
+class GapScan:
     """The gaps in some of the simple drives; ``lost``: why it was not looked through."""
 
     found: tuple[FoundGap, ...]
@@ -47,7 +47,7 @@ class Looked:
 
 
 Piece: TypeAlias = CoverageClaim | NeededDefinition | Chunk | Component
-Kept: TypeAlias = Covered | Need | Looked | Answers
+Kept: TypeAlias = CoverageResult | Need | GapScan | Answers
 
 
 def name_of(piece: Piece) -> str:

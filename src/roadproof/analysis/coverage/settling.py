@@ -15,12 +15,12 @@ from roadproof.analysis.placing import judged_as, placed
 from roadproof.engines.search.ask import ask
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, conjuncts, either, eventually, implication, negation
 from roadproof.library.query import Query
 from roadproof.library.scenarios import LANE, PAIR, Scenario, applied, danger
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
@@ -31,7 +31,7 @@ LONG_PROOF = 30.0
 
 
 @dataclass
-class Settling:
+class ClassGroup:
     """A group of classes that is to be settled; ``known``: gaps to begin with, to which those found come."""
 
     survey: GapSurvey
@@ -54,7 +54,7 @@ class Settling:
         """As ``_settle``; in doubt where the clock cuts it off."""
         try:
             return self._settle(part, wider)
-        except Late as late:
+        except BudgetExceeded as late:
             return ClassAnswer(part, Verdict.UNKNOWN, reason=str(late))
 
     def _settle(self, part: Part | None, wider: Sequence[str] = ()) -> ClassAnswer:
@@ -198,7 +198,7 @@ class Settling:
                     return counterpart, replace(file, drive=drive, lanes=lanes)
         raise AssertionError(f"the drive is no near miss of {part.key}")
 
-    def _elsewhere(self, part: Part | None, drive: Judged) -> Iterator[tuple[str, Judged]]:
+    def _elsewhere(self, part: Part | None, drive: JudgedDrive) -> Iterator[tuple[str, JudgedDrive]]:
         """The same motions on other roads, where a counterpart is missed as nearly."""
         counterparts = self._on(part, self.classes.numbers)[::-1]
         for road in self.survey.elsewhere:

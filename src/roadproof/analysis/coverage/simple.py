@@ -35,7 +35,7 @@ class Across:
 
 
 @dataclass(frozen=True)
-class Along:
+class Approach:
     """How SV comes near POV, which starts ``gap`` m ahead of it, front to front.
 
     ``faster``: by how many m/s SV is faster at the start; ``speeds_up`` and ``slows_down``: from when on
@@ -69,17 +69,17 @@ def simple_drives(road: Road, vehicle: Vehicle) -> Iterator[Drive]:
         yield Drive(dict(zip(PAIR, (subject, other), strict=True)))
 
 
-def _alongs() -> Iterator[Along]:
-    yield Along(Fraction(0))
-    yield Along(Fraction(3), Fraction(1))
-    yield Along(Fraction(85), Fraction(5))  # danger soon
-    yield Along(Fraction(125), Fraction(5))  # danger after 9 s
-    yield Along(Fraction(-50), Fraction(5))  # SV ahead, and faster
-    yield Along(Fraction(58), speeds_up=Fraction(2))
-    yield Along(Fraction(58), slows_down=Fraction(0))
-    yield Along(Fraction(58), speeds_up=Fraction(9))
-    yield Along(Fraction(0), Fraction(-5))
-    yield Along(Fraction(24), Fraction(-5), speeds_up=Fraction(2))  # danger, though POV stays faster
+def _alongs() -> Iterator[Approach]:
+    yield Approach(Fraction(0))
+    yield Approach(Fraction(3), Fraction(1))
+    yield Approach(Fraction(85), Fraction(5))  # danger soon
+    yield Approach(Fraction(125), Fraction(5))  # danger after 9 s
+    yield Approach(Fraction(-50), Fraction(5))  # SV ahead, and faster
+    yield Approach(Fraction(58), speeds_up=Fraction(2))
+    yield Approach(Fraction(58), slows_down=Fraction(0))
+    yield Approach(Fraction(58), speeds_up=Fraction(9))
+    yield Approach(Fraction(0), Fraction(-5))
+    yield Approach(Fraction(24), Fraction(-5), speeds_up=Fraction(2))  # danger, though POV stays faster
 
 
 def _across(

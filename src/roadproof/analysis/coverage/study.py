@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any, TypeGuard
 
 from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
-from roadproof.analysis.coverage.claims import Covered, claims_of, prove_claim
+from roadproof.analysis.coverage.claims import CoverageResult, claims_of, prove_claim
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap, find_among_simple
 from roadproof.analysis.coverage.needed import Need, find_need, parent_of, replaced_by
@@ -20,16 +20,16 @@ from roadproof.analysis.coverage.pieces import (
     Chunk,
     Component,
     CoverageClaim,
+    GapScan,
     Kept,
-    Looked,
     NeededDefinition,
     Piece,
     name_of,
 )
-from roadproof.analysis.coverage.settling import Settling
-from roadproof.analysis.coverage.surveyed import Surveyed, is_covered
+from roadproof.analysis.coverage.settling import ClassGroup
+from roadproof.analysis.coverage.surveyed import Survey, is_covered
 from roadproof.analysis.coverage.trial import Trials
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
@@ -90,14 +90,14 @@ class Coverage:
         left = [chunk for chunk in chunks if name_of(chunk) not in known]
         if left:
             return left
-        looked = [x for x in (known[name_of(chunk)] for chunk in chunks) if isinstance(x, Looked)]
+        looked = [x for x in (known[name_of(chunk)] for chunk in chunks) if isinstance(x, GapScan)]
         found = [x for each in looked for x in each.found]
         lost = tuple(each.lost for each in looked if each.lost)
         return [Component(name, _concerning(self.groups[name], found), lost) for name in groups]
 
-    def _proved(self, known: Mapping[str, Kept]) -> tuple[Covered, ...]:
+    def _proved(self, known: Mapping[str, Kept]) -> tuple[CoverageResult, ...]:
         answers = (known[name_of(claim)] for claim in self.claims)
-        return tuple(answer for answer in answers if isinstance(answer, Covered))
+        return tuple(answer for answer in answers if isinstance(answer, CoverageResult))
 
     def _replaced(self) -> tuple[str, ...]:
         return replaced_by(self.survey.basis.specification) if self.needed else ()
@@ -112,10 +112,10 @@ class Coverage:
                 answer = find_need(basis, name)
             case Chunk(road, number):
                 where, classes, trials = self.survey.roads[road], self._classes, self._trials
-                answer = Looked(tuple(find_among_simple(where, number, CHUNKS, classes, trials)))
+                answer = GapScan(tuple(find_among_simple(where, number, CHUNKS, classes, trials)))
             case Component(name, known, lost):
                 group = self.groups[name]
-                settling = Settling(self.survey, group, [*known], self._classes, self._trials)
+                settling = ClassGroup(self.survey, group, [*known], self._classes, self._trials)
                 answer = tuple(_with_lost(x, lost) for x in settling.run())
         return {name_of(piece): answer}
 
@@ -123,11 +123,11 @@ class Coverage:
         answer: Kept
         match piece:
             case CoverageClaim(_, query):
-                answer = Covered(query, Verdict.UNKNOWN, None, reason)
+                answer = CoverageResult(query, Verdict.UNKNOWN, None, reason)
             case NeededDefinition(name):
                 answer = Need(name, parent_of(self.survey.basis.specification), Verdict.UNKNOWN)
             case Chunk():
-                answer = Looked((), f"some of the simple drives were not looked through: {reason}")
+                answer = GapScan((), f"some of the simple drives were not looked through: {reason}")
             case Component(name):
                 parts = self.groups[name].parts
                 answer = tuple(ClassAnswer(part, Verdict.UNKNOWN, reason=reason) for part in parts)
@@ -138,21 +138,21 @@ class Coverage:
     def is_sure(self, answer: Kept) -> bool:
         """Gaps among the simple drives are no answer, and what has no evidence is quickly asked again."""
         match answer:
-            case Covered():
+            case CoverageResult():
                 return answer.certificate is not None
             case Need():
                 return answer.drive is not None
-            case Looked():
+            case GapScan():
                 return False
             case _:
                 return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
-    def record(self, name: str, answer: Kept, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> dict[str, Any]:
         return write(self._record(name, answer, shelf))
 
-    def _record(self, name: str, answer: Kept, shelf: Shelf) -> kept.Record:
+    def _record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         match answer:
-            case Covered(claim, verdict, certificate, reason):
+            case CoverageResult(claim, verdict, certificate, reason):
                 file = shelf.certificate(f"{name}.json", certificate)
                 said = kept.Claim(claim=claim.text, verdict=verdict, certificate=file, reason=reason)
                 return kept.Record(claim=said)
@@ -166,12 +166,12 @@ class Coverage:
                     drive=shelf.drive(f"{name}.json", drive),
                 )
                 return kept.Record(need=need)
-            case Looked():
+            case GapScan():
                 return kept.Record()
             case _:
                 return record_of(self.groups[name], answer, shelf)
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Kept]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Kept]:
         said = _read(record)
         if said.claim is not None:
             return self._recalled_claim(said.claim, shelf)
@@ -184,16 +184,16 @@ class Coverage:
                 return name, answers_in(said.classes, group, self.survey.basis.specification, shelf)
         raise InputError(f"the set has no component {said.group}")
 
-    def _recalled_claim(self, said: kept.Claim, shelf: Shelf) -> tuple[str, Kept]:
+    def _recalled_claim(self, said: kept.Claim, shelf: EvidenceStore) -> tuple[str, Kept]:
         for claim in self.claims:
             if claim.query.text == said.claim:
                 certificate = shelf.read_certificate(said.certificate)
-                return name_of(claim), Covered(claim.query, said.verdict, certificate, said.reason)
+                return name_of(claim), CoverageResult(claim.query, said.verdict, certificate, said.reason)
         raise InputError(f"coverage does not rest on this claim: {said.claim[:120]}")
 
     # --- all together ----------------------------------------------------------------------------
 
-    def together(self, answers: Mapping[str, Kept], traffic: GapTraffic | None = None) -> Surveyed:
+    def together(self, answers: Mapping[str, Kept], traffic: GapTraffic | None = None) -> Survey:
         """All answers, the classes in order; with how often they occur in ``traffic``."""
         claims = self._proved(answers)
         found = (answers.get(name_of(NeededDefinition(name))) for name in self._replaced())
@@ -202,7 +202,7 @@ class Coverage:
         classes = [x for each in every if isinstance(each, tuple) for x in each]
         if traffic is not None:
             classes = [with_counts(x, traffic) for x in classes]
-        return Surveyed(claims, tuple(classes), tuple(sorted(needs, key=lambda x: x.definition)), traffic)
+        return Survey(claims, tuple(classes), tuple(sorted(needs, key=lambda x: x.definition)), traffic)
 
     def classes_in(self, answers: Mapping[str, Kept]) -> Callable[[Part | None], ClassAnswer | None]:
         """What is known of the class of a part; all are empty where it is proved that there is no gap."""
@@ -220,7 +220,7 @@ class Coverage:
 
     def index(
         self,
-        surveyed: Surveyed,
+        surveyed: Survey,
         answers: Mapping[str, Kept],
         records: Mapping[str, Mapping[str, Any]],
         seconds: float,

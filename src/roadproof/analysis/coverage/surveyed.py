@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.coverage.claims import Covered
+from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.occurring import GapTraffic
 from roadproof.evidence.answers.coverage import SetVerdict
@@ -12,10 +12,10 @@ from roadproof.verdict import Verdict
 
 
 @dataclass(frozen=True)
-class Surveyed:
+class Survey:
     """All answers together: claims that there is no gap, the classes of gaps, definitions that are needed."""
 
-    claims: tuple[Covered, ...]
+    claims: tuple[CoverageResult, ...]
     classes: tuple[ClassAnswer, ...]
     needs: tuple[Need, ...]
     traffic: GapTraffic | None = None
@@ -25,13 +25,13 @@ class Surveyed:
         return verdict_on(self.claims, self.classes, self.traffic)
 
 
-def is_covered(claims: Sequence[Covered]) -> bool:
+def is_covered(claims: Sequence[CoverageResult]) -> bool:
     """Whether the set is proved to have no gap."""
     return all(claim.verdict is Verdict.PROVED for claim in claims)
 
 
 def verdict_on(
-    claims: Sequence[Covered], classes: Sequence[ClassAnswer], traffic: GapTraffic | None
+    claims: Sequence[CoverageResult], classes: Sequence[ClassAnswer], traffic: GapTraffic | None
 ) -> SetVerdict:
     """The verdict on a set: CROSSCHECK-FAILED where traffic shows what is proved not to be."""
     proved = is_covered(claims)

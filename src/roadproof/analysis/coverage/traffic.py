@@ -16,7 +16,7 @@ from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic
 from roadproof.errors import InputError
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import MIN_DANGER, PAIR
-from roadproof.recordings.evaluate.counting import Counted, without_repeats
+from roadproof.recordings.evaluate.counting import Counts, without_repeats
 from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.recordings.evaluate.questions import Settings, ask
@@ -39,7 +39,7 @@ class Recordings:
 
 
 @dataclass(frozen=True)
-class Missed:
+class GapQuestion:
     """Whether a trace is a gap; with the key of a part, whether it would be none without that part."""
 
     without: str | None = None
@@ -55,7 +55,7 @@ def recordings_in(folder: Path) -> Recordings:
 
 def count_in_traffic(basis: Basis, recordings: Recordings, say: Callable[[str], None]) -> GapTraffic:
     """The disturbances of all recordings, and those that are missed; ``say`` is told how many so far."""
-    counted = Counted()
+    counted = Counts()
     disturbances = 0
     missed: list[GapTrace] = []
     for disturbances, trace in enumerate(disturbances_in(basis, recordings, counted), 1):
@@ -66,7 +66,7 @@ def count_in_traffic(basis: Basis, recordings: Recordings, say: Callable[[str], 
 
 
 def disturbances_in(
-    basis: Basis, recordings: Recordings, counted: Counted | None = None
+    basis: Basis, recordings: Recordings, counted: Counts | None = None
 ) -> Iterator[GapTrace]:
     """The disturbances of all recordings; ``counted`` is told of those that are repeated.
 
@@ -80,11 +80,11 @@ def disturbances_in(
         (basis.specification.set_name,),
         (classes.values[MIN_DANGER],),
     )
-    known = counted or Counted()
+    known = counted or Counts()
     for source in recordings.sources:
         recording = source.read()
         place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
-        monitors: dict[Road, Monitor[Missed]] = {}
+        monitors: dict[Road, Monitor[GapQuestion]] = {}
         findings = without_repeats(evaluate_recording(recording, ask(settings, recording.rate)), known)
         for trace in findings.traces:
             frames = (trace.start_frame, trace.end_frame)
@@ -99,10 +99,10 @@ def disturbances_in(
             yield GapTrace(recording.name, trace.first, trace.second, frames, None in true, keys, alone)
 
 
-def _monitor(classes: GapClasses, road: Road) -> Monitor[Missed]:
+def _monitor(classes: GapClasses, road: Road) -> Monitor[GapQuestion]:
     gap = bind(classes.missed(classes.numbers_on(road)).formula, road, {}, classes.values)
-    near = {Missed(key): formula for key, formula in classes.bind(road).items()}
-    return compile({Missed(): gap, **near})
+    near = {GapQuestion(key): formula for key, formula in classes.bind(road).items()}
+    return compile({GapQuestion(): gap, **near})
 
 
 def _cut(recording: Recording, pair: dict[str, int], frames: tuple[int, int]) -> OneTrace:

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
-from roadproof.analysis.explore.knobs import Knob, Point, stated
+from roadproof.analysis.explore.knobs import Point, Variable, stated
 from roadproof.analysis.explore.measure import Measure
 from roadproof.analysis.explore.parts import with_parts
 from roadproof.engines.search.ask import Search
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.query import Query
 from roadproof.verdict import DriveVerdict, Verdict
 
@@ -27,7 +27,7 @@ class Explorable:
     """
 
     search: Search
-    knobs: tuple[Knob, ...]
+    knobs: tuple[Variable, ...]
     steps: int
     precision: Fraction | None = None
     measures: tuple[Measure, ...] = ()
@@ -54,7 +54,7 @@ class PointFinding:
     verdict: DriveVerdict
     query: Query
     reason: str = ""
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     number: int | None = None
     certificate: Certificate | None = None
 
@@ -101,7 +101,7 @@ class Extreme:
 
 
 @dataclass(frozen=True)
-class Explored:
+class ExplorationResult:
     """``findings`` on the grid, in the order of ``Explorable.points``; boundaries where there is one knob.
 
     ``seconds`` that it took; ``late``: something in it was cut off by the clock, or lost.

@@ -10,7 +10,7 @@ from itertools import product
 from typing import TypeAlias
 
 from roadproof.analysis.explore.answer import Explorable
-from roadproof.analysis.explore.knobs import Knob
+from roadproof.analysis.explore.knobs import Variable
 from roadproof.analysis.explore.measure import Measure, Sense, read_measure
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Setting
@@ -62,7 +62,7 @@ def _measure(search: Search, sense: Sense, term: str, when: str) -> Measure:
     return read_measure(search.specification, sense, term, when, search.query.claim.given)
 
 
-def read_knobs(vary: Sequence[Varied], setting: Setting, query: Query, library: Library) -> list[Knob]:
+def read_knobs(vary: Sequence[Varied], setting: Setting, query: Query, library: Library) -> list[Variable]:
     """What is varied, as knobs. Raises ``UsageError``, ``InputError``."""
     if len(vary) > 2:
         raise UsageError(f"--vary is given {len(vary)} times: vary one or two things at once")
@@ -73,7 +73,7 @@ def read_knobs(vary: Sequence[Varied], setting: Setting, query: Query, library: 
     return knobs
 
 
-def _knob(name: str, low: Number, high: Number, query: Query, library: Library) -> Knob:
+def _knob(name: str, low: Number, high: Number, query: Query, library: Library) -> Variable:
     text = f"{name}={low}:{high}"
     knob = (
         _limit(text, name, low, high, query)
@@ -85,7 +85,7 @@ def _knob(name: str, low: Number, high: Number, query: Query, library: Library) 
     return knob
 
 
-def _parameter(text: str, name: str, low: Number, high: Number, query: Query, library: Library) -> Knob:
+def _parameter(text: str, name: str, low: Number, high: Number, query: Query, library: Library) -> Variable:
 
     if name not in library.parameters:
         hint = "; a limit of a vehicle is written as POV.a_lon.min=-6:-1"
@@ -103,10 +103,10 @@ def _parameter(text: str, name: str, low: Number, high: Number, query: Query, li
             f"--vary {text}: the range leaves the declared bound; the library demands {name} "
             f"{declared.bound} 0"
         )
-    return Knob(name, unit_text(UNITS[declared.unit][1]), ends[0], ends[1])
+    return Variable(name, unit_text(UNITS[declared.unit][1]), ends[0], ends[1])
 
 
-def _limit(text: str, name: str, low: Number, high: Number, query: Query) -> Knob:
+def _limit(text: str, name: str, low: Number, high: Number, query: Query) -> Variable:
 
     read = _LIMIT.fullmatch(name)
     if read is None or read[2] not in LIMITS:
@@ -121,10 +121,10 @@ def _limit(text: str, name: str, low: Number, high: Number, query: Query) -> Kno
     unit, limit = LIMITS[read[2]], f"{read[2]}.{read[3]}"
     ends = [exact(f"--vary {name}", end, unit) for end in (low, high)]
     vehicles = query.vehicles if read[1] == EVERY_VEHICLE else (read[1],)
-    return Knob(name, unit, ends[0], ends[1], tuple(vehicles), limit)
+    return Variable(name, unit, ends[0], ends[1], tuple(vehicles), limit)
 
 
-def _check_limits(knobs: Sequence[Knob], setting: Setting, query: Query) -> None:
+def _check_limits(knobs: Sequence[Variable], setting: Setting, query: Query) -> None:
     """Raise ``UsageError`` where limits at some point make no vehicle; the corners are the worst of them."""
 
     usual = setting.vehicles.get("") or load_vehicle("car")

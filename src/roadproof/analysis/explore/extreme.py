@@ -9,9 +9,15 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeAlias
 
-from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, PointFinding, say_nothing
+from roadproof.analysis.explore.answer import (
+    Explorable,
+    ExplorationResult,
+    Extreme,
+    PointFinding,
+    say_nothing,
+)
 from roadproof.analysis.explore.bracket import Bracket
-from roadproof.analysis.explore.knobs import Knob, Point, stated, with_point
+from roadproof.analysis.explore.knobs import Point, Variable, stated, with_point
 from roadproof.analysis.explore.measure import Measure
 from roadproof.analysis.explore.never import NEVER, never, stages_for
 from roadproof.analysis.explore.parts import with_parts
@@ -37,13 +43,13 @@ from roadproof.engines.search.impossible import show_impossible
 from roadproof.engines.search.question import pose
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged, judge_file
+from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.library.bind import bind
 from roadproof.library.query import Query
 from roadproof.logic import formula as f
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.terms import Term, number
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.signals import Courses, DriveSignals
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
@@ -54,11 +60,11 @@ WITHOUT_END = Fraction(10**6)
 PRECISION = Fraction(1, 10)  # of a measure, where none is given
 
 
-FindAll: TypeAlias = Callable[[Sequence["Sought"]], Iterable["Extreme"]]
+FindAll: TypeAlias = Callable[[Sequence["ExtremeQuestion"]], Iterable["Extreme"]]
 
 
 @dataclass(frozen=True)
-class Sought:
+class ExtremeQuestion:
     """What ``measure`` is sought for: drives of the query of ``search`` with ``knobs`` at ``point``.
 
     ``seeds``: drives that may serve here too.
@@ -67,9 +73,9 @@ class Sought:
     search: Search
     measure: Measure
     precision: Fraction
-    knobs: tuple[Knob, ...] = ()
+    knobs: tuple[Variable, ...] = ()
     point: Point = ()
-    seeds: tuple[Judged, ...] = ()
+    seeds: tuple[JudgedDrive, ...] = ()
 
     def query(self, value: Fraction | None) -> Query:
         """The formula with the measure at ``value`` or better, limits stated."""
@@ -77,29 +83,33 @@ class Sought:
         return with_parts(self.search.query, [*limits, *self.measure.bound(self.search, value)])
 
 
-def soughts_of(asked: Explorable, explored: Explored, measure: Measure) -> list[Sought]:
+def soughts_of(asked: Explorable, explored: ExplorationResult, measure: Measure) -> list[ExtremeQuestion]:
     """A measure at every point that has a drive; at the one that there is where nothing is varied."""
     if asked.knobs:
-        return [Sought(asked.search, measure, PRECISION, asked.knobs, point) for point in explored.held]
-    return [Sought(asked.search, measure, asked.precision or PRECISION)]
+        return [
+            ExtremeQuestion(asked.search, measure, PRECISION, asked.knobs, point) for point in explored.held
+        ]
+    return [ExtremeQuestion(asked.search, measure, asked.precision or PRECISION)]
 
 
-def find_extreme(sought: Sought, look_all: LookAll = look_one_by_one, say: Say = say_nothing) -> Extreme:
+def find_extreme(
+    sought: ExtremeQuestion, look_all: LookAll = look_one_by_one, say: Say = say_nothing
+) -> Extreme:
     """Leap from drive to drive, then halve, until the bracket is as narrow as the precision.
 
     Raises ``InputError``, ``UsageError``, ``MissingSolverError``.
     """
-    return _Seeking(sought, look_all, say).run()
+    return _ExtremeSearch(sought, look_all, say).run()
 
 
-def unsought(sought: Sought, reason: str) -> Extreme:
+def unsought(sought: ExtremeQuestion, reason: str) -> Extreme:
     """What is said of an extreme that nothing is known of."""
     missed = PointFinding((), Verdict.UNKNOWN, sought.query(None), reason)
     return Extreme(sought.measure, sought.point, None, missed, None, 0, late=True)
 
 
-class _Seeking:
-    def __init__(self, sought: Sought, look_all: LookAll, say: Say) -> None:
+class _ExtremeSearch:
+    def __init__(self, sought: ExtremeQuestion, look_all: LookAll, say: Say) -> None:
         self.sought = sought
         self.measure = sought.measure
         self.look_all = look_all
@@ -202,7 +212,7 @@ class _Seeking:
             if certificate is not None:
                 return PointFinding(at, Verdict.IMPOSSIBLE, query, NEVER, certificate=certificate)
             shown = show_impossible(self.search.specification, query, effort)
-        except Late:
+        except BudgetExceeded:
             self.late = True
             return None
         if shown is None:
@@ -210,7 +220,7 @@ class _Seeking:
         reason = f"proved for all time; core: {' and '.join(shown.told)}"
         return PointFinding(at, Verdict.IMPOSSIBLE, query, reason, certificate=shown.certificate)
 
-    def best_of(self, drives: Sequence[Judged]) -> PointFinding | None:
+    def best_of(self, drives: Sequence[JudgedDrive]) -> PointFinding | None:
         """The best value that is judged on one of the drives."""
         found: list[PointFinding] = []
         for drive in drives:
@@ -224,7 +234,7 @@ class _Seeking:
         """That ``value`` is reached."""
         return claim_of(self.search, self.sought.query(value))
 
-    def shown(self, drive: Judged, value: Fraction) -> Judged | None:
+    def shown(self, drive: JudgedDrive, value: Fraction) -> JudgedDrive | None:
         """The drive as one on which ``value`` is reached, if that is judged so."""
         alone = Stock(self.library)
         alone.add([drive])
@@ -277,18 +287,18 @@ class _Seeking:
         return ruling.accepted
 
 
-def find_extremes(soughts: Sequence[Sought], find_all: FindAll) -> list[Extreme]:
+def find_extremes(soughts: Sequence[ExtremeQuestion], find_all: FindAll) -> list[Extreme]:
     """The extremes of one measure at several points, the drives of each tried at all others.
 
     Where one of them goes further, that extreme is sought once more from there.
     """
     found = list(find_all(soughts))
     drives = [x.best.drive for x in found if x.best is not None and x.best.drive is not None]
-    again: dict[int, Sought] = {}
+    again: dict[int, ExtremeQuestion] = {}
     for k, (sought, extreme) in enumerate(zip(soughts, found, strict=True)):
         if extreme.best is None or extreme.endless:
             continue
-        others = _Seeking(sought, look_one_by_one, say_nothing).best_of(drives)
+        others = _ExtremeSearch(sought, look_one_by_one, say_nothing).best_of(drives)
         further = others is not None and (others.at[0] - extreme.best.at[0]) * sought.measure.sign < 0
         if further and others is not None and others.drive is not None:
             again[k] = replace(sought, seeds=(others.drive,))

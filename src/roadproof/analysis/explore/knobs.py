@@ -17,7 +17,7 @@ Point: TypeAlias = tuple[Fraction, ...]
 
 
 @dataclass(frozen=True)
-class Knob:
+class Variable:
     """A parameter, or the ``limit`` (such as ``a_lon.min``) of ``vehicles``, from ``low`` to ``high``.
 
     ``name`` is how the user names it; values are in SI units and printed in ``unit``.
@@ -35,7 +35,7 @@ class Knob:
         return tuple(self.low + (self.high - self.low) * k / (steps - 1) for k in range(steps))
 
 
-def with_point(search: Search, knobs: Sequence[Knob], point: Point) -> Search:
+def with_point(search: Search, knobs: Sequence[Variable], point: Point) -> Search:
     """``search`` with every knob at its value."""
     values = dict(search.setting.values)
     limits = {vehicle: dict(ends) for vehicle, ends in search.setting.limits.items()}
@@ -47,7 +47,7 @@ def with_point(search: Search, knobs: Sequence[Knob], point: Point) -> Search:
     return replace(search, setting=replace(search.setting, values=values, limits=limits))
 
 
-def stated(search: Search, knobs: Sequence[Knob], point: Point) -> list[Query]:
+def stated(search: Search, knobs: Sequence[Variable], point: Point) -> list[Query]:
     """The limits at a point as formulas, so that a drive file says them and whoever judges it checks them."""
     parts: list[Query] = []
     for knob, value in zip(knobs, point, strict=True):

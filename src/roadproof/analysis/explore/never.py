@@ -5,7 +5,7 @@ from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import Search
 from roadproof.evidence.certificate import Certificate
 from roadproof.library.compose import negation
-from roadproof.library.motion import Assumed, value_texts
+from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.query import Query
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
@@ -23,7 +23,7 @@ def never(search: Search, query: Query, units: float) -> Certificate | None:
     """A proof that ``query`` holds in no state with the parameters at the values of ``search``.
 
     Wherever, however fast and how near vehicles are: it needs no limits. None where none is found with
-    ``units`` of work, and for formulas of other kinds. Raises ``Late``.
+    ``units`` of work, and for formulas of other kinds. Raises ``BudgetExceeded``.
     """
     if not is_cubic_state(query.formula):
         return None
@@ -31,4 +31,4 @@ def never(search: Search, query: Query, units: float) -> Certificate | None:
     there = {name: values[name] for name in parameters_of(query.formula)}
     said = value_texts(search.specification, there)
     effort = search.search_options.effort.of(units)
-    return prove(search.specification, negation(query), effort, assumed=Assumed(said)).certificate
+    return prove(search.specification, negation(query), effort, assumed=Assumption(said)).certificate

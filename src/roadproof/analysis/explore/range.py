@@ -6,7 +6,7 @@ from itertools import product
 from typing import TypeAlias, assert_never
 
 from roadproof.engines.encode.place import span
-from roadproof.engines.search.question import Posed
+from roadproof.engines.search.question import SearchProblem
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Term
 from roadproof.world.signals import LIMITED
@@ -15,7 +15,7 @@ Range: TypeAlias = tuple[Fraction, Fraction]
 Ranges: TypeAlias = Mapping[tuple[str, str], Range]
 
 
-def starting_ranges(question: Posed) -> dict[tuple[str, str], Range]:
+def starting_ranges(question: SearchProblem) -> dict[tuple[str, str], Range]:
     """What the signals of every vehicle can be at time 0, by vehicle and signal; sizes too.
 
     Places along the road are told from the front of the first vehicle, so for a term that names places

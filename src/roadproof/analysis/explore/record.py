@@ -3,10 +3,10 @@
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
-from roadproof.analysis.explore.extreme import Sought, soughts_of
+from roadproof.analysis.explore.answer import Boundary, Explorable, ExplorationResult, Extreme, PointFinding
+from roadproof.analysis.explore.extreme import ExtremeQuestion, soughts_of
 from roadproof.analysis.explore.knobs import Point
-from roadproof.analysis.study.evidence_store import Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.certificate import Certificate
@@ -16,9 +16,11 @@ from roadproof.world.units import unit_text
 _EXTREME = ("best", "missed", "surely")
 
 
-def as_kept(name: str, asked: Explorable, explored: Explored, shelf: Shelf) -> kept.Exploration:
+def as_kept(
+    name: str, asked: Explorable, explored: ExplorationResult, shelf: EvidenceStore
+) -> kept.Exploration:
     """What was explored under a ``name``, with which the names of its files begin."""
-    search, writing = asked.search, _Writing(shelf)
+    search, writing = asked.search, _Writer(shelf)
     return kept.Exploration(
         scenario=search.scenario,
         set=search.specification.set_name,
@@ -44,7 +46,7 @@ def as_kept(name: str, asked: Explorable, explored: Explored, shelf: Shelf) -> k
     )
 
 
-def ends_of(name: str, explored: Explored) -> list[tuple[str, PointFinding]]:
+def ends_of(name: str, explored: ExplorationResult) -> list[tuple[str, PointFinding]]:
     """What was found at boundaries and as extremes, each with the name of its file without ``.json``."""
     ends: list[tuple[str, PointFinding | None]] = []
     ends += [(_boundary_file(name, k, "held"), x.held) for k, x in enumerate(explored.boundaries, 1)]
@@ -60,10 +62,10 @@ def _extreme_file(name: str, extreme: Extreme, number: int, side: str) -> str:
     return f"{name}-{extreme.measure.sense}-{number}-{side}"
 
 
-class _Writing:
+class _Writer:
     """Puts evidence on the shelf; a certificate that serves several findings only once."""
 
-    def __init__(self, shelf: Shelf) -> None:
+    def __init__(self, shelf: EvidenceStore) -> None:
         self.shelf = shelf
         self.certificates: list[tuple[Certificate, object]] = []
 
@@ -111,16 +113,16 @@ class _Writing:
         )
 
 
-def explored_of(asked: Explorable, said: kept.Exploration, shelf: Shelf) -> Explored:
+def explored_of(asked: Explorable, said: kept.Exploration, shelf: EvidenceStore) -> ExplorationResult:
     """The inverse of ``as_kept``. Raises ``InputError`` where it is no whole answer to what is asked."""
-    reading = _Reading(asked, shelf)
+    reading = _Reader(asked, shelf)
     findings = tuple(reading.at_point(x) for x in said.values)
     if [x.at for x in findings] != asked.points:
         raise InputError(
             f"{len(findings)} findings, not at the {len(asked.points)} values that are asked for"
         )
     boundaries = tuple(reading.boundary(x) for x in said.boundaries)
-    explored = Explored(findings, boundaries, (), said.searches, said.drives, said.seconds)
+    explored = ExplorationResult(findings, boundaries, (), said.searches, said.drives, said.seconds)
     soughts = [x for measure in asked.measures for x in soughts_of(asked, explored, measure)]
     if len(soughts) != len(said.extremes):
         raise InputError(f"{len(said.extremes)} extremes of the {len(soughts)} that are asked for")
@@ -129,9 +131,9 @@ def explored_of(asked: Explorable, said: kept.Exploration, shelf: Shelf) -> Expl
 
 
 @dataclass(frozen=True)
-class _Reading:
+class _Reader:
     asked: Explorable
-    shelf: Shelf
+    shelf: EvidenceStore
 
     def at_point(self, said: kept.Finding) -> PointFinding:
         """A finding at a value of the knobs, of the grid or beside it."""
@@ -141,7 +143,7 @@ class _Reading:
         surely = None if said.surely is None else self.at_point(said.surely)
         return Boundary(self.at_point(said.held), self.at_point(said.missed), surely)
 
-    def extreme(self, sought: Sought, said: kept.Extreme) -> Extreme:
+    def extreme(self, sought: ExtremeQuestion, said: kept.Extreme) -> Extreme:
         measure = sought.measure
         where = (measure.sense, measure.text, tuple(map(str, sought.point)))
         if (said.sense, said.measure, said.point) != where:
@@ -149,7 +151,7 @@ class _Reading:
         best, missed, surely = (self.reached(sought, x) for x in said.sides.values())
         return Extreme(measure, sought.point, best, missed, surely, said.searches, said.endless)
 
-    def reached(self, sought: Sought, said: kept.Finding | None) -> PointFinding | None:
+    def reached(self, sought: ExtremeQuestion, said: kept.Finding | None) -> PointFinding | None:
         """A finding at a value of a measure, or at none."""
         if said is None:
             return None

@@ -13,18 +13,18 @@ from typing import Literal, TypeAlias
 
 from roadproof.engines.search.ask import Search, judge_found, telling_values
 from roadproof.engines.search.grid import COARSEST, coarsest, common_step, durations
-from roadproof.engines.search.question import Posed, Setting, pose
+from roadproof.engines.search.question import SearchProblem, Setting, pose
 from roadproof.engines.search.search import Attempt, find_witness, show_none
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.bind import values_with
 from roadproof.library.query import Query
 from roadproof.library.specification import Library
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.terms import Parameter, leaves
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.replay import first_overlap
 from roadproof.verdict import Verdict
 
@@ -55,7 +55,7 @@ class Reply:
 
     verdict: Verdict
     reason: str
-    drives: tuple[Judged, ...] = ()
+    drives: tuple[JudgedDrive, ...] = ()
     late: bool = False
 
 
@@ -66,7 +66,7 @@ def look(task: SearchTask) -> Reply:
     """
     try:
         return _look(task)
-    except Late as late:
+    except BudgetExceeded as late:
         return undecided(task, str(late))
 
 
@@ -79,7 +79,7 @@ def _look(task: SearchTask) -> Reply:
     fitting = fit_grid(task.search)
     if fitting is not None:
         return _search(replace(task, search=fitting))
-    drives: list[Judged] = []
+    drives: list[JudgedDrive] = []
     for stand_in in stand_ins(task.search):
         drives += _search(SearchTask(stand_in, ("natural", "plain"))).drives
     finest = float(_finest(task.search.setting))
@@ -95,7 +95,7 @@ def _search(task: SearchTask) -> Reply:
         search.search_options, explain=False, refinements=min(search.search_options.refinements, halvings)
     )
 
-    def reply(question: Posed, answer: Attempt) -> Reply:
+    def reply(question: SearchProblem, answer: Attempt) -> Reply:
         if answer.found is None:
             return Reply(answer.verdict, answer.reason)
         return Reply(Verdict.WITNESSED, "", (judge_found(search, question, answer.found),))
@@ -207,7 +207,7 @@ class Shown:
     """A drive on which a claim holds; ``number`` tells drives apart, from 1."""
 
     number: int
-    drive: Judged
+    drive: JudgedDrive
 
 
 class Stock:
@@ -218,7 +218,7 @@ class Stock:
         self.files: list[DriveFile] = []
         self._last = 0
 
-    def add(self, drives: Iterable[Judged]) -> None:
+    def add(self, drives: Iterable[JudgedDrive]) -> None:
         """Add drives; the last of them is the first to be tried."""
         for judged in drives:
             self.files.append(judged.file)
@@ -232,7 +232,7 @@ class Stock:
         order = sorted(range(since, len(self.files)), key=lambda k: (k != self._last, -k))
         for k in order:
             try:
-                judged = Judged(made_for(self.files[k], claim), self.library)
+                judged = JudgedDrive(made_for(self.files[k], claim), self.library)
             except RejectedError:
                 continue
             self._last = k

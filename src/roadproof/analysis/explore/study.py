@@ -6,12 +6,24 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
-from roadproof.analysis.explore.answer import Explorable, Explored, Extreme, PointFinding, say_nothing
-from roadproof.analysis.explore.extreme import Sought, find_extreme, find_extremes, soughts_of, unsought
+from roadproof.analysis.explore.answer import (
+    Explorable,
+    ExplorationResult,
+    Extreme,
+    PointFinding,
+    say_nothing,
+)
+from roadproof.analysis.explore.extreme import (
+    ExtremeQuestion,
+    find_extreme,
+    find_extremes,
+    soughts_of,
+    unsought,
+)
 from roadproof.analysis.explore.record import as_kept, explored_of
 from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided, values_of
 from roadproof.analysis.explore.values import explore
-from roadproof.analysis.study.evidence_store import Question, Shelf, specification_names
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
 from roadproof.analysis.study.pool import Say, in_order, work
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
@@ -51,12 +63,12 @@ class Exploration:
         said = {"options": dict(specification.options), "parameters": values, "specs": specs}
         return Question(SCHEMA, said, _more(self.named, first), specification.library)
 
-    def pieces(self, known: Mapping[str, Explored]) -> Sequence[str]:
+    def pieces(self, known: Mapping[str, ExplorationResult]) -> Sequence[str]:
         return [name for name in self.named if name not in known]
 
-    def settle(self, piece: str) -> dict[str, Explored]:
+    def settle(self, piece: str) -> dict[str, ExplorationResult]:
         begun, asked = now(), self.named[piece]
-        explored = explore(asked, self._look_all, self.say) if asked.knobs else Explored()
+        explored = explore(asked, self._look_all, self.say) if asked.knobs else ExplorationResult()
         extremes: list[Extreme] = []
         for measure in asked.measures:
             extremes += find_extremes(soughts_of(asked, explored, measure), self._find_all)
@@ -72,25 +84,25 @@ class Exploration:
     def _look_all(self, tasks: Sequence[SearchTask]) -> Iterable[Reply]:
         return in_order(work(look, tasks, self.hands, undecided))
 
-    def _find_all(self, soughts: Sequence[Sought]) -> Iterable[Extreme]:
+    def _find_all(self, soughts: Sequence[ExtremeQuestion]) -> Iterable[Extreme]:
         find = partial(find_extreme, say=self.say)
         return in_order(work(find, soughts, self.hands, unsought))
 
-    def doubt(self, piece: str, reason: str) -> dict[str, Explored]:
+    def doubt(self, piece: str, reason: str) -> dict[str, ExplorationResult]:
         asked = self.named[piece]
         findings = (PointFinding(x, Verdict.UNKNOWN, asked.query(x), reason) for x in asked.points)
-        explored = Explored(tuple(findings), late=True)
+        explored = ExplorationResult(tuple(findings), late=True)
         soughts = (x for measure in asked.measures for x in soughts_of(asked, explored, measure))
         return {piece: replace(explored, extremes=tuple(unsought(x, reason) for x in soughts))}
 
-    def is_sure(self, answer: Explored) -> bool:
+    def is_sure(self, answer: ExplorationResult) -> bool:
         """A doubt that the count of work makes is the same in the next run, so it stands."""
         return not answer.late
 
-    def record(self, name: str, answer: Explored, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: ExplorationResult, shelf: EvidenceStore) -> dict[str, Any]:
         return write(kept.Record(exploration=as_kept(name, self.named[name], answer, shelf)))
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Explored]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, ExplorationResult]:
         said = _read(record)
         for name, asked in self.named.items():
             if (said.scenario, said.set, said.formula) == _asked_of(asked):

@@ -10,7 +10,13 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TypeAlias
 
-from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, PointFinding, say_nothing
+from roadproof.analysis.explore.answer import (
+    Boundary,
+    Explorable,
+    ExplorationResult,
+    PointFinding,
+    say_nothing,
+)
 from roadproof.analysis.explore.knobs import Point, between, with_point
 from roadproof.analysis.explore.never import NEVER, never, stages_for
 from roadproof.analysis.explore.search import (
@@ -30,7 +36,7 @@ from roadproof.analysis.study.pool import Say
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.impossible import Impossibility, show_impossible
 from roadproof.logic.fragment import is_cubic_state
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 
 PROOF = 5.0  # units of work for a proof that there is no drive
@@ -60,13 +66,15 @@ def look_one_by_one(tasks: Sequence[SearchTask]) -> Iterable[Reply]:
     return map(look, tasks)
 
 
-def explore(asked: Explorable, look_all: LookAll = look_one_by_one, say: Say = say_nothing) -> Explored:
+def explore(
+    asked: Explorable, look_all: LookAll = look_one_by_one, say: Say = say_nothing
+) -> ExplorationResult:
     """Settle every point of the grid, then narrow the boundaries where there is one knob.
 
     ``look_all`` does several searches, in order; ``say`` is told how far it is. Raises ``InputError``,
     ``UsageError``, ``MissingSolverError``.
     """
-    exploring = Exploring(asked, look_all)
+    exploring = ExplorationState(asked, look_all)
     points = asked.points
     settled: dict[Point, PointFinding] = {}
     judged = 0
@@ -87,10 +95,10 @@ def explore(asked: Explorable, look_all: LookAll = look_one_by_one, say: Say = s
         if not exploring.judge_missed(settled):
             break
     drives = len(exploring.stock.files)
-    return Explored(findings, tuple(boundaries), (), exploring.searches, drives, late=exploring.late)
+    return ExplorationResult(findings, tuple(boundaries), (), exploring.searches, drives, late=exploring.late)
 
 
-def _boundaries(exploring: "Exploring", findings: Sequence[PointFinding], say: Say) -> list[Boundary]:
+def _boundaries(exploring: "ExplorationState", findings: Sequence[PointFinding], say: Say) -> list[Boundary]:
     """The boundaries between neighbours of which one has a drive, narrowed."""
     boundaries: list[Boundary] = []
     for one, other in pairwise(findings):
@@ -105,7 +113,7 @@ def _boundaries(exploring: "Exploring", findings: Sequence[PointFinding], say: S
     return boundaries
 
 
-class Exploring:
+class ExplorationState:
     """What is known in the course of an exploration: drives that were found, or that there are none."""
 
     def __init__(self, asked: Explorable, look_all: LookAll = look_one_by_one) -> None:
@@ -127,7 +135,7 @@ class Exploring:
         effort = self.search.search_options.effort.of(QUICK_PROOF)
         try:
             return show_impossible(self.search.specification, self.search.query, effort)
-        except Late:
+        except BudgetExceeded:
             self.late = True
             return None
 
@@ -175,7 +183,7 @@ class Exploring:
         query = self.claim(point).query
         try:
             certificate = never(self.at(point), query, QUICK_PROOF)
-        except Late:
+        except BudgetExceeded:
             self.late = True
             return None
         if certificate is None:

@@ -19,12 +19,12 @@ from roadproof.engines.search.ask import ask
 from roadproof.engines.search.question import usual_road
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, vehicles_of
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
@@ -43,12 +43,12 @@ class Edge:
 
 
 @dataclass(frozen=True)
-class Refuting:
+class RefutationTask:
     """A judged drive on which ``node`` holds and some reading of each of ``others`` does not."""
 
     node: Scenario
     others: tuple[Scenario, ...]
-    drive: Judged
+    drive: JudgedDrive
 
 
 @dataclass(frozen=True)
@@ -72,24 +72,24 @@ class OrderDoubt:
 
 
 @dataclass(frozen=True)
-class Decided:
+class Decisions:
     """All that was found about implications: together it settles each of them, or doubts it.
 
     ``again``: whether the drives of all other families were tried on the doubts.
     """
 
     edges: tuple[Edge, ...] = ()
-    drives: tuple[Refuting, ...] = ()
+    drives: tuple[RefutationTask, ...] = ()
     doubts: tuple[OrderDoubt, ...] = ()
     again: bool = False
 
 
-def decide_family(basis: Basis, kinds: Sequence[Kind], family: Sequence[Kind]) -> Decided:
+def decide_family(basis: Basis, kinds: Sequence[Kind], family: Sequence[Kind]) -> Decisions:
     """Decide the implications from the kinds of ``family`` to all other ``kinds``."""
-    return _Deciding(basis, tuple(kinds), tuple(family)).run()
+    return _DecisionJobs(basis, tuple(kinds), tuple(family)).run()
 
 
-def settle_doubts(basis: Basis, decided: Decided, drives: Sequence[Judged]) -> Decided:
+def settle_doubts(basis: Basis, decided: Decisions, drives: Sequence[JudgedDrive]) -> Decisions:
     """``decided`` with the doubts settled that drives found for other scenarios settle.
 
     The vehicles may be exchanged: what is ahead for one scenario is behind for its mirror image.
@@ -102,11 +102,11 @@ def settle_doubts(basis: Basis, decided: Decided, drives: Sequence[Judged]) -> D
         if None in shown or not shown:
             doubts.append(doubt)
         else:
-            refuting += [Refuting(doubt.above, (doubt.below,), x) for x in shown if x is not None]
-    return Decided(decided.edges, tuple(refuting), tuple(doubts), again=True)
+            refuting += [RefutationTask(doubt.above, (doubt.below,), x) for x in shown if x is not None]
+    return Decisions(decided.edges, tuple(refuting), tuple(doubts), again=True)
 
 
-def _refuted_by(basis: Basis, files: Iterable[DriveFile], above: Query, below: Query) -> Judged | None:
+def _refuted_by(basis: Basis, files: Iterable[DriveFile], above: Query, below: Query) -> JudgedDrive | None:
     against = both(above, negation(below))
     wanted = set(against.vehicles)
     for file in files:
@@ -130,23 +130,23 @@ class Cast:
 Reading = tuple[Cast, Cast]
 
 
-class _Deciding:
+class _DecisionJobs:
     def __init__(self, basis: Basis, kinds: tuple[Kind, ...], family: tuple[Kind, ...]) -> None:
         self.basis = basis
         self.specification = basis.specification
         self.values = basis.all_values()
         self.kinds = kinds
         self.family = family
-        self.pool: list[Judged] = []
+        self.pool: list[JudgedDrive] = []
         self.queries: dict[Cast, Query] = {}
         self.edges: list[Edge] = []
-        self.drives: list[Refuting] = []
+        self.drives: list[RefutationTask] = []
         self.doubts: list[OrderDoubt] = []
         self.vain: set[int] = set()  # what kinds are like that no drive was found against
         # By kind and kind: the readings of the second that no drive has refuted yet.
         self.open: dict[tuple[Scenario, Scenario], set[Reading]] = {}
 
-    def run(self) -> Decided:
+    def run(self) -> Decisions:
         for kind in self.family:
             for mine, others in self._casts(kind):
                 for other in others:
@@ -158,9 +158,9 @@ class _Deciding:
                 if self.open.get((kind.node, target.node)):
                     try:
                         self._decide(kind, target)
-                    except Late as late:
+                    except BudgetExceeded as late:
                         self._doubt(kind, target, str(late))
-        return Decided(tuple(self.edges), tuple(self.drives), tuple(self.doubts))
+        return Decisions(tuple(self.edges), tuple(self.drives), tuple(self.doubts))
 
     def _doubt(self, kind: Kind, target: Kind, late: str = "") -> None:
         still = [(self._query(a), self._query(b)) for a, b in self._still_open(kind, target)]
@@ -208,14 +208,14 @@ class _Deciding:
         if not self.pool:
             try:
                 self.pool += self._ask(self._own(kind), kind)
-            except Late:  # each implication that is still open then is asked by itself
+            except BudgetExceeded:  # each implication that is still open then is asked by itself
                 return
         for judged in tuple(self.pool):
             here = placed(judged.file, self._alone(kind), self.basis.library)
             if here is not None:
                 self._use(kind, here)
 
-    def _use(self, kind: Kind, judged: Judged) -> None:
+    def _use(self, kind: Kind, judged: JudgedDrive) -> None:
         """Refute with a drive all that it refutes of what is still open."""
         for mine, others in self._casts(kind):
             file = self._recast(judged.file, kind, mine, others)
@@ -227,7 +227,7 @@ class _Deciding:
             shown = judged_as(file, refuted, self.basis.library)
             if shown is None:
                 continue
-            self.drives.append(Refuting(kind.node, tuple(x.scenario for x in false), shown))
+            self.drives.append(RefutationTask(kind.node, tuple(x.scenario for x in false), shown))
             for x in false:
                 self.open[kind.node, x.scenario].discard((mine, x))
 
@@ -247,7 +247,7 @@ class _Deciding:
         formula = bind(query.formula, file.road, file.lanes, {**self.values, **file.values})
         return judge(formula, file.drive).holds
 
-    def _ask(self, query: Query, kind: Kind) -> tuple[Judged, ...]:
+    def _ask(self, query: Query, kind: Kind) -> tuple[JudgedDrive, ...]:
         """A drive for a formula, on the usual road of a kind: what is negated chooses no road."""
         return ask(self.basis.search(query, usual_road(self._own(kind).formula))).drives
 
@@ -279,10 +279,10 @@ class _Deciding:
                 self._use(kind, found[0])
                 self._share(kind, found[0])
             else:
-                self.drives.append(Refuting(one, (other,), found[0]))
+                self.drives.append(RefutationTask(one, (other,), found[0]))
                 self.open[one, other].discard(reading)
 
-    def _share(self, kind: Kind, found: Judged) -> None:
+    def _share(self, kind: Kind, found: JudgedDrive) -> None:
         """Use a new drive for the kinds that differ from its own in the sector only."""
         for twin in self.family:
             if twin != kind:

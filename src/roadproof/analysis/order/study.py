@@ -7,21 +7,21 @@ from typing import Any
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.deciding import (
-    Decided,
+    Decisions,
     Edge,
     OrderDoubt,
-    Refuting,
+    RefutationTask,
     decide_family,
     settle_doubts,
 )
 from roadproof.analysis.order.kinds import Kind, families_of
 from roadproof.analysis.order.relation import reachable, transitive_reduction
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import order as kept
 from roadproof.evidence.answers.order import SCHEMA
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import Scenario
 
@@ -38,8 +38,8 @@ class Doubtful:
     """A family with doubts, on which the drives of all families are to be tried."""
 
     family: tuple[Kind, ...]
-    decided: Decided
-    drives: tuple[Judged, ...]
+    decided: Decisions
+    drives: tuple[JudgedDrive, ...]
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Order:
     proved: tuple[Edge, ...]
     edges: tuple[Edge, ...]
     missing: tuple[tuple[Scenario, Scenario, tuple[int, ...]], ...]
-    drives: tuple[Refuting, ...]
+    drives: tuple[RefutationTask, ...]
     doubts: tuple[OrderDoubt, ...]
 
 
@@ -76,7 +76,7 @@ class Ordering:
         """The families by the names under which their answers are kept."""
         return {name_of(family): family for family in families_of(self.kinds)}
 
-    def pieces(self, known: Mapping[str, Decided]) -> Sequence[Family | Doubtful]:
+    def pieces(self, known: Mapping[str, Decisions]) -> Sequence[Family | Doubtful]:
         """Doubts are left to the end, when the drives of all families are there to settle them."""
         left = [Family(family) for name, family in self.families.items() if name not in known]
         if left:
@@ -88,26 +88,26 @@ class Ordering:
             if known[name].doubts and not known[name].again
         ]
 
-    def settle(self, piece: Family | Doubtful) -> dict[str, Decided]:
+    def settle(self, piece: Family | Doubtful) -> dict[str, Decisions]:
         match piece:
             case Family(kinds):
                 return {name_of(kinds): decide_family(self.basis, self.kinds, kinds)}
             case Doubtful(family, decided, drives):
                 return {name_of(family): settle_doubts(self.basis, decided, drives)}
 
-    def doubt(self, piece: Family | Doubtful, reason: str) -> dict[str, Decided]:
+    def doubt(self, piece: Family | Doubtful, reason: str) -> dict[str, Decisions]:
         match piece:
             case Family(kinds):
                 pairs = [(a.node, b.node) for a in kinds for b in self.kinds if a != b]
                 doubts = tuple(OrderDoubt(above, below, (), reason) for above, below in pairs)
-                return {name_of(kinds): Decided(doubts=doubts, again=True)}
+                return {name_of(kinds): Decisions(doubts=doubts, again=True)}
             case Doubtful(family, decided, _):
-                return {name_of(family): Decided(decided.edges, decided.drives, decided.doubts, again=True)}
+                return {name_of(family): Decisions(decided.edges, decided.drives, decided.doubts, again=True)}
 
-    def is_sure(self, answer: Decided) -> bool:
+    def is_sure(self, answer: Decisions) -> bool:
         return not answer.doubts
 
-    def record(self, name: str, answer: Decided, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: Decisions, shelf: EvidenceStore) -> dict[str, Any]:
         proved = tuple(
             kept.Edge(
                 above=str(edge.above),
@@ -132,7 +132,7 @@ class Ordering:
         )
         return write(kept.Record(family=name, proved=proved, drives=drives, doubts=doubts))
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Decided]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Decisions]:
         said = _read(record)
         edges: list[Edge] = []
         for edge in said.proved:
@@ -140,20 +140,20 @@ class Ordering:
             assert certificate is not None
             claim = read_claim(self.basis.specification, edge.claim)
             edges.append(Edge(_scenario(edge.above), _scenario(edge.below), claim, certificate))
-        drives: list[Refuting] = []
+        drives: list[RefutationTask] = []
         for x in said.drives:
             drive = shelf.read_drive(x.drive)
             assert drive is not None
-            drives.append(Refuting(_scenario(x.holds), tuple(map(_scenario, x.fails)), drive))
+            drives.append(RefutationTask(_scenario(x.holds), tuple(map(_scenario, x.fails)), drive))
         name = said.family
         settled = {(x.above, x.below) for x in edges} | {(x.node, y) for x in drives for y in x.others}
         for kind in self.families.get(name, ()):
             for other in self.kinds:
                 if other != kind and (kind.node, other.node) not in settled:
                     raise InputError(f"nothing is kept of {kind.node} -> {other.node}")
-        return name, Decided(tuple(edges), tuple(drives))
+        return name, Decisions(tuple(edges), tuple(drives))
 
-    def order(self, answers: Mapping[str, Decided]) -> Order:
+    def order(self, answers: Mapping[str, Decisions]) -> Order:
         """The edges of the Hasse diagram, and for the other pairs what refutes them."""
         decided = [answers[name] for name in self.families]
         proved = [edge for x in decided for edge in x.edges]
@@ -174,7 +174,7 @@ class Ordering:
     def _missing(
         self,
         proved: set[tuple[str, str]],
-        drives: Sequence[Refuting],
+        drives: Sequence[RefutationTask],
         doubtful: set[tuple[Scenario, Scenario]],
     ) -> tuple[tuple[Scenario, Scenario, tuple[int, ...]], ...]:
         refuting: dict[tuple[Scenario, Scenario], list[int]] = {}
@@ -202,7 +202,9 @@ class Ordering:
             proved=proved,
             edges=tuple(edge for edge in proved if edge.pair in reduced),
             missing=tuple(
-                kept.Missing(above=str(above), below=str(below), drives=tuple(place + 1 for place in places))
+                kept.MissingImplication(
+                    above=str(above), below=str(below), drives=tuple(place + 1 for place in places)
+                )
                 for above, below, places in order.missing
             ),
             drives=tuple(

@@ -8,11 +8,11 @@ from math import ceil
 
 from roadproof.drivers.boundary import Plane
 from roadproof.drivers.claims import Side, claim_of, with_also
-from roadproof.drivers.driving import OWN_LANE, Reading, drive_of, rest_of, road_of
+from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
 from roadproof.drivers.manoeuvres import Manoeuvre, Values
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Specification
 from roadproof.semantics.exact.algebraic import Point, bounds
@@ -31,9 +31,9 @@ def judged_drive(
     values: Values,
     side: Side,
     specification: Specification,
-    reading: Reading,
+    reading: DriverSettings,
     also: str = "",
-) -> Judged:
+) -> JudgedDrive:
     """The drive from these values, judged, on ``also``, too: a formula about it in the lane of SV.
 
     Raises ``RejectedError``, and ``InputError`` as ``drive_of``.
@@ -49,9 +49,9 @@ def _judged(
     values: Values,
     side: Side,
     specification: Specification,
-    reading: Reading,
+    reading: DriverSettings,
     also: str,
-) -> Judged:
+) -> JudgedDrive:
     file = DriveFile(
         None,
         specification.set_name,
@@ -65,8 +65,8 @@ def _judged(
         overlaps_allowed=True,
     )
     if also:  # what is about the scenario alone is quickly seen to be false
-        Judged(replace(file, formula=also), specification.library)
-    return Judged(file, specification.library)
+        JudgedDrive(replace(file, formula=also), specification.library)
+    return JudgedDrive(file, specification.library)
 
 
 def beside_boundary(plane: Plane, lines: tuple[TruthSet, ...], side: Side) -> Iterator[dict[str, Fraction]]:
@@ -107,10 +107,10 @@ def first_drive(
     candidates: Iterable[dict[str, Fraction]],
     side: Side,
     specification: Specification,
-    reading: Reading,
+    reading: DriverSettings,
     also: str = "",
     most: int = 3,
-) -> tuple[dict[str, Fraction], Judged] | str:
+) -> tuple[dict[str, Fraction], JudgedDrive] | str:
     """A judged drive from one of the candidates, initial values of that side; or why there is none.
 
     ``also`` as for ``judged_drive``; ``most`` candidates are tried, besides those that have no exact drive.

@@ -13,11 +13,11 @@ from typing import Any, TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.preventable.sides import beside_boundary, far_apart, first_drive
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, plane_of
 from roadproof.drivers.claims import SIDES, Side
-from roadproof.drivers.driving import Reading
+from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.idle import chosen, idle
 from roadproof.drivers.lemmas import Lemma, lemmas_for
 from roadproof.drivers.lines import Line, end_of, line_data, read_line, sides_in, told_line, truths
@@ -27,10 +27,10 @@ from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of,
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import Assumed, statement, value_texts
-from roadproof.runtime.budget import Late
+from roadproof.library.motion import Assumption, statement, value_texts
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 
 SCHEMA = "roadproof/preventable/1"
@@ -46,7 +46,7 @@ class Shown:
 
     side: Side
     values: Mapping[str, Fraction] = field(default_factory=dict)
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     reason: str = ""
     scenario: str = ""
 
@@ -82,7 +82,7 @@ class Plate:
 
 
 @dataclass(frozen=True)
-class Proved:
+class LemmaResult:
     """A lemma with its verdict."""
 
     lemma: Lemma
@@ -92,7 +92,7 @@ class Proved:
     reason: str = ""
 
 
-Answer: TypeAlias = Plate | Proved
+Answer: TypeAlias = Plate | LemmaResult
 
 
 @dataclass(frozen=True)
@@ -167,16 +167,18 @@ class Preventable:
 
     def doubt(self, piece: Piece, reason: str) -> dict[str, Answer]:
         if isinstance(piece, Lemma):
-            return {f"lemma-{piece.name}": Proved(piece, Verdict.UNKNOWN, self._said(piece), reason=reason)}
+            return {
+                f"lemma-{piece.name}": LemmaResult(piece, Verdict.UNKNOWN, self._said(piece), reason=reason)
+            }
         return {piece.name: Plate(piece.name, piece.model.name, piece.fixed, self.along, reason=reason)}
 
     def is_sure(self, answer: Answer) -> bool:
         return answer.verdict is not Verdict.UNKNOWN
 
     @cached_property
-    def reading(self) -> Reading:
+    def reading(self) -> DriverSettings:
         """Values of parameters, and options."""
-        return Reading(self.basis.all_values(), self.basis.specification.options)
+        return DriverSettings(self.basis.all_values(), self.basis.specification.options)
 
     def plane(self, fixed: Values) -> Plane:
         """The plane of a plate."""
@@ -236,19 +238,19 @@ class Preventable:
         values = self.basis.all_values()
         return value_texts(self.basis.specification, {name: values[name] for name in lemma.parameters})
 
-    def _prove(self, lemma: Lemma) -> Proved:
+    def _prove(self, lemma: Lemma) -> LemmaResult:
         home, said = self.basis.specification, self._said(lemma)
         try:
             query, effort = read_claim(home, lemma.claim), self.basis.effort.of(20)
-            result = prove(home, query, effort, assumed=Assumed(said))
-        except Late as late:
-            return Proved(lemma, Verdict.UNKNOWN, said, reason=str(late))
-        return Proved(lemma, result.verdict, said, result.certificate, result.reason)
+            result = prove(home, query, effort, assumed=Assumption(said))
+        except BudgetExceeded as late:
+            return LemmaResult(lemma, Verdict.UNKNOWN, said, reason=str(late))
+        return LemmaResult(lemma, result.verdict, said, result.certificate, result.reason)
 
     # --- answers as plain data -------------------------------------------------------------------
 
-    def record(self, name: str, answer: Answer, shelf: Shelf) -> dict[str, Any]:
-        if isinstance(answer, Proved):
+    def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> dict[str, Any]:
+        if isinstance(answer, LemmaResult):
             return {
                 "lemma": {
                     "name": answer.lemma.name,
@@ -277,7 +279,7 @@ class Preventable:
             }
         }
 
-    def _shown_data(self, plate: Plate, shown: Shown, shelf: Shelf) -> dict[str, Any]:
+    def _shown_data(self, plate: Plate, shown: Shown, shelf: EvidenceStore) -> dict[str, Any]:
         drive = shown.drive
         claim = "" if drive is None else drive.file.formula
         return {
@@ -290,7 +292,7 @@ class Preventable:
             "reason": shown.reason,
         }
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answer]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Answer]:
         if "lemma" in record:
             said = record["lemma"]
             name = f"lemma-{said['name']}"
@@ -298,7 +300,7 @@ class Preventable:
                 raise InputError(f"{name} is no lemma of this question")
             certificate = shelf.read_certificate(said["certificate"])
             verdict, assuming = Verdict(said["verdict"]), tuple(said["assuming"])
-            return name, Proved(self.lemmas[name], verdict, assuming, certificate, said["reason"])
+            return name, LemmaResult(self.lemmas[name], verdict, assuming, certificate, said["reason"])
         said = record["plate"]
         fixed = {name: Fraction(value) for name, value in said["fixed"].items()}
         shown = tuple(
@@ -327,6 +329,6 @@ class Preventable:
         }
 
 
-def said_of(proved: Proved) -> str:
+def said_of(proved: LemmaResult) -> str:
     """A lemma as a claim, with the values of parameters in front."""
     return statement(proved.assuming, proved.lemma.claim)

@@ -19,7 +19,7 @@ from roadproof.evidence.certificate import Certificate, certificate_data, read_c
 from roadproof.evidence.drive_file import natural_of, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kernel.accept import find_tableau
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.library.specification import Library
@@ -58,7 +58,7 @@ class Question:
         return hashlib.sha256(asked.encode()).hexdigest()[:16]
 
 
-class Shelf:
+class EvidenceStore:
     """The evidence of one question in a folder, or in memory where there is none.
 
     Raises ``UsageError`` where the folder holds another's.
@@ -89,7 +89,7 @@ class Shelf:
             certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
         return self._put(self.folder, name, to_json(certificate).encode())
 
-    def drive(self, name: str, drive: Judged | None) -> str | dict[str, Any] | None:
+    def drive(self, name: str, drive: JudgedDrive | None) -> str | dict[str, Any] | None:
         """The name of a drive file, or its data."""
         if drive is None or self.folder is None:
             return None if drive is None else drive.as_data()
@@ -99,12 +99,12 @@ class Shelf:
         """The inverse of ``certificate``. Raises ``InputError``."""
         return None if kept is None else read_certificate_data(self._get(kept), str(kept)[:60])
 
-    def read_drive(self, kept: object) -> Judged | None:
+    def read_drive(self, kept: object) -> JudgedDrive | None:
         """The inverse of ``drive``: judged again. Raises ``InputError``."""
         if kept is None:
             return None
         content, where = self._get(kept), str(kept)[:60]
-        return Judged(read_drive(content, where), self.library, natural_of(content, where))
+        return JudgedDrive(read_drive(content, where), self.library, natural_of(content, where))
 
     def _put(self, folder: Path, name: str, content: bytes) -> str:
         refuse_vanished(folder)

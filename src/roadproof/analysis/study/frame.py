@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.evidence_store import Question, Shelf
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.runtime.executors import Jobs, Shard, hands_of
@@ -43,10 +43,10 @@ class Study(Protocol[Piece, Answer]):
     def is_sure(self, answer: Answer) -> bool:
         """Whether an answer stands; others are asked again by the next run into the same folder."""
 
-    def record(self, name: str, answer: Answer, shelf: Shelf) -> dict[str, Any]:
+    def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> dict[str, Any]:
         """An answer as plain data; its evidence goes to the shelf."""
 
-    def recall(self, record: Mapping[str, Any], shelf: Shelf) -> tuple[str, Answer]:
+    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Answer]:
         """The inverse of ``record``, with the name that is told from what it says.
 
         Raises ``InputError`` where it is no whole answer.
@@ -54,21 +54,21 @@ class Study(Protocol[Piece, Answer]):
 
 
 @dataclass(frozen=True)
-class Conducted(Generic[Answer]):
+class StudyResult(Generic[Answer]):
     """All answers by name, and the same as plain data; evidence that has a file is named by its path."""
 
     answers: Mapping[str, Answer]
     records: Mapping[str, Mapping[str, Any]]
 
 
-def put_away(study: Study[Piece, Answer], answers: Mapping[str, Answer], folder: Path) -> Conducted[Answer]:
+def put_away(study: Study[Piece, Answer], answers: Mapping[str, Answer], folder: Path) -> StudyResult[Answer]:
     """The same answers, kept in a folder. Raises ``UsageError`` where it holds those to another question."""
-    shelf = Shelf(folder, study.question)
+    shelf = EvidenceStore(folder, study.question)
     records = {
         name: shelf.keep(name, study.record(name, answer, shelf), study.is_sure(answer))
         for name, answer in answers.items()
     }
-    return Conducted(answers, {name: shelf.with_paths(record) for name, record in records.items()})
+    return StudyResult(answers, {name: shelf.with_paths(record) for name, record in records.items()})
 
 
 def conduct(
@@ -79,7 +79,7 @@ def conduct(
     what: str = "pieces",
     say: Callable[[str], None] | None = None,
     each: Callable[[str, Answer], None] | None = None,
-) -> Conducted[Answer]:
+) -> StudyResult[Answer]:
     """Ask all pieces that a folder does not have the answers of; ``hands``: who does the work.
 
     Of several runs that divide the question each asks its share, and takes over what others have kept in the
@@ -91,7 +91,7 @@ def conduct(
     shard = hands_of(hands).shard
     if shard is not None and folder is None:
         raise UsageError(f"--shard {shard} needs a folder in which the runs keep their answers: name --out")
-    shelf = Shelf(folder, study.question)
+    shelf = EvidenceStore(folder, study.question)
     records: dict[str, dict[str, Any]] = {}
     known: dict[str, Answer] = {}
 
@@ -120,11 +120,14 @@ def conduct(
                 for name, answer in answers.items():
                     made = study.record(name, answer, shelf)
                     add(name, shelf.keep(name, made, study.is_sure(answer)), answer)
-    return Conducted(known, {name: shelf.with_paths(record) for name, record in records.items()})
+    return StudyResult(known, {name: shelf.with_paths(record) for name, record in records.items()})
 
 
 def _kept(
-    study: Study[Piece, Answer], shelf: Shelf, known: Container[str], say: Callable[[str], None] | None
+    study: Study[Piece, Answer],
+    shelf: EvidenceStore,
+    known: Container[str],
+    say: Callable[[str], None] | None,
 ) -> Iterator[tuple[str, dict[str, Any], Answer]]:
     """The kept answers that count and are not ``known``, each with its name and its record."""
     for file, record in shelf.answers(say, known):

@@ -36,7 +36,7 @@ def work(
     who = hands_of(hands)
     if len(jobs) > 1:
         from roadproof.runtime.dispatch import answers_of
-        from roadproof.runtime.process_pool import Lost, is_worker
+        from roadproof.runtime.process_pool import LostJob, is_worker
     if len(jobs) <= 1 or is_worker():
         yield from enumerate(map(function, jobs))
         return
@@ -48,7 +48,7 @@ def work(
     try:
         for done, (place, answer) in enumerate(found, known + 1):
             told(done, total, what)
-            if not isinstance(answer, Lost):
+            if not isinstance(answer, LostJob):
                 yield place, answer
             elif lost is not None:
                 yield place, lost(jobs[place], answer.reason)

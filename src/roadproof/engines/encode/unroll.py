@@ -75,13 +75,13 @@ def unroll(formula: Formula, grid: Grid) -> Circuit[At]:
 
 def unroll_at(formula: Formula, grid: Grid, step: int) -> Circuit[At]:
     """The same at another sample."""
-    return _Unrolling(grid).at(formula, True, step)
+    return _Unroller(grid).at(formula, True, step)
 
 
 _OPPOSITE: dict[Comparison, Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
-class _Unrolling:
+class _Unroller:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
         self.done: dict[tuple[Formula, bool, int], Circuit[At]] = {}
@@ -106,7 +106,7 @@ class _Unrolling:
                 return both(self.at(p, wanted, step) for p in parts)
             case f.Or(parts):
                 return either(self.at(p, wanted, step) for p in parts)
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.at(body, wanted, step)
             case f.Eventually(interval, body):
                 return either(self.at(body, wanted, k) for k in self._samples(interval, step))

@@ -16,7 +16,7 @@ def prove_of_scenarios(specification: Specification, query: Query, effort: Effor
 
     A proof is one of the claim itself, with its certificate. That there may be one is asked first where what
     the driver prevents is left open, which is quickly refuted: a search in the formulas of a driver, cubic in
-    the state, is not. Raises ``Late``.
+    the state, is not. Raises ``BudgetExceeded``.
     """
     outline = left_open(specification)
     if outline is not None:

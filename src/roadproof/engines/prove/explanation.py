@@ -16,7 +16,7 @@ Reason: TypeAlias = dict[str, bool]
 def is_plain(formula: Formula) -> bool:
     """Whether an abstracted formula combines atoms and nothing else, at one instant."""
     match formula:
-        case f.Truth() | f.Named():
+        case f.Truth() | f.Application():
             return True
         case f.Not() | f.And() | f.Or():
             return all(map(is_plain, f.children(formula)))
@@ -32,7 +32,7 @@ def reason(formula: Formula, value: bool, truths: Mapping[str, bool]) -> Reason 
     match formula:
         case f.Truth(known):
             return {} if known == value else None
-        case f.Named(name, _, _):
+        case f.Application(name, _, _):
             return {name: value} if truths.get(name) == value else None
         case f.Not(body):
             return reason(body, not value, truths)

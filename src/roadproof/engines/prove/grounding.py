@@ -119,7 +119,7 @@ class Grounding:
         match formula:
             case f.Truth(value):
                 return "true" if value == positive else "false"
-            case f.Named(name, _, _):
+            case f.Application(name, _, _):
                 applied = self.atom(name, moment)
                 return applied if positive else f"(not {applied})"
             case f.Not(body):
@@ -264,7 +264,7 @@ class Grounding:
     def _easily(self, formula: Formula, positive: bool, moment: Moment) -> str:
         """What is enough for ``formula`` to be true, or false, and speaks of ``moment`` alone."""
         match formula:
-            case f.Truth() | f.Named():
+            case f.Truth() | f.Application():
                 return self.truth(formula, positive, moment)
             case f.Not(body):
                 return self._easily(body, not positive, moment)
@@ -341,7 +341,7 @@ class Grounding:
 
 def _has_quantifier(formula: Formula) -> bool:
     match formula:
-        case f.Named():
+        case f.Application():
             return False
         case f.Some() | f.Every():
             return True

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
-from roadproof.library.motion import Assumed, Axiom, axiom_formula
+from roadproof.library.motion import Assumption, Axiom, axiom_formula
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
@@ -28,13 +28,13 @@ def prove_by_induction(
 ) -> Result | None:
     """A proof of ``query`` that may use inductions; None where the claim has no step or no proof is found.
 
-    Raises ``Late``, ``InputError``.
+    Raises ``BudgetExceeded``, ``InputError``.
     """
     axioms = tuple(dict.fromkeys(inductions(specification, query)))[:MOST]
     if not axioms:
         return None
     units = effort.of(min(UNITS, effort.units))
-    result = prove(specification, query, units, label, scenario, Assumed(tuple(said), axioms))
+    result = prove(specification, query, units, label, scenario, Assumption(tuple(said), axioms))
     return result if result.holds else None
 
 

@@ -23,7 +23,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import bounds_of, with_values
-from roadproof.runtime.budget import Late, Meter
+from roadproof.runtime.budget import Budget, BudgetExceeded
 from roadproof.semantics.exact import TruthSet
 from roadproof.semantics.exact.truth import from_switches
 
@@ -59,11 +59,11 @@ class _Shape:
         return from_switches((time, at[number], after[number]) for time, (at, after) in pairs)
 
 
-def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Meter) -> Countermodel | None:
+def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Budget) -> Countermodel | None:
     """A trace on which the claim is judged false, or None where none was found, which says nothing.
 
     ``goal``: a part of the claim, abstracted. None where it has more than three predicates, speaks of one
-    instant only, or quantifies over lanes. Raises ``Late``.
+    instant only, or quantifies over lanes. Raises ``BudgetExceeded``.
     """
     names = list(dict.fromkeys(x.name for x in f.subformulas(goal) if _is_atom(x, checker)))
     if f.is_state(goal) or open_quantifiers(goal) or not 0 < len(names) <= MOST_ATOMS:
@@ -73,7 +73,7 @@ def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Meter)
         for values in product((True, False), repeat=len(names))
         if checker.refute(dict(zip(names, values, strict=True)), meter) is None
     ]
-    atoms = {x.name: x for x in f.subformulas(goal) if isinstance(x, f.Named) and x.name in names}
+    atoms = {x.name: x for x in f.subformulas(goal) if isinstance(x, f.Application) and x.name in names}
     plain = {name: with_values(atom, checker.defaults) for name, atom in atoms.items()}
     try:
         asked = without_empty_windows(with_values(goal, checker.defaults))
@@ -89,13 +89,13 @@ def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Meter)
                 if found is not None:
                     return found
     except RoadproofError as error:
-        if isinstance(error, Late):
+        if isinstance(error, BudgetExceeded):
             raise
     return None
 
 
-def _is_atom(part: Formula, checker: StateChecker) -> TypeGuard[f.Named]:
-    return isinstance(part, f.Named) and part.name in checker.atoms.named
+def _is_atom(part: Formula, checker: StateChecker) -> TypeGuard[f.Application]:
+    return isinstance(part, f.Application) and part.name in checker.atoms.named
 
 
 def _steps(asked: Formula) -> list[Fraction]:

@@ -14,7 +14,7 @@ from itertools import product
 from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import is_atom, up_to_variables
-from roadproof.library.motion import Assumed, Axiom, axiom_formula, limits_said, under_limits
+from roadproof.library.motion import Assumption, Axiom, axiom_formula, limits_said, under_limits
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
@@ -48,7 +48,8 @@ def prove_of_motions(
 ) -> Result:
     """Decide whether ``query`` holds on all motions: first with few facts about them, then with more.
 
-    PROVED, VACUOUS or UNKNOWN: what refutes is looked for among drives. Raises ``Late``, ``InputError``.
+    Returns PROVED, VACUOUS or UNKNOWN; counterexamples are searched among drives.
+    Raises ``BudgetExceeded``, ``InputError``.
     """
     begun, meter = now(), effort.meter()
     none, *choices = stages(specification, under_limits(specification, query, said))
@@ -56,10 +57,10 @@ def prove_of_motions(
     result = None
     for axioms, units in dict.fromkeys([(none, QUICK), *((x, y) for y in TURNS for x in others)]):
         part = effort.of(min(units, max(1.0, meter.left())))
-        result = prove(specification, query, part, label, scenario, Assumed(tuple(said), axioms))
+        result = prove(specification, query, part, label, scenario, Assumption(tuple(said), axioms))
         meter.spend(result.work)
         if result.verdict is Verdict.PROVED and not axioms and limits_said(said):
-            bare = Assumed(tuple(said), (), limits_said(said))
+            bare = Assumption(tuple(said), (), limits_said(said))
             plain = prove(specification, query, effort.of(QUICK), label, scenario, bare)
             meter.spend(plain.work)
             result = plain if plain.holds else result

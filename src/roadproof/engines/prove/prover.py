@@ -21,7 +21,7 @@ from roadproof.evidence.times import ZERO
 from roadproof.library.bind import default_values
 from roadproof.library.motion import (
     NOTHING,
-    Assumed,
+    Assumption,
     axiom_formula,
     is_moving,
     limit_formulas,
@@ -36,7 +36,7 @@ from roadproof.logic import syntax
 from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.runtime.budget import Effort, Meter
+from roadproof.runtime.budget import Budget, Effort
 from roadproof.runtime.progress import begin
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict
@@ -87,7 +87,7 @@ def prove(
     effort: Effort | None = None,
     label: str = "",
     scenario: int | None = None,
-    assumed: Assumed = NOTHING,
+    assumed: Assumption = NOTHING,
 ) -> Result:
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
 
@@ -95,8 +95,8 @@ def prove(
     above zero, roads, and signals as functions of time; a value that is ``assumed``, or that the claim's own
     premise demands, is put in first. A proof counts only once its certificate, derived apart, has been
     answered unsat. Where motion is ``assumed`` nothing is refuted: a trace that has it at finitely many
-    instants need be no motion. Raises ``Late`` where the clock cuts it off, ``InputError`` for what nobody
-    may assume.
+    instants need be no motion. Raises ``BudgetExceeded`` after the
+    timeout, ``InputError`` for assumptions that are not allowed.
     """
     begun = now()
     meter = (effort or Effort()).meter()
@@ -156,7 +156,7 @@ def prove(
     return result(Verdict.PROVED, "", certificate)
 
 
-class Hunch:
+class ProofHeuristic:
     """Whether claims that are much alike have proofs, found quickly: no certificate is made of them.
 
     What is learnt of states for one claim serves the next. Nobody may rest on the answer: it says for which
@@ -168,7 +168,7 @@ class Hunch:
         self.learnt: dict[tuple[str, ...], Learnt] = {}
 
     def has_proof(self, query: Query, effort: Effort) -> tuple[bool, float]:
-        """Whether a proof of ``query`` is found, and the units of work that were spent. Raises ``Late``."""
+        """Whether ``query`` is proved, and the units of work that it took. Raises ``BudgetExceeded``."""
         meter = effort.meter()
         values = _demanded(self.specification, query, {})
         pinned = value_texts(self.specification, values)
@@ -222,7 +222,7 @@ def _premise(query: Query, formula: Formula) -> Formula | None:
 class _Attempt:
     query: Query
     states: StateChecker
-    meter: Meter
+    meter: Budget
     moving: bool
 
     @property
@@ -256,7 +256,7 @@ class _Attempt:
                 break
         return last
 
-    def _run(self, search: InstanceSearch, meter: Meter) -> Proof | Countermodel | GaveUp:
+    def _run(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | GaveUp:
         """What one search finds, a model of it made into a trace and judged."""
         found = search.run(meter)
         while not isinstance(found, Proof | GaveUp):
@@ -293,7 +293,7 @@ class _Attempt:
 def _certificate(
     specification: Specification,
     query: Query,
-    assumed: Assumed,
+    assumed: Assumption,
     pinned: tuple[str, ...],
     proofs: list[Proof],
     names: dict[Site, str],
@@ -325,11 +325,11 @@ def _instances(proofs: Sequence[Proof]) -> dict[Site, tuple[str, ...]]:
 def _needed(
     specification: Specification,
     query: Query,
-    assumed: Assumed,
+    assumed: Assumption,
     values: Mapping[str, Fraction],
     proofs: Sequence[Proof],
     names: Mapping[Site, str],
-) -> Assumed:
+) -> Assumption:
     """The same with those premises alone of which a proof has instances, and which the claim has not itself.
 
     Each premise is a universal that holds at time 0.
@@ -346,4 +346,4 @@ def _needed(
 
     axioms = tuple(x for x in assumed.axioms if is_used(axiom_formula(specification, query, x)))
     used = {x for x, made in limit_formulas(specification, query, assumed).items() if is_used(made)}
-    return Assumed(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))
+    return Assumption(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))

@@ -25,7 +25,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import road_names
-from roadproof.runtime.budget import Meter
+from roadproof.runtime.budget import Budget
 
 MOST_ROUNDS = 400
 MOST_ELEMENTS = 24
@@ -116,10 +116,10 @@ class InstanceSearch:
         self.spread = 0
         self.grounding.demand(claim, False)
 
-    def run(self, meter: Meter) -> Proof | Model | GaveUp:
+    def run(self, meter: Budget) -> Proof | Model | GaveUp:
         """A proof, a candidate countermodel, or why neither was found with what ``meter`` had left.
 
-        May be called again: with more work, or after ``widen``. Raises ``Late``.
+        May be called again: with more work, or after ``widen``. Raises ``BudgetExceeded``.
         """
         for _ in range(MOST_ROUNDS):
             if meter.is_out():
@@ -148,7 +148,7 @@ class InstanceSearch:
                 return Model(values, states, signals, dict(self.grounding.elements), self._facts())
         return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation", Stop.ROUNDS)
 
-    def _look_on(self, values: dict[str, Fraction], meter: Meter) -> bool:
+    def _look_on(self, values: dict[str, Fraction], meter: Budget) -> bool:
         """Instantiate also what speaks of further moments; whether there is more to be looked at.
 
         What was asked of the model without being told to the solver yet has to be possible, too.
@@ -163,7 +163,7 @@ class InstanceSearch:
         self.spread += 1
         return True
 
-    def _check(self, meter: Meter) -> Satisfiability:
+    def _check(self, meter: Budget) -> Satisfiability:
         """Check all clauses, giving up the latest wish that stands in the way until none does.
 
         Wishes make the query harder; all are given up where they cost more than ``WISH``.
@@ -211,7 +211,7 @@ class InstanceSearch:
             frontier = shifted
         return pool
 
-    def _instantiate(self, values: dict[str, Fraction], meter: Meter, flat_only: bool = False) -> bool:
+    def _instantiate(self, values: dict[str, Fraction], meter: Budget, flat_only: bool = False) -> bool:
         """Instantiate what the model violates; whether there was anything.
 
         ``flat_only``: but for what speaks of further moments.
@@ -261,7 +261,7 @@ class InstanceSearch:
         truths = self.grounding.session.values([f"|{membership(*fact)}|" for fact in facts])
         return {fact: bool(true) for fact, true in zip(facts, truths, strict=True)}
 
-    def _refused(self, values: dict[str, Fraction], meter: Meter) -> tuple[States, bool | GaveUp | None]:
+    def _refused(self, values: dict[str, Fraction], meter: Budget) -> tuple[States, bool | GaveUp | None]:
         """The states of the model, and what ``_lemmas`` says of them.
 
         Of a claim about one instant, what makes it false there is asked about first, and all else only where
@@ -276,7 +276,7 @@ class InstanceSearch:
         return states, self._lemmas(states, values, meter)
 
     def _lemmas(
-        self, states: States, values: dict[str, Fraction], meter: Meter, case: float = CASE
+        self, states: States, values: dict[str, Fraction], meter: Budget, case: float = CASE
     ) -> bool | GaveUp | None:
         """Turn impossible states into lemmas; None where every state is possible."""
         learnt = False
@@ -296,7 +296,7 @@ class InstanceSearch:
 
     # --- a proof ---------------------------------------------------------------------------------
 
-    def _shrink(self, meter: Meter) -> Proof:
+    def _shrink(self, meter: Budget) -> Proof:
         """The clauses that the last refutation needs, each one of them."""
         session = self.grounding.session
         needed = session.core()

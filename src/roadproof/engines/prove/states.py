@@ -20,7 +20,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import map_terms, terms_of
-from roadproof.runtime.budget import Meter
+from roadproof.runtime.budget import Budget
 
 Assumed: TypeAlias = Literal["typical", "near", "nothing"]
 ASSUMED: tuple[Assumed, ...] = ("typical", "near", "nothing")
@@ -68,7 +68,7 @@ class StateChecker:
     def settled(self) -> set[str]:
         return self.learnt.settled
 
-    def refute(self, wanted: Mapping[str, bool], meter: Meter, case: float = CASE) -> Clause | str | None:
+    def refute(self, wanted: Mapping[str, bool], meter: Budget, case: float = CASE) -> Clause | str | None:
         """None where a state with these truth values exists; else a clause against it, or why not known.
 
         ``case``: units of work for each query in general.
@@ -107,7 +107,7 @@ class StateChecker:
             name if positive else f"not {name}" for name, positive in literals
         )
 
-    def _always_holds(self, clause: Clause, meter: Meter, units: float = CASE) -> bool:
+    def _always_holds(self, clause: Clause, meter: Budget, units: float = CASE) -> bool:
         """Whether each query of the clause, as a certificate will hold it, is answered unsat in time."""
         for query in derive_lemma_queries(self.atoms, clause, self.bounds):
             if query not in self.settled:
@@ -116,7 +116,7 @@ class StateChecker:
                 self.settled.add(query)
         return True
 
-    def _shrink(self, clause: Clause, meter: Meter) -> Clause:
+    def _shrink(self, clause: Clause, meter: Budget) -> Clause:
         """The clause without the literals that it holds without."""
         for literal in clause:
             shorter = tuple(kept for kept in clause if kept != literal)

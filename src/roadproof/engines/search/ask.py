@@ -7,17 +7,24 @@ from fractions import Fraction
 from roadproof.engines.search.impossible import Impossibility, show_impossible
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.limits import Limits
-from roadproof.engines.search.question import FoundDrive, Posed, SearchOptions, Setting, pose, usual_road
+from roadproof.engines.search.question import (
+    FoundDrive,
+    SearchOptions,
+    SearchProblem,
+    Setting,
+    pose,
+    usual_road,
+)
 from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import default_values
 from roadproof.library.query import Query
 from roadproof.library.specification import Library, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
-from roadproof.runtime.budget import Late
+from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.progress import about, begin
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import DriveVerdict, Verdict
@@ -52,7 +59,7 @@ class Outcome:
     road: str
     verdict: DriveVerdict
     reason: str
-    drives: tuple[Judged, ...] = ()
+    drives: tuple[JudgedDrive, ...] = ()
     natural: bool = False
     seconds: Mapping[str, float] = field(default_factory=dict)
     sizes: Mapping[str, int] = field(default_factory=dict)
@@ -90,7 +97,7 @@ def answer(search: Search) -> Outcome:
     begun = now()
     try:
         return ask(search)
-    except Late as late:
+    except BudgetExceeded as late:
         return undecided(search, str(late), since(begun))
 
 
@@ -108,7 +115,7 @@ def reads_all(search: Search) -> bool:
 
 
 def ask(search: Search) -> Outcome:
-    """Search. Raises ``InputError``, ``UsageError``, ``MissingSolverError``, ``Late``."""
+    """Search. Raises ``InputError``, ``UsageError``, ``MissingSolverError``, ``BudgetExceeded``."""
     with about(_called(search)):
         return _ask(search)
 
@@ -148,7 +155,7 @@ def _ask(search: Search) -> Outcome:
     )
 
 
-def _clearly_different(question: Posed, search: Search) -> Iterator[Attempt]:
+def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Attempt]:
     """The answers to one search after the other, each for a drive unlike those found before it.
 
     Where the clock cuts a later one off, the drives that were found still stand.
@@ -157,7 +164,7 @@ def _clearly_different(question: Posed, search: Search) -> Iterator[Attempt]:
     while len(drives) < search.count:
         try:
             answer = find_witness(question, search.search_options, tuple(drives))
-        except Late as late:
+        except BudgetExceeded as late:
             if not drives:
                 raise
             yield Attempt(Verdict.UNKNOWN, None, str(late))
@@ -175,7 +182,7 @@ def _reason(answers: list[Attempt], count: int) -> str:
     return answers[0].reason
 
 
-def judge_found(search: Search, question: Posed, found: FoundDrive) -> Judged:
+def judge_found(search: Search, question: SearchProblem, found: FoundDrive) -> JudgedDrive:
     """A drive that was found as a drive file, judged once more from what it says."""
     library = search.specification.library
     file = DriveFile(
@@ -190,7 +197,7 @@ def judge_found(search: Search, question: Posed, found: FoundDrive) -> Judged:
         found.drive,
         found.assumptions.collisions,
     )
-    return Judged(file, library, found.assumptions.natural)
+    return JudgedDrive(file, library, found.assumptions.natural)
 
 
 def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:

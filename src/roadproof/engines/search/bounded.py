@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from roadproof.engines.search.ask import Search, ask
 from roadproof.engines.search.limits import PROVE_OPTIONS, Limits
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import negation
 from roadproof.verdict import ClaimVerdict, Verdict
 
@@ -19,7 +19,7 @@ class BoundedResult:
 
     verdict: ClaimVerdict
     reason: str = ""
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     certificate: Certificate | None = None
     limits: Limits | None = None
 

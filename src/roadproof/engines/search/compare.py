@@ -11,16 +11,16 @@ from roadproof.engines.search.instant_claims import sampled_drive
 from roadproof.evidence.answers import compare as kept
 from roadproof.evidence.answers.compare import Relation
 from roadproof.evidence.certificate import Certificate, certificate_data
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import values_with
 from roadproof.library.compose import both, implication, negation
-from roadproof.library.motion import Assumed, value_texts
+from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.query import Query
 from roadproof.logic.formula import is_state
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
-from roadproof.runtime.budget import Effort, Late
-from roadproof.runtime.process_pool import Lost, answers_of, is_worker
+from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.runtime.process_pool import LostJob, answers_of, is_worker
 from roadproof.runtime.progress import about
 from roadproof.verdict import ClaimVerdict, Verdict
 
@@ -37,7 +37,7 @@ class Direction:
     verdict: ClaimVerdict
     reason: str = ""
     certificate: Certificate | None = None
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
 
     @property
     def kept(self) -> kept.Direction:
@@ -108,7 +108,7 @@ def answers(search: Search, other: Query, jobs: int = 1) -> Iterator[tuple[str, 
     with closing(answers_of(_imply, questions, jobs)) as found:
         for place, answer in found:
             question = questions[place]
-            yield question.name, question.doubt(answer.reason) if isinstance(answer, Lost) else answer
+            yield question.name, question.doubt(answer.reason) if isinstance(answer, LostJob) else answer
 
 
 @dataclass(frozen=True)
@@ -148,11 +148,11 @@ def _imply(question: _Question) -> Direction:
     try:
         with about(question.name):
             return _decide(replace(question.search, query=against, count=1), question.claim)
-    except Late as late:
+    except BudgetExceeded as late:
         return question.doubt(str(late))
 
 
-def _constant(against: Search, claim: Query) -> Judged | None:
+def _constant(against: Search, claim: Query) -> JudgedDrive | None:
     """Constant motion against a claim about one instant that no engine reads and no quick proof decides."""
     if not is_cubic_state(claim.formula) or reads_all(against):
         return None
@@ -169,7 +169,7 @@ def _at_values(against: Search, claim: Query, effort: Effort) -> Direction | Non
     known = values_with(specification.library, against.setting.values)
     values = {name: known[name] for name in parameters_of(claim.formula)}
     said = value_texts(specification, values)
-    result = prove(specification, claim, effort, assumed=Assumed(said))
+    result = prove(specification, claim, effort, assumed=Assumption(said))
     if result.holds:
         reason = "; ".join(x for x in (result.reason, f"with {', '.join(said)}" if said else "") if x)
         return Direction(claim, Verdict.PROVED, reason, certificate=result.certificate)

@@ -6,7 +6,7 @@ from fractions import Fraction
 from roadproof.engines.prove.states import TYPICAL_SIZE
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import NOWHERE, Countermodel
 from roadproof.library.bind import values_with
 from roadproof.library.compose import negation
@@ -26,7 +26,7 @@ def steady_drive(
     claim: Query,
     found: Countermodel,
     parameters: Mapping[str, Fraction] | None = None,
-) -> Judged | None:
+) -> JudgedDrive | None:
     """The first state of ``found`` with constant accelerations, judged to refute ``claim``.
 
     None where the claim is about more than one instant, says its numbers or signals itself, needs jerk or
@@ -62,7 +62,7 @@ def steady_drive(
         overlaps_allowed=True,
     )
     try:
-        return Judged(file, library)
+        return JudgedDrive(file, library)
     except RoadproofError:
         return None
 

@@ -34,7 +34,7 @@ def refuse_unknown(formula: Formula, vehicle: str, model: Vehicle) -> None:
 
 def _is_about_kind(part: Formula, vehicle: str) -> bool:
     """Whether ``part`` says something of the kind of ``vehicle``, and of nothing else."""
-    about = (f.Truth, f.Compare, f.Not, f.And, f.Or, f.Named)
+    about = (f.Truth, f.Compare, f.Not, f.And, f.Or, f.Application)
     if not all(isinstance(x, about) for x in f.subformulas(part)):
         return False
     leaves = [x for side in terms_of(part) for x in t.leaves(side) if not isinstance(x, t.Number)]

@@ -12,10 +12,10 @@ import numpy as np
 
 from roadproof.engines.search.ask import telling_values
 from roadproof.engines.search.patterns import Menu, Patterns, Shares, spread
-from roadproof.engines.search.question import Posed, Setting, pose
+from roadproof.engines.search.question import SearchProblem, Setting, pose
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import negation
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
@@ -46,7 +46,9 @@ CRUISING = tuple(map(Fraction, (15, 20, 24, 28, 32, 36)))
 TYPICAL_PLACES = tuple(map(Fraction, (0, 0, 6, -6, 10, -10, 20, -20, 40, -40, 70, -70, 110, -110)))
 
 
-def small_drive(specification: Specification, claim: Query, within: Within, rounds: int = 1) -> Judged | None:
+def small_drive(
+    specification: Specification, claim: Query, within: Within, rounds: int = 1
+) -> JudgedDrive | None:
     """A drive on which ``claim`` is false at time 0, judged; None where none was found, which says nothing.
 
     ``within``: ``model`` keeps the limits of the usual models, ``forward`` and ``claim`` only those that the
@@ -78,11 +80,11 @@ def _search(specification: Specification, claim: Query, within: Within) -> "_Sea
 @dataclass(frozen=True)
 class _Search:
     specification: Specification
-    question: Posed
+    question: SearchProblem
     formulas: tuple[Formula, ...]
     within: Within
 
-    def run(self, rounds: int) -> Judged | None:
+    def run(self, rounds: int) -> JudgedDrive | None:
         """Judge some drives unseen, then those that the monitor chooses, in rounds around the best so far."""
         patterns = self.patterns()
         grid = self.question.grid
@@ -115,7 +117,7 @@ class _Search:
         menus = {name: self._menu(name, model) for name, model in self.question.vehicles.items()}
         return Patterns(menus, self._durations())
 
-    def _judged(self, patterns: Patterns, row: Shares, number: int) -> Judged | None:
+    def _judged(self, patterns: Patterns, row: Shares, number: int) -> JudgedDrive | None:
         drive = patterns.drive([float(x) for x in row])
         if not self._refutes(drive, number):
             return None
@@ -135,7 +137,7 @@ class _Search:
             drive,
             overlaps_allowed=self.within == "claim",
         )
-        return Judged(file, specification.library)
+        return JudgedDrive(file, specification.library)
 
     def _refutes(self, drive: Drive, number: int) -> bool:
         return judge(self.formulas[number], drive).holds and self._keeps_limits(drive)

@@ -6,7 +6,7 @@ from typing import Any
 
 from roadproof.drivers.restriction import left_open
 from roadproof.engines.prove.driver_claims import prove_of_scenarios
-from roadproof.engines.prove.prover import Hunch, Result, prove
+from roadproof.engines.prove.prover import ProofHeuristic, Result, prove
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import read_claim
@@ -44,7 +44,7 @@ class Impossibility:
 
 
 def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
-    """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``Late``."""
+    """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``BudgetExceeded``."""
     return explain(specification, query, prove_of_scenarios(specification, negation(query), effort), effort)
 
 
@@ -81,7 +81,7 @@ def _core(specification: Specification, query: Query, effort: Effort) -> tuple[t
     Each step goes by a hunch, and what is left is proved; where that fails, each step is proved instead.
     """
     whole = tuple(dict.fromkeys(parts(query.formula)))
-    kept, minimal = _shortened(query, whole, effort, Hunch(specification).has_proof)
+    kept, minimal = _shortened(query, whole, effort, ProofHeuristic(specification).has_proof)
 
     def is_proved(claim: Query, most: Effort) -> tuple[bool, float]:
         found = prove(specification, claim, most)
@@ -118,7 +118,7 @@ def parts(formula: Formula) -> Iterator[Formula]:
         case f.And(every):
             for part in every:
                 yield from parts(part)
-        case f.Named(_, _, body) if isinstance(body, f.And | f.Named) and not f.is_state(body):
+        case f.Application(_, _, body) if isinstance(body, f.And | f.Application) and not f.is_state(body):
             yield from parts(body)
         case _:
             yield formula

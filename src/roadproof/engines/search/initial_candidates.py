@@ -17,7 +17,7 @@ from roadproof.engines.encode.motion import Layout
 from roadproof.engines.encode.place import span
 from roadproof.engines.encode.polynomial import Polynomial
 from roadproof.engines.search.initial_conditions import Condition, Start
-from roadproof.engines.search.question import Posed
+from roadproof.engines.search.question import SearchProblem
 from roadproof.engines.search.sampling import Space, State, signals_in, states
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -41,7 +41,7 @@ _PLACES: tuple[SignalName, SignalName] = ("s", "d")
 GRAIN = Fraction(1, 100)  # m; how finely places are rounded (``rounding``)
 
 
-def unread(question: Posed, lanes: Mapping[str, str]) -> tuple[Formula, ...]:
+def unread(question: SearchProblem, lanes: Mapping[str, str]) -> tuple[Formula, ...]:
     """Parts of the conjunction about time 0 that the engine milp cannot read; without own signals."""
     reads = _reader(question)
     found = []
@@ -53,7 +53,7 @@ def unread(question: Posed, lanes: Mapping[str, str]) -> tuple[Formula, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def closed(question: Posed, lanes: Mapping[str, str]) -> frozenset[f.Compare]:
+def closed(question: SearchProblem, lanes: Mapping[str, str]) -> frozenset[f.Compare]:
     """What it cannot read of time 0 in other parts, which say it beside what they say of later times."""
     reads = _reader(question)
     others = (part for part in conjuncts(question.bound(lanes)) if not is_state(part))
@@ -61,7 +61,7 @@ def closed(question: Posed, lanes: Mapping[str, str]) -> frozenset[f.Compare]:
     return frozenset(x for x in found if not reads(x))
 
 
-def _reader(question: Posed) -> Callable[[f.Compare], bool]:
+def _reader(question: SearchProblem) -> Callable[[f.Compare], bool]:
     """Whether the engine milp reads a comparison about time 0."""
     layout = Layout(tuple(question.vehicles), question.grid)
     sizes = sizes_of(question.vehicles)
@@ -76,13 +76,13 @@ def _reader(question: Posed) -> Callable[[f.Compare], bool]:
     return reads
 
 
-def is_read(question: Posed) -> bool:
+def is_read(question: SearchProblem) -> bool:
     """Whether the engine milp can read all that is said of time 0."""
     return not any(unread(question, lanes) or closed(question, lanes) for lanes in question.lanes)
 
 
 def starts(
-    question: Posed, lanes: Mapping[str, str], parts: tuple[Formula, ...], most: int
+    question: SearchProblem, lanes: Mapping[str, str], parts: tuple[Formula, ...], most: int
 ) -> Iterator[Start]:
     """At most ``most`` starts in place of ``parts`` (``unread``), unlike each other; ``closed`` is let go.
 
@@ -102,7 +102,7 @@ def starts(
         yield Start(lanes, found, frozenset(parts), let_go)
 
 
-def space_of(question: Posed) -> Space:
+def space_of(question: SearchProblem) -> Space:
     """Where vehicles can be at time 0, and how fast, within their limits."""
     right, left = span(question.road)
     inside = question.assumptions.inside
@@ -127,13 +127,13 @@ def space_of(question: Posed) -> Space:
     return Space(ranges, sizes_in(question))
 
 
-def sizes_in(question: Posed) -> dict[Size, Fraction]:
+def sizes_in(question: SearchProblem) -> dict[Size, Fraction]:
     """The sizes and kinds of all vehicles."""
     known = sizes_of(question.vehicles)
     return {Size(name, v): known[v, name] for v in question.vehicles for name in FIXED if (v, name) in known}
 
 
-def _surroundings(question: Posed) -> Iterator[Formula]:
+def _surroundings(question: SearchProblem) -> Iterator[Formula]:
     """What every drive of a search keeps at its start, beside ranges."""
     inside = t.number(question.assumptions.inside, (1, -1))
     for name, vehicle in question.vehicles.items():
@@ -172,7 +172,7 @@ def conditions(
     return tuple(found)
 
 
-def _beside(parts: Formula, spoken: Sequence[Signal], question: Posed) -> dict[Signal, Signal]:
+def _beside(parts: Formula, spoken: Sequence[Signal], question: SearchProblem) -> dict[Signal, Signal]:
     """Places relative to that of the first vehicle, where ``parts`` do not change when all are moved."""
     beside: dict[Signal, Signal] = {}
     for name in _PLACES:
@@ -182,7 +182,7 @@ def _beside(parts: Formula, spoken: Sequence[Signal], question: Posed) -> dict[S
     return beside
 
 
-def _tells_where(parts: Formula, question: Posed, place: SignalName) -> bool:
+def _tells_where(parts: Formula, question: SearchProblem, place: SignalName) -> bool:
     """Whether a comparison changes when all vehicles are moved together, along (s) or across the road (d)."""
     sizes = sizes_of(question.vehicles)
     compared = [x for x in f.subformulas(parts) if isinstance(x, f.Compare)]

@@ -8,7 +8,7 @@ from roadproof.engines.search.constant_motion import steady_drive
 from roadproof.engines.search.initial_candidates import space_of
 from roadproof.engines.search.question import Setting, pose
 from roadproof.engines.search.sampling import Space, states
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel, Instant
 from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import negation
@@ -21,7 +21,7 @@ from roadproof.world.vehicle import Range
 
 def sampled_drive(
     specification: Specification, claim: Query, values: Mapping[str, Fraction], setting: Setting
-) -> Judged | None:
+) -> JudgedDrive | None:
     """A drive of constant motion on which ``claim`` is false at time 0, or None where none was found.
 
     States are looked for within what the vehicles of ``setting`` can do, then around that; the drive need

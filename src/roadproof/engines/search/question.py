@@ -36,7 +36,7 @@ Engine: TypeAlias = Literal["milp", "smt"]
 
 @dataclass(frozen=True)
 class Setting:
-    """Where, with whom and for how long drives are looked for; a formula makes a ``Posed`` of it.
+    """Where, with whom and for how long drives are looked for; a formula makes a ``SearchProblem`` of it.
 
     ``road`` None is the usual road of the formula; ``lanes`` are free lanes that stand for one lane.
     ``vehicles`` by name, "" for all others (where nothing is said a car, or of what kind the formula asks
@@ -61,7 +61,7 @@ class Setting:
 
 
 @dataclass(frozen=True)
-class Posed:
+class SearchProblem:
     """For which drive does ``query`` hold on ``road``?
 
     ``lanes`` are the assignments of lanes to be tried, in order. With a ``start`` a search is for drives that
@@ -150,7 +150,7 @@ class FoundDrive:
     assumptions: Assumptions
 
 
-def pose(library: Library, query: Query, setting: Setting) -> Posed:
+def pose(library: Library, query: Query, setting: Setting) -> SearchProblem:
     """The question with road, vehicles and grid in place. Raises ``UsageError``, ``InputError``."""
     road = setting.road or usual_road(query.formula)
     for name in (*setting.vehicles, *setting.limits):
@@ -174,7 +174,7 @@ def pose(library: Library, query: Query, setting: Setting) -> Posed:
         grid = fitting_grid(setting.horizon, query.formula, values)
     else:
         grid = make_grid(setting.horizon, setting.dt)
-    return Posed(query, road, vehicles, values, lanes, grid, assumptions)
+    return SearchProblem(query, road, vehicles, values, lanes, grid, assumptions)
 
 
 def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[dict[str, str], ...]:

@@ -7,7 +7,7 @@ from roadproof.engines.search.ask import Search, ask, reads_all
 from roadproof.engines.search.default_vehicles import usual_model
 from roadproof.engines.search.enumeration import Within, small_drive
 from roadproof.engines.search.question import SearchOptions, Setting
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import negation
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
@@ -25,7 +25,7 @@ ROUNDS = 3
 FASTEST, HARDEST = Fraction(80), Fraction(12)  # m/s and m/s^2
 
 
-def quick_drive(specification: Specification, claim: Query) -> Judged | None:
+def quick_drive(specification: Specification, claim: Query) -> JudgedDrive | None:
     """A short drive on which ``claim`` is false, within the limits of the usual models, else without them.
 
     Found without a solver, in some tenths of a second; None where none was found.
@@ -33,7 +33,7 @@ def quick_drive(specification: Specification, claim: Query) -> Judged | None:
     return _small(specification, claim, 1)
 
 
-def _small(specification: Specification, claim: Query, rounds: int) -> Judged | None:
+def _small(specification: Specification, claim: Query, rounds: int) -> JudgedDrive | None:
     for within in WITHIN:
         found = small_drive(specification, claim, within, rounds)
         if found is not None:
@@ -42,14 +42,14 @@ def _small(specification: Specification, claim: Query, rounds: int) -> Judged | 
 
 
 def refuting_drive(
-    specification: Specification, claim: Query, effort: Effort, known: Judged | None = None
-) -> Judged | None:
+    specification: Specification, claim: Query, effort: Effort, known: JudgedDrive | None = None
+) -> JudgedDrive | None:
     """A judged drive on which ``claim`` is false at time 0, or None where none was found.
 
     Within the limits of the usual models first, then without limits, where ``known`` is such a drive.
     Looked for on the usual road, with parameters at the values that the claim's premise demands, and at the
     declared ones else; not for a claim about one instant that no engine reads, of which a state says all.
-    Raises ``InputError`` and ``UsageError`` for claims that are not about drives, and ``Late``.
+    Raises ``InputError`` and ``UsageError`` for claims that are not about drives, and ``BudgetExceeded``.
     """
     setting = Setting(values=pins(claim.formula))
     units = min(DRIVE if known is None else KNOWN, effort.units)
@@ -64,7 +64,9 @@ def refuting_drive(
     return _searched(specification, claim, anyhow, effort.of(min(WIDER, effort.units)))
 
 
-def _searched(specification: Specification, claim: Query, setting: Setting, effort: Effort) -> Judged | None:
+def _searched(
+    specification: Specification, claim: Query, setting: Setting, effort: Effort
+) -> JudgedDrive | None:
     search_options = SearchOptions("smooth", effort=effort, explain=False)
     search = Search(specification, negation(claim), setting, search_options)
     if is_state(claim.formula) and not reads_all(search):
@@ -87,7 +89,7 @@ def _without_limits(model: Vehicle) -> Vehicle:
     )
 
 
-def beyond_limits(drive: Judged) -> str:
+def beyond_limits(drive: JudgedDrive) -> str:
     """How a drive leaves the limits of the usual models, in words; '' where it keeps them.
 
     Boxes that overlap within the horizon of the file count as well.

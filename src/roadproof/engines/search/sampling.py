@@ -76,7 +76,7 @@ def states(formula: Formula, space: Space, most: int) -> list[State]:
     wanted = signals_in(formula)
     solved, rest = _solve(formula, space, wanted)
     axes = [_axis(x, *space.ranges[x]) for x in wanted if x not in solved]
-    looking = _Looking(rest, space, axes, solved)
+    looking = _StateSampler(rest, space, axes, solved)
     found: list[State] = []
     for point in _unlike(looking.points(), axes, most):
         state = looking.exactly(point)
@@ -170,7 +170,7 @@ def _equalities(formula: Formula) -> Iterator[tuple[t.Term, t.Term]]:
 
 
 @dataclass(frozen=True)
-class _Looking:
+class _StateSampler:
     """Points are rows of whole numbers, a column for each axis."""
 
     formula: Formula

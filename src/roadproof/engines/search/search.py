@@ -15,7 +15,7 @@ from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.initial_candidates import closed, starts, unread
 from roadproof.engines.search.initial_conditions import encode_start
 from roadproof.engines.search.limits import Limits
-from roadproof.engines.search.question import FoundDrive, Posed, SearchOptions
+from roadproof.engines.search.question import FoundDrive, SearchOptions, SearchProblem
 from roadproof.engines.search.rounding import round_drive
 from roadproof.engines.search.shape import reshape, violation_depths
 from roadproof.engines.search.variety import differ
@@ -52,12 +52,14 @@ class Attempt:
     limits: Limits | None = None
 
 
-def find_witness(question: Posed, search_options: SearchOptions, unlike: tuple[Drive, ...] = ()) -> Attempt:
+def find_witness(
+    question: SearchProblem, search_options: SearchOptions, unlike: tuple[Drive, ...] = ()
+) -> Attempt:
     """Search for a drive clearly different from those in ``unlike``.
 
     Whatever is found has been judged exactly in dense and unbounded time. NONE-WITHIN means that
     the problem on the grid has no solution for any assignment of lanes. Raises ``UsageError`` for
-    interval bounds off the grid, ``MissingSolverError``, and ``Late`` where the clock cuts it off.
+    interval bounds off the grid, ``MissingSolverError``, and ``BudgetExceeded`` where the clock cuts it off.
     """
     if question.start is None and search_options.engine == "milp":
         parts = [unread(question, lanes) for lanes in question.lanes]
@@ -69,7 +71,7 @@ def find_witness(question: Posed, search_options: SearchOptions, unlike: tuple[D
 
 
 def _from_starts(
-    question: Posed,
+    question: SearchProblem,
     parts: Sequence[tuple[Formula, ...]],
     search_options: SearchOptions,
     unlike: tuple[Drive, ...],
@@ -110,7 +112,7 @@ def _untold(tried: int | None) -> str:
     )
 
 
-def show_none(question: Posed, search_options: SearchOptions) -> Attempt:
+def show_none(question: SearchProblem, search_options: SearchOptions) -> Attempt:
     """Show that no drive on the grid answers the question, within limits that are printed.
 
     NONE-WITHIN, or WITNESSED where the exact encoding has a solution that is judged a witness after all,
@@ -119,7 +121,7 @@ def show_none(question: Posed, search_options: SearchOptions) -> Attempt:
     return _Search(replace(question, start=None), search_options, ()).none()
 
 
-def _shortest(question: Posed, search_options: SearchOptions, unlike: tuple[Drive, ...]) -> Attempt:
+def _shortest(question: SearchProblem, search_options: SearchOptions, unlike: tuple[Drive, ...]) -> Attempt:
     """The fewest steps for which there is a drive, by halving; each answer is judged by itself."""
     search_options = replace(search_options, objective="smooth")
     best = find_witness(question, search_options, unlike)
@@ -138,7 +140,9 @@ def _shortest(question: Posed, search_options: SearchOptions, unlike: tuple[Driv
 
 
 class _Search:
-    def __init__(self, question: Posed, search_options: SearchOptions, unlike: tuple[Drive, ...]) -> None:
+    def __init__(
+        self, question: SearchProblem, search_options: SearchOptions, unlike: tuple[Drive, ...]
+    ) -> None:
         self.question = question
         self.search_options = search_options
         self.unlike = unlike

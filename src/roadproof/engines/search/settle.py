@@ -15,13 +15,13 @@ from roadproof.engines.prove.prover import Result, prove
 from roadproof.engines.search.constant_motion import steady_drive
 from roadproof.engines.search.limits import Limits
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.judged import Judged
-from roadproof.library.motion import Assumed, is_moving, under_limits
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.library.motion import Assumption, is_moving, under_limits
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
 from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.fragment import is_cubic_state
-from roadproof.runtime.budget import Effort, Late
+from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict
 
@@ -33,14 +33,14 @@ BRIEF, BEFORE = 0.25, 5.0
 
 
 @dataclass(frozen=True)
-class Settled:
+class Settlement:
     """A result; ``drive`` is a judged drive on which the claim is false.
 
     ``bounded``: asked of drives on one road, up to a horizon; ``limits``: within what PROVED-BOUNDED holds.
     """
 
     result: Result
-    drive: Judged | None = None
+    drive: JudgedDrive | None = None
     limits: Limits | None = None
     bounded: bool = False
 
@@ -72,7 +72,7 @@ def settle(
     scenario: int | None = None,
     seek_drive: bool = True,
     said: Sequence[str] = (),
-) -> Settled:
+) -> Settlement:
     """Prove or refute a claim; a refuted or undecided one also by a drive, where there is one.
 
     ``said``: what is assumed, in words; of motions only a drive refutes. UNKNOWN where the clock cuts the
@@ -80,18 +80,18 @@ def settle(
     """
     begun = now()
     if seek_drive:
-        return _Settling(specification, query, effort, (label, scenario), tuple(said), begun).run()
+        return _Settler(specification, query, effort, (label, scenario), tuple(said), begun).run()
     try:
         found = _proved(specification, query, effort, (label, scenario), tuple(said))
-    except Late as late:
+    except BudgetExceeded as late:
         return in_doubt(str(late), begun)
     if is_moving(said) and not found.holds:
         found = replace(found, reason=f"{found.reason}; no drive that refutes it was looked for")
-    return Settled(found)
+    return Settlement(found)
 
 
 @dataclass(frozen=True)
-class _Settling:
+class _Settler:
     """Proofs and drives in turns, each with more work than before."""
 
     specification: Specification
@@ -106,21 +106,21 @@ class _Settling:
         """What a drive refutes."""
         return under_limits(self.specification, self.query, self.said)
 
-    def run(self) -> Settled:
+    def run(self) -> Settlement:
         try:
             result = self._prove(BRIEF)
-        except Late as late:
+        except BudgetExceeded as late:
             return in_doubt(str(late), self.begun)
         if result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
-            return Settled(result)
+            return Settlement(result)
         try:
             return self._run(result)
-        except Late as late:
+        except BudgetExceeded as late:
             if result.verdict is Verdict.REFUTED:
-                return Settled(result)
+                return Settlement(result)
             return in_doubt(str(late), self.begun)
 
-    def _run(self, result: Result) -> Settled:
+    def _run(self, result: Result) -> Settlement:
         """A quick drive, a longer proof, a drive that takes a search, and the longest proof."""
         quick = self._quick()
         if quick is not None and not _beyond(quick):
@@ -128,7 +128,7 @@ class _Settling:
         if quick is None and self._may_change(result, BRIEF):
             result = self._prove(BEFORE)
         if result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
-            return Settled(result)
+            return Settlement(result)
         drive = self._searched(quick)
         if drive is not None:
             return self._refuted(result, drive)
@@ -138,7 +138,7 @@ class _Settling:
             drive = steady_drive(self.specification, self.against, result.countermodel)
         if result.verdict is Verdict.UNKNOWN and is_moving(self.said):
             result = replace(result, reason=f"{result.reason}; no drive was found that refutes it")
-        return Settled(replace(result, seconds=since(self.begun)), drive)
+        return Settlement(replace(result, seconds=since(self.begun)), drive)
 
     def _prove(self, units: float) -> Result:
         effort = self.effort.of(min(units, self.effort.units))
@@ -148,10 +148,10 @@ class _Settling:
         """Whether more work than ``units`` may bring another answer."""
         return result.verdict is Verdict.UNKNOWN and units < self.effort.units
 
-    def _refuted(self, result: Result, drive: Judged) -> Settled:
-        return Settled(replace(result, reason="", seconds=since(self.begun)), drive)
+    def _refuted(self, result: Result, drive: JudgedDrive) -> Settlement:
+        return Settlement(replace(result, reason="", seconds=since(self.begun)), drive)
 
-    def _quick(self) -> Judged | None:
+    def _quick(self) -> JudgedDrive | None:
         """A short or steady drive on which the claim is false, found without a solver; None as below."""
         from roadproof.engines.search.instant_claims import sampled_drive
         from roadproof.engines.search.question import Setting
@@ -166,7 +166,7 @@ class _Settling:
         except (InputError, UsageError):
             return None
 
-    def _searched(self, known: Judged | None) -> Judged | None:
+    def _searched(self, known: JudgedDrive | None) -> JudgedDrive | None:
         """A drive on which the claim is false; ``known`` or None where none is found that is better."""
         from roadproof.engines.search.refute import refuting_drive
 
@@ -176,7 +176,7 @@ class _Settling:
             return known
 
 
-def _beyond(drive: Judged) -> str:
+def _beyond(drive: JudgedDrive) -> str:
     from roadproof.engines.search.refute import beyond_limits
 
     return beyond_limits(drive)
@@ -189,31 +189,31 @@ def _proved(
     called: tuple[str, int | None],
     said: Sequence[str],
 ) -> Result:
-    """What the prover says. Raises ``Late``."""
+    """What the prover says. Raises ``BudgetExceeded``."""
     induced = prove_by_induction(specification, query, said, effort, *called)
     if induced is not None:
         return induced
     if is_moving(said):
         return prove_of_motions(specification, query, said, effort, *called)
-    return prove(specification, query, effort, *called, Assumed(tuple(said)))
+    return prove(specification, query, effort, *called, Assumption(tuple(said)))
 
 
-def settle_bounded(search: "Search") -> Settled:
+def settle_bounded(search: "Search") -> Settlement:
     """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
     from roadproof.engines.search.bounded import check_bounded
 
     begun = now()
     try:
         found = check_bounded(search)
-    except Late as late:
+    except BudgetExceeded as late:
         return replace(in_doubt(str(late), begun), bounded=True)
     if found.verdict is Verdict.PROVED:
         return settle(search.specification, search.query, search.search_options.effort)
     result = Result(found.verdict, found.reason, since(begun))
-    return Settled(result, found.drive, found.limits, bounded=True)
+    return Settlement(result, found.drive, found.limits, bounded=True)
 
 
-def in_doubt(reason: str, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settled:
+def in_doubt(reason: str, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settlement:
     """What is said of a claim that nothing is known of; ``begun``: since when it was asked."""
     seconds = 0.0 if begun is None else since(begun)
-    return Settled(Result(Verdict.UNKNOWN, reason, seconds, stop=stop))
+    return Settlement(Result(Verdict.UNKNOWN, reason, seconds, stop=stop))

@@ -13,7 +13,7 @@ from roadproof.engines.solve.bounds import Affine, Bound, TooNonlinearError, val
 from roadproof.engines.solve.milp import box_of
 from roadproof.engines.solve.smooth import Square, minimise, narrow, near
 from roadproof.library.scenarios import is_violation
-from roadproof.logic.formula import Formula, Named, subformulas
+from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.world.road import Road
 from roadproof.world.signals import OwnName, SignalName
 from roadproof.world.vehicle import Vehicle
@@ -136,7 +136,7 @@ def violation_depths(
     """
     depths: list[ColumnInequality] = []
     for part in subformulas(formula):
-        if isinstance(part, Named) and is_violation(part.name):
+        if isinstance(part, Application) and is_violation(part.name):
             for step in range(layout.grid.steps + 1):
                 circuit = ground(unroll_at(part, layout.grid, step), vehicles, layout, NONE)
                 if evaluate(circuit, lambda inequality: value_of(inequality, found) > 0):

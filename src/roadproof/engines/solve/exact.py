@@ -9,7 +9,7 @@ from roadproof.engines.encode.circuit import All, AnyOf, Leaf, nodes
 from roadproof.engines.encode.polynomial import Polynomial
 from roadproof.engines.encode.problem import ColumnInequality, Problem, Row
 from roadproof.engines.solve.smt import Satisfiability, Session
-from roadproof.runtime.budget import Effort, Meter
+from roadproof.runtime.budget import Budget, Effort
 
 UNIT = 600_000  # of what z3 counts: from 0.05 s in preprocessing to 1.5 s on polynomial arithmetic
 FIRST_TURN = 1.0
@@ -25,11 +25,11 @@ class ExactSolution:
     values: tuple[Fraction, ...] = ()
 
 
-def solve_exactly(problem: Problem, meter: Meter | None = None) -> ExactSolution:
+def solve_exactly(problem: Problem, meter: Budget | None = None) -> ExactSolution:
     """Ask z3 for a solution within what ``meter`` has left; ``infeasible`` is an exact no.
 
     How long z3 takes depends on luck, so it starts again with another seed and twice the work.
-    Raises ``Late``.
+    Raises ``BudgetExceeded``.
     """
     meter = meter or Effort().meter()
     session = Session(UNIT)

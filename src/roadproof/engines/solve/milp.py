@@ -23,7 +23,7 @@ from roadproof.engines.encode.circuit import All, AnyOf, Circuit, Leaf, nodes, r
 from roadproof.engines.encode.problem import Problem
 from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, approximate, loosened
 from roadproof.errors import MissingSolverError, UsageError
-from roadproof.runtime.budget import Effort, Meter
+from roadproof.runtime.budget import Budget, Effort
 
 Status: TypeAlias = Literal["found", "infeasible", "unknown"]
 
@@ -164,7 +164,7 @@ def solve_mixed(
     pieces: int = 1,
     cost: Cost | None = None,
     solver: str = "highs",
-    meter: Meter | None = None,
+    meter: Budget | None = None,
     gap: float = 0.5,
 ) -> Solution:
     """A solution of ``problem`` in ``box`` (a bound pair per column), within what ``meter`` has left.
@@ -172,7 +172,7 @@ def solve_mixed(
     On the inner side a solution solves the exact problem up to floating point; on the outer side
     ``infeasible`` says that the exact problem has no solution: whatever is no equation is loosened by
     more than the solver's tolerances, and equations leave room to keep them. Raises
-    ``TooNonlinearError`` for inequalities above degree 2, ``Late``, and as ``find_solver`` does.
+    ``TooNonlinearError`` for inequalities above degree 2, ``BudgetExceeded``, and as ``find_solver`` does.
     """
     known = find_solver(solver)
     meter = meter or Effort().meter()
@@ -257,7 +257,7 @@ class _Tableau:
 
 
 def _run(
-    tableau: _Tableau, wanted: int, cost: Cost, known: SolverFacts, meter: Meter, gap: float
+    tableau: _Tableau, wanted: int, cost: Cost, known: SolverFacts, meter: Budget, gap: float
 ) -> Solution:
     cvxpy = modelling()
     from scipy.sparse import csr_array

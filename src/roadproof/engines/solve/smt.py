@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.errors import MissingSolverError
-from roadproof.runtime.budget import Meter
+from roadproof.runtime.budget import Budget
 
 # What is counted in about a second; by z3 up to 4 million on linear queries, 0.3 on polynomial ones.
 UNIT = 1_000_000
@@ -57,22 +57,22 @@ class Session:
             raise SolverError(f"z3 refused: {answer.strip()}")
         return answer
 
-    def check(self, assuming: Sequence[str] = (), meter: Meter | None = None) -> Satisfiability:
+    def check(self, assuming: Sequence[str] = (), meter: Budget | None = None) -> Satisfiability:
         """``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
         query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
         return self.answer(query, meter)
 
-    def check_plainly(self, meter: Meter, seed: int = 0) -> Satisfiability:
+    def check_plainly(self, meter: Budget, seed: int = 0) -> Satisfiability:
         """``check-sat`` by z3's SMT core alone, without the strategies that z3 tries before it.
 
         On polynomial arithmetic with many disjunctions those spend most of a minute in vain.
         """
         return self.answer(f"(check-sat-using (using-params smt :random_seed {seed}))", meter)
 
-    def answer(self, commands: str, meter: Meter | None) -> Satisfiability:
+    def answer(self, commands: str, meter: Budget | None) -> Satisfiability:
         """The answer to commands that end in a check, within what ``meter`` has left.
 
-        ``unknown`` where the work is used up, or z3 gives up. Raises ``Late``.
+        ``unknown`` where the work is used up, or z3 gives up. Raises ``BudgetExceeded``.
         """
         if meter is None:
             return _answer(self.tell(f"(set-option :rlimit 0)(set-option :timeout {_NEVER})\n{commands}"))
@@ -102,8 +102,8 @@ class Session:
         return [read_value(pair[1]) for pair in read]
 
 
-def _limits(meter: Meter, unit: int) -> tuple[int, int]:
-    """What is left as a solver's count and as milliseconds, rounded up. Raises ``Late``."""
+def _limits(meter: Budget, unit: int) -> tuple[int, int]:
+    """What is left as a solver's count and as milliseconds, rounded up. Raises ``BudgetExceeded``."""
     milliseconds = math.ceil(meter.seconds_left() * 1000)
     return max(1, min(_MOST, math.ceil(min(meter.left(), _MOST) * unit))), min(_MOST, milliseconds)
 
@@ -115,18 +115,18 @@ def _answer(text: str) -> Satisfiability:
     return "sat" if "sat" in words else "unknown"
 
 
-def ask(script: str, solver: str = "z3", meter: Meter | None = None) -> Satisfiability:
+def ask(script: str, solver: str = "z3", meter: Budget | None = None) -> Satisfiability:
     """The answer of ``solver`` (z3 or cvc5) to a whole SMT-LIB script that ends in ``check-sat``.
 
-    Raises ``MissingSolverError`` where cvc5 is not installed, and ``Late``.
+    Raises ``MissingSolverError`` where cvc5 is not installed, and ``BudgetExceeded``.
     """
     return Session().answer(script, meter) if solver == "z3" else _ask_cvc5(script, meter)
 
 
-def solve(script: str, symbols: Sequence[str], meter: Meter) -> Mapping[str, Fraction | bool] | None:
+def solve(script: str, symbols: Sequence[str], meter: Budget) -> Mapping[str, Fraction | bool] | None:
     """Values of ``symbols`` in a model that z3 finds for a whole script, or None where it finds none.
 
-    Numbers that are not rational are left out. Raises ``Late``.
+    Numbers that are not rational are left out. Raises ``BudgetExceeded``.
     """
     session = Session()
     if session.answer(script, meter) != "sat":
@@ -135,7 +135,7 @@ def solve(script: str, symbols: Sequence[str], meter: Meter) -> Mapping[str, Fra
     return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
 
 
-def _ask_cvc5(script: str, meter: Meter | None) -> Satisfiability:
+def _ask_cvc5(script: str, meter: Budget | None) -> Satisfiability:
     try:
         import cvc5
     except ImportError:

@@ -276,7 +276,7 @@ def _of_claim(said: Claim, where: str, common: Common) -> Entry:
 
 def _outer_names(formula: Formula) -> tuple[str, ...]:
     """The definitions that a formula applies itself, without those that their bodies apply."""
-    if isinstance(formula, f.Named):
+    if isinstance(formula, f.Application):
         return (formula.name,)
     return tuple(dict.fromkeys(name for part in f.children(formula) for name in _outer_names(part)))
 
@@ -296,7 +296,7 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
         yield "its scenarios are not those of which its claims say that classes cover them"
     for one in index.classes if covered else ():
         formula = common.formula(one.formula)
-        parts = {*_outer_names(formula.body)} if isinstance(formula, f.Named) else set()
+        parts = {*_outer_names(formula.body)} if isinstance(formula, f.Application) else set()
         of_places = not any(number_in(x) for x in parts)  # what happens, and where
         of = tuple(
             sorted(n for n, names in covered.items() if one.name in names or (of_places and parts <= names))

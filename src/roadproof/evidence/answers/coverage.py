@@ -84,14 +84,14 @@ class Gap:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Numbered:
+class OrderedEntry:
     """What has a place among all of its kind."""
 
     number: Annotated[Position, UNCHECKED, Doc("Its place among all gaps.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class NumberedGap(Gap, Numbered):
+class NumberedGap(Gap, OrderedEntry):
     """A drive that the set misses, by number."""
 
 

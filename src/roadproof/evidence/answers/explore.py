@@ -171,7 +171,7 @@ def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
 
 
 @dataclass(frozen=True)
-class _Knob:
+class _Variable:
     """What is varied from ``low`` to ``high``: a parameter, or an end of a signal's range (SI units)."""
 
     name: str
@@ -199,7 +199,7 @@ class _Exploration:
 
     common: Common
     base: Query
-    knobs: tuple[_Knob, ...]
+    knobs: tuple[_Variable, ...]
     fault: str
 
     def point(self, at: Sequence[str], where: str) -> dict[str, Fraction]:
@@ -261,7 +261,7 @@ def _misnamed(said: Exploration, where: str, common: Common, base: Query) -> str
     return f"{where} is called scenario {said.scenario}, but its formula is another: {said.formula[:120]}"
 
 
-def _off_range(said: Exploration, where: str, knobs: Sequence[_Knob]) -> str:
+def _off_range(said: Exploration, where: str, knobs: Sequence[_Variable]) -> str:
     """Why the values are not from the least to the greatest of what is varied, or nothing."""
     for k, knob in enumerate(knobs):
         values = [rational(x.at[k], where) for x in said.values if k < len(x.at)]
@@ -270,13 +270,13 @@ def _off_range(said: Exploration, where: str, knobs: Sequence[_Knob]) -> str:
     return ""
 
 
-def _knob(said: Variation, of: str, common: Common, base: Query) -> _Knob:
+def _knob(said: Variation, of: str, common: Common, base: Query) -> _Variable:
     """What is varied. Raises ``InputError``."""
     where, name, unit = f"{of}, vary", said.name, said.unit
     low, high = rational(said.low, f"{where}, low"), rational(said.high, f"{where}, high")
     if name in common.library.parameters:
         known_unit = unit_text(UNITS[common.library.parameters[name].unit][1])
-        return _Knob(name, low, high, fault=_other_unit(where, unit, known_unit))
+        return _Variable(name, low, high, fault=_other_unit(where, unit, known_unit))
     vehicle, signal, end = (*name.split("."), "", "", "")[:3]
     known = next((x for x in LIMITED if x == signal), None)
     vehicles = base.vehicles if vehicle == "vehicle" else (vehicle,)
@@ -287,7 +287,7 @@ def _knob(said: Variation, of: str, common: Common, base: Query) -> _Knob:
         or not {*vehicles} <= {*base.vehicles}
     ):
         raise InputError(f"{where}: '{name[:60]}' is no parameter and no limit of a vehicle of the formula")
-    return _Knob(name, low, high, tuple(vehicles), known, end, _other_unit(where, unit, LIMITS[known]))
+    return _Variable(name, low, high, tuple(vehicles), known, end, _other_unit(where, unit, LIMITS[known]))
 
 
 def _other_unit(where: str, said: str, known: str) -> str:

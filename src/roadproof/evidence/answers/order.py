@@ -88,19 +88,19 @@ class Refutation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Listed:
+class OrderedEntry:
     """What has a place among all of its kind."""
 
     number: Position
 
 
 @dataclass(frozen=True, kw_only=True)
-class ListedRefutation(Refutation, Listed):
+class ListedRefutation(Refutation, OrderedEntry):
     """A drive on which one scenario holds and others do not, by number."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Missing(Implication):
+class MissingImplication(Implication):
     """A pair of which the first scenario does not imply the second."""
 
     drives: Annotated[tuple[Position, ...], Rule(least=1), Doc("The numbers of drives that show so.")]
@@ -135,7 +135,7 @@ class Index(Preamble, Heading):
     ]
     proved: tuple[Edge, ...]
     edges: Annotated[tuple[Edge, ...], Doc("Those proved that do not follow from others.")]
-    missing: tuple[Missing, ...]
+    missing: tuple[MissingImplication, ...]
     drives: tuple[ListedRefutation, ...]
     doubts: tuple[Doubt, ...]
     seconds: Seconds = 0.0

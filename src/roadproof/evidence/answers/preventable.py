@@ -8,7 +8,7 @@ from functools import partial
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, plane_of
 from roadproof.drivers.claims import SIDES, Side, claim_of, with_also
-from roadproof.drivers.driving import Reading
+from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.idle import idle
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import End, Line, line_data, sides_in, told_line, truths
@@ -137,7 +137,7 @@ def _drive_fault(
     if row not in plane.rows or not plane.along[0] <= place <= plane.along[1]:
         told = f"{plane.manoeuvre.across}={row}, {plane.manoeuvre.line}={place}"
         return f"{line.where}: {told} is not on the plate"
-    reading = Reading(values_with(common.library, common.values or {}), common.options)
+    reading = DriverSettings(values_with(common.library, common.values or {}), common.options)
     wanted = with_also(claim_of(plate.manoeuvre, plate.model, at, side, reading), scenario)
     claim = line.text("formula")
     if common.formula(claim) != common.formula(wanted):

@@ -123,7 +123,7 @@ class _Finding:
                 return always(*seconds(interval), self.when(body, scope))
             case f.Until(left, interval, right):
                 return until(self.when(left, scope), *seconds(interval), self.when(right, scope))
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.when(body, scope)
             case _:
                 assert_never(formula)
@@ -181,7 +181,7 @@ class _Finding:
                 return self._until(left, right, scope, part, seconds(interval))
             case f.Until(left, interval, right):
                 return self._not_until(left, right, scope, part, seconds(interval))
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.why(body, scope, positive, part)
             case _:
                 assert_never(formula)

@@ -4,22 +4,22 @@ from roadproof.errors import RoadproofError
 from roadproof.evidence.derivations.derive import derive
 from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.kernel.accept import Prepared, Ruling, Word
+from roadproof.evidence.kernel.accept import CoqModule, Ruling, Word
 from roadproof.evidence.kernel.drive import claim_text, module, shown
 from roadproof.library.specification import Library
 
 
-def prepare(name: str, file: DriveFile, library: Library) -> Prepared:
+def prepare(name: str, file: DriveFile, library: Library) -> CoqModule:
     """The drive with a derivation of its claim, or why there is none."""
     try:
         what = shown(file, library)
     except RoadproofError as error:
-        return Prepared(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
     try:
         printed = claim_text(what)
         derivation = derive(what.formula, file.drive, file.road, file.lanes, what.values)
-        return Prepared(module(name, what, printed, derivation))
+        return CoqModule(module(name, what, printed, derivation))
     except NoDerivationError as error:
-        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
     except RoadproofError as error:
-        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))

@@ -12,7 +12,7 @@ from enum import StrEnum
 from roadproof.errors import RoadproofError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.kernel.branch import NotFoundError
-from roadproof.evidence.kernel.coq import Coq, Ran
+from roadproof.evidence.kernel.coq import Coq, CoqRun
 from roadproof.evidence.kernel.search import find
 from roadproof.evidence.kernel.source import Module, UnreasonedError, file, module
 from roadproof.evidence.kernel.statement import NO_PREMISES, Premises, Statement, state
@@ -62,7 +62,7 @@ class Ruling:
 
 
 @dataclass(frozen=True)
-class Prepared:
+class CoqModule:
     """A certificate as a module of Coq, or why there is none."""
 
     module: Module | None
@@ -71,7 +71,7 @@ class Prepared:
 
 
 @dataclass
-class Judged:
+class KernelRulings:
     """Rulings by the name of a module; seconds of the processor and megabytes that Coq took."""
 
     rulings: dict[str, Ruling] = field(default_factory=dict)
@@ -87,21 +87,21 @@ def find_tableau(certificate: Certificate, library: Library) -> tuple[str, ...] 
         return None
 
 
-def prepare(name: str, certificate: Certificate, library: Library) -> Prepared:
+def prepare(name: str, certificate: Certificate, library: Library) -> CoqModule:
     """The certificate for Coq: with its own tableau, or with one that is searched where it has none."""
     try:
         statement = state(certificate, library)
         tableau = _tableau(certificate, statement)
     except NotFoundError as error:
-        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"no tableau was found: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no tableau was found: {error}"))
     except RoadproofError as error:
-        return Prepared(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
     try:
-        return Prepared(module(name, statement, tableau), statement.premises)
+        return CoqModule(module(name, statement, tableau), statement.premises)
     except UnreasonedError as error:
-        return Prepared(None, refusal=Ruling(Word.UNKNOWN, str(error), error.number))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, str(error), error.number))
     except RoadproofError as error:
-        return Prepared(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
 
 
 def _tableau(certificate: Certificate, statement: Statement) -> Tableau:
@@ -110,14 +110,16 @@ def _tableau(certificate: Certificate, statement: Statement) -> Tableau:
     return find(statement.goal)
 
 
-def judge(coq: Coq, prepared: Mapping[str, Prepared]) -> Judged:
+def judge(coq: Coq, prepared: Mapping[str, CoqModule]) -> KernelRulings:
     """What Coq says of each, by name."""
-    judged = Judged({name: x.refusal for name, x in prepared.items() if x.refusal is not None})
+    judged = KernelRulings({name: x.refusal for name, x in prepared.items() if x.refusal is not None})
     _settle(coq, [x.module for x in prepared.values() if x.module is not None], prepared, judged)
     return judged
 
 
-def _settle(coq: Coq, modules: Sequence[Module], prepared: Mapping[str, Prepared], judged: Judged) -> None:
+def _settle(
+    coq: Coq, modules: Sequence[Module], prepared: Mapping[str, CoqModule], judged: KernelRulings
+) -> None:
     """One file, and where Coq stops in it, one for what stands before and one for what stands after."""
     if not modules:
         return
@@ -137,7 +139,7 @@ def _settle(coq: Coq, modules: Sequence[Module], prepared: Mapping[str, Prepared
     _settle(coq, modules[place + 1 :], prepared, judged)
 
 
-def _put(coq: Coq, modules: Sequence[Module], judged: Judged) -> Ran:
+def _put(coq: Coq, modules: Sequence[Module], judged: KernelRulings) -> CoqRun:
     ran = coq.run(file(modules) + closing(modules))
     judged.seconds += ran.seconds
     judged.megabytes = max(judged.megabytes, ran.megabytes)
@@ -152,7 +154,9 @@ def closing(modules: Sequence[Module]) -> str:
     return f"Definition {ALL} := {proved}.\nPrint Assumptions {ALL}.\n"
 
 
-def _conclude(modules: Sequence[Module], prepared: Mapping[str, Prepared], ran: Ran, judged: Judged) -> None:
+def _conclude(
+    modules: Sequence[Module], prepared: Mapping[str, CoqModule], ran: CoqRun, judged: KernelRulings
+) -> None:
     axioms = axioms_of(ran.said)
     for x in modules:
         premises = prepared[x.name].premises
@@ -173,7 +177,7 @@ def axioms_of(said: str) -> tuple[str, ...] | None:
     return tuple(_AXIOM.findall(listed)) if found and not before.strip() else None
 
 
-def _blamed(modules: Sequence[Module], ran: Ran) -> tuple[int, Ruling] | None:
+def _blamed(modules: Sequence[Module], ran: CoqRun) -> tuple[int, Ruling] | None:
     """Which module Coq stopped at, and what that means for it; None where Coq does not say."""
     found = _PLACE.search(ran.complained)
     if found is None:
@@ -201,11 +205,11 @@ def _head_lines() -> int:
     return file([]).count("\n")
 
 
-def _first(ran: Ran) -> str:
+def _first(ran: CoqRun) -> str:
     return " ".join((ran.complained or ran.said).split())[:200] or f"exit code {ran.code}"
 
 
-def batches(modules: Mapping[str, Prepared], count: int) -> Iterator[dict[str, Prepared]]:
+def batches(modules: Mapping[str, CoqModule], count: int) -> Iterator[dict[str, CoqModule]]:
     """About ``count`` parts of equal size."""
     names = list(modules)
     for place in range(min(count, len(names))):

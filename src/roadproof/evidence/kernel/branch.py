@@ -50,7 +50,7 @@ class At:
 
 
 @dataclass(frozen=True)
-class Throughout:
+class TrueInterval:
     """``formula`` is true from ``low`` on and before ``high``."""
 
     low: Moment
@@ -68,7 +68,7 @@ class Belongs:
     name: str
 
 
-Fact: TypeAlias = At | Throughout | Belongs
+Fact: TypeAlias = At | TrueInterval | Belongs
 # What one child of a rule is given: facts, and constraints, strict where True.
 Given: TypeAlias = tuple[Sequence[Fact], Sequence[tuple[bool, Moment]]]
 # A proof of a branch: its step, and the facts and constraints that it uses.

@@ -34,7 +34,7 @@ _KEPT = ("PATH", "HOME", "TMPDIR", "USER", "LOGNAME")
 
 
 @dataclass(frozen=True)
-class Ran:
+class CoqRun:
     """What ``coqc`` answered to a file, which is accepted where ``code`` is 0; seconds of the processor."""
 
     code: int
@@ -52,7 +52,7 @@ class Coq:
     version: str
     theories: Path
 
-    def run(self, source: str) -> Ran:
+    def run(self, source: str) -> CoqRun:
         """Put a file to Coq, in a folder of its own."""
         with tempfile.TemporaryDirectory(prefix="roadproof-coq-") as folder:
             file = Path(folder) / "evidence.v"
@@ -125,7 +125,7 @@ def _options(theories: Path) -> list[str]:
     return ["-q", "-noglob", "-Q", str(theories), "Roadproof"]
 
 
-def _run(command: list[str], folder: Path) -> Ran:
+def _run(command: list[str], folder: Path) -> CoqRun:
     """Run in ``folder`` without what the environment says to Coq."""
     begun = _processor_seconds()
     environment = {name: os.environ[name] for name in _KEPT if name in os.environ} | {"LC_ALL": "C"}
@@ -141,10 +141,10 @@ def _run(command: list[str], folder: Path) -> Ran:
             preexec_fn=_deep_stack,
         )
     except subprocess.TimeoutExpired:
-        return Ran(-1, "", f"no answer after {PATIENCE:g} s", _processor_seconds() - begun)
+        return CoqRun(-1, "", f"no answer after {PATIENCE:g} s", _processor_seconds() - begun)
     told = [x.decode("utf-8", "replace") for x in (ran.stdout, ran.stderr)]
     held = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024  # of the largest child so far
-    return Ran(ran.returncode, told[0], told[1], _processor_seconds() - begun, held)
+    return CoqRun(ran.returncode, told[0], told[1], _processor_seconds() - begun, held)
 
 
 def _processor_seconds() -> float:

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 
 @dataclass(frozen=True)
-class Fixed:
+class Instant:
     """One instant, in s."""
 
     time: Fraction
@@ -20,7 +20,7 @@ class Later:
     time: Fraction
 
 
-Moment: TypeAlias = Fixed | Later
+Moment: TypeAlias = Instant | Later
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from roadproof.evidence.kernel.branch import (
     Means,
     Move,
     NotFoundError,
-    Throughout,
+    TrueInterval,
     Universal,
     two,
     used,
@@ -55,7 +55,7 @@ def _instance(means: Means, branch: Branch) -> Move | None:
         if isinstance(fact, At):
             body = At(fact.sign, moment, f.children(fact.formula)[0])
         else:
-            assert isinstance(fact, Throughout)
+            assert isinstance(fact, TrueInterval)
             body = At(True, moment, fact.formula)
         premises = {universal.number, *used(*guards)}
         return Move("Inst", (universal.number, moment, *guards), premises, [([body], [])])
@@ -64,7 +64,7 @@ def _instance(means: Means, branch: Branch) -> Move | None:
 
 def _guards(fact: Fact, moment: Moment) -> list[tuple[bool, Moment]]:
     """What has to be at least 0, or above it where True, for an instance at ``moment``."""
-    if isinstance(fact, Throughout):
+    if isinstance(fact, TrueInterval):
         return [(False, moment - fact.low), (True, fact.high - moment)]
     assert isinstance(fact, At)
     (interval,) = f.intervals(fact.formula)

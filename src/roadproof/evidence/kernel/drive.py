@@ -56,7 +56,7 @@ def shown(file: DriveFile, library: Library) -> Shown:
     declared = specification.library.bounds
     return Shown(
         file,
-        f.And((f.Named("shown_of_it", (), query.formula), *_apart(file))),
+        f.And((f.Application("shown_of_it", (), query.formula), *_apart(file))),
         {name: values[name] for name in spoken},
         {name: declared[name] == ">" for name in spoken if declared.get(name)},
         {
@@ -73,7 +73,7 @@ def _apart(file: DriveFile) -> Iterator[Formula]:
     seconds = (0, 1)
     interval = f.Interval(t.Number(Fraction(0), seconds), t.Number(file.horizon, seconds))
     for a, b in combinations(sorted(file.drive.vehicles), 2):
-        yield f.Always(interval, f.Named("apart", (a, b), f.Not(boxes_overlap(a, b))))
+        yield f.Always(interval, f.Application("apart", (a, b), f.Not(boxes_overlap(a, b))))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from roadproof.logic.terms import Term
 def binary(formula: Formula) -> Formula:
     """A formula as Coq has it: conjunctions of two, without names and without conjunctions of one or none."""
     match formula:
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             return binary(body)
         case f.Not(body):
             return f.Not(binary(body))

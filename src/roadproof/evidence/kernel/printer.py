@@ -73,7 +73,7 @@ class Printer:
     things: list[str] = field(default_factory=list)
     definitions: list[str] = field(default_factory=list)
     functions: dict[str, list[_Function]] = field(default_factory=dict)
-    applied: dict[tuple[f.Named, bool], tuple[_Function, tuple[str, ...]] | None] = field(
+    applied: dict[tuple[f.Application, bool], tuple[_Function, tuple[str, ...]] | None] = field(
         default_factory=dict
     )
 
@@ -203,7 +203,7 @@ class Printer:
                 return f"F{self._interval(interval, scope)} {self._part(body, scope)}"
             case f.Always(interval, body):
                 return f"G{self._interval(interval, scope)} {self._part(body, scope)}"
-            case f.Named():
+            case f.Application():
                 return self._named(formula, scope)
             case _:
                 assert_never(formula)
@@ -211,7 +211,7 @@ class Printer:
     def _part(self, formula: Formula, scope: Scope) -> str:
         shown = self.formula(formula, scope)
         bare = isinstance(formula, f.Truth | f.Occupies) or (
-            isinstance(formula, f.Named) and self._application(formula, scope) is not None
+            isinstance(formula, f.Application) and self._application(formula, scope) is not None
         )
         return shown if bare else f"({shown})"
 
@@ -247,7 +247,7 @@ class Printer:
 
     # --- definitions -------------------------------------------------------------------------------
 
-    def _named(self, named: f.Named, scope: Scope) -> str:
+    def _named(self, named: f.Application, scope: Scope) -> str:
         found = self._application(named, scope)
         if found is None:
             return self.formula(named.body, scope)
@@ -258,7 +258,7 @@ class Printer:
         ]
         return CLOSE.join([function.word, *words])
 
-    def _application(self, named: f.Named, scope: Scope) -> tuple[_Function, tuple[str, ...]] | None:
+    def _application(self, named: f.Application, scope: Scope) -> tuple[_Function, tuple[str, ...]] | None:
         """The function that means ``named`` applied to these names, printed now if it is new.
 
         None where the body speaks of something bound that is no argument, so that it stands as it is.
@@ -268,7 +268,7 @@ class Printer:
             self.applied[named, bound] = self._known(named, bound) or self._new(named, bound)
         return self.applied[named, bound]
 
-    def _known(self, named: f.Named, bound: bool) -> tuple[_Function, tuple[str, ...]] | None:
+    def _known(self, named: f.Application, bound: bool) -> tuple[_Function, tuple[str, ...]] | None:
         meaning = up_to_variables(named.body)
         for function in self.functions.get(named.name, ()):
             actual = _kept(named, function)
@@ -278,7 +278,7 @@ class Printer:
                 return function, actual
         return None
 
-    def _new(self, named: f.Named, bound: bool) -> tuple[_Function, tuple[str, ...]] | None:
+    def _new(self, named: f.Application, bound: bool) -> tuple[_Function, tuple[str, ...]] | None:
         vehicles, roads = set(vehicles_of(named.body)), free_roads(named.body)
         formals = self.formals.get(named.name.partition("@")[0], ())
         if len(formals) != len(named.arguments):
@@ -345,7 +345,7 @@ def _typed(words: Sequence[str], are_vehicles: Sequence[bool]) -> Iterator[str]:
         yield f"({CLOSE.join([*(word for word, _ in group), ':', sort])})"
 
 
-def _kept(named: f.Named, function: _Function) -> tuple[str, ...] | None:
+def _kept(named: f.Application, function: _Function) -> tuple[str, ...] | None:
     """The arguments of an application that the function has, by place; None where they do not fit."""
     if len(function.arguments) == len(named.arguments):
         return named.arguments

@@ -13,7 +13,7 @@ from roadproof.evidence.kernel.branch import (
     Move,
     NotFoundError,
     Proof,
-    Throughout,
+    TrueInterval,
     Universal,
     two,
     used,
@@ -30,7 +30,7 @@ def read(means: Means, branch: Branch, number: int) -> Proof | Move | None:
     match fact:
         case Belongs():
             return _no_road(branch, number, fact)
-        case Throughout(site=site):
+        case TrueInterval(site=site):
             branch.universals.append(Universal("all", number, site, means.listed(site)))
             return None
         case At():
@@ -70,7 +70,7 @@ def _close(means: Means, branch: Branch, number: int, fact: At) -> Proof | None:
 def _expand(means: Means, branch: Branch, number: int, fact: At) -> Move | None:
     sign, moment, formula = fact.sign, fact.moment, fact.formula
     match formula:
-        case f.Named(_, _, meaning):
+        case f.Application(_, _, meaning):
             times = compared_times(meaning, means.goal.parameters)
             if times is not None and isinstance(meaning, f.Compare):
                 return _timing(number, sign, times)
@@ -95,7 +95,7 @@ def _expand(means: Means, branch: Branch, number: int, fact: At) -> Move | None:
             if sign:
                 name = means.named(site, "u")
                 low = moment + moment_of(interval.low)
-                given: list[Fact] = [At(True, at(name), right), Throughout(low, at(name), left, site)]
+                given: list[Fact] = [At(True, at(name), right), TrueInterval(low, at(name), left, site)]
                 return _exists(branch, number, name, moment, interval, given)
             branch.universals.append(Universal("until", number, site, means.listed(site)))
             return None

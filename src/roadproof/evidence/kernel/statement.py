@@ -141,9 +141,9 @@ def _premises(certificate: Certificate, library: Library, query: Query) -> list[
         raise InputError("what is assumed of motion cannot be told apart into facts")
     words = ["induction" if x.is_induction else "motion" for x in certificate.assumed.axioms]
     named = [("limit", x) for x in limits] + [*zip(words, axioms, strict=True)]
-    return [f.Named(f"{word}_{number}", (), x) for number, (word, x) in enumerate(named, 1)]
+    return [f.Application(f"{word}_{number}", (), x) for number, (word, x) in enumerate(named, 1)]
 
 
 def _literal(atoms: Atoms, name: str, positive: bool) -> Formula:
-    atom = f.Named(name, (), atoms.meaning(name))
+    atom = f.Application(name, (), atoms.meaning(name))
     return atom if positive else f.Not(atom)

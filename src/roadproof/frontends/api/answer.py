@@ -14,7 +14,7 @@ from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
-    from roadproof.frontends.api.checking import Checked, Solver
+    from roadproof.frontends.api.checking import CheckReport, Solver
     from roadproof.recordings.formats.table import Frame
 
 
@@ -118,7 +118,7 @@ class Answer(ABC):
         self._write(Path(folder), pictures)
         return Path(folder)
 
-    def check(self, solver: "Solver" = "z3", jobs: int | None = 1) -> "Checked":
+    def check(self, solver: "Solver" = "z3", jobs: int | None = 1) -> "CheckReport":
         """Check the evidence again, as ``roadproof check`` does with a folder of it.
 
         Raises ``UsageError`` where there is no evidence, as of NONE-WITHIN and UNKNOWN;

@@ -9,18 +9,18 @@ from roadproof.analysis.study.frame import Study
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import Vehicles, basis_of
-from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.library.scenarios import numbers_of
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import Verdict
 
 
-class Answered(Protocol):
+class StudyAnswer(Protocol):
     """An answer with its evidence, if it has any; ``reason`` says why it is in doubt."""
 
     @property
@@ -33,10 +33,10 @@ class Answered(Protocol):
     def certificate(self) -> Certificate | None: ...
 
     @property
-    def drive(self) -> Judged | None: ...
+    def drive(self) -> JudgedDrive | None: ...
 
 
-A = TypeVar("A", bound=Answered)
+A = TypeVar("A", bound=StudyAnswer)
 
 
 class Listing(Study[Any, A], Protocol[A]):
@@ -47,7 +47,7 @@ class Listing(Study[Any, A], Protocol[A]):
         """The names in the order of the index, which is a list of what is recorded."""
 
 
-class Answers(Studied[Listing[A], A]):
+class Answers(StudyAnswers[Listing[A], A]):
     """The answers to a study, each with a verdict."""
 
     @property

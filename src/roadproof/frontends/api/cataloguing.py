@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
-from roadproof.analysis.catalogue.completing import Known, complete
+from roadproof.analysis.catalogue.completing import PriorResults, complete
 from roadproof.analysis.catalogue.courses import Courses, courses_of, of_drive
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete
@@ -18,30 +18,30 @@ from roadproof.analysis.catalogue.ranges import Span
 from roadproof.analysis.catalogue.request import NEAR, Look, Request
 from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
-from roadproof.analysis.catalogue.tested import Tested, all_facts
-from roadproof.analysis.coverage.claims import Covered
+from roadproof.analysis.catalogue.tested import Targets, all_facts
+from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.models import MODELS
 from roadproof.engines.search.question import Objective
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
-from roadproof.frontends.api.completing import Completed, write_completions
+from roadproof.frontends.api.completing import CompletionAnswer, write_completions
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import drivers_of, restricted
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import Vehicles, basis_of, one_of
-from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report import catalogue_drivers as decisions
-from roadproof.frontends.report.catalogue_drives import Drawn, draw_tests
+from roadproof.frontends.report.catalogue_drives import TestPicture, draw_tests
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict
 
 
 @dataclass(frozen=True, repr=False)
-class Catalogued(Studied[Meanings, Kept]):
+class CatalogueAnswer(StudyAnswers[Meanings, Kept]):
     """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
 
     examination: Examination = field(kw_only=True)
@@ -63,7 +63,7 @@ class Catalogued(Studied[Meanings, Kept]):
         return self.examination.tests
 
     @property
-    def tested(self) -> Tested:
+    def tested(self) -> Targets:
         """What is tested, what is missing, and what is to be said of tests."""
         return self.result.tested
 
@@ -115,7 +115,7 @@ class Catalogued(Studied[Meanings, Kept]):
     def evidence(self) -> tuple[Evidence, ...]:
         found = [y for x in all_facts(self.found.answers) for y in (x.certificate, x.drive)]
         claims = gap_answers(self.found.answers).values() if self.tested.gaps.asked else ()
-        found += [x.certificate for x in claims if isinstance(x, Covered)]
+        found += [x.certificate for x in claims if isinstance(x, CoverageResult)]
         for answer in self.result.gap_answers.values():
             found += [] if answer is None else [answer.certificate, *(gap.drive for gap in answer.gaps)]
         return tuple(x for x in found if x is not None)
@@ -159,7 +159,7 @@ class Catalogued(Studied[Meanings, Kept]):
         for k, page in enumerate(draw_tests(self._drawn()), 1):
             yield f"tests-{k}", picture(page)
 
-    def _drawn(self) -> list[Drawn]:
+    def _drawn(self) -> list[TestPicture]:
         """The tests to be drawn, by the first scenario that each shows."""
         targets = [x for x in self.tested.targets if kind_of(x.name) == SCENARIOS]
         groups = {
@@ -175,7 +175,9 @@ class Catalogued(Studied[Meanings, Kept]):
             elif (drive := runs.get(entry.id)) is not None:
                 courses[entry.id] = of_drive(drive.file)
         drawn = [
-            Drawn(test, groups.get(test, "no scenario"), x) for test, x in courses.items() if x is not None
+            TestPicture(test, groups.get(test, "no scenario"), x)
+            for test, x in courses.items()
+            if x is not None
         ]
         order = [*dict.fromkeys(f"{number_in(x.name)} {x.words}" for x in targets), "no scenario"]
         return sorted(drawn, key=lambda x: order.index(x.group))
@@ -207,7 +209,7 @@ class Catalogued(Studied[Meanings, Kept]):
         jobs: Jobs = None,
         progress: Progress | None = None,
         specs: Iterable[str | Path] = (),
-    ) -> Completed:
+    ) -> CompletionAnswer:
         """Write a drive for all that no test shows into a folder, as tests with a ``catalogue.toml``.
 
         ``objective``: what drives are to be like, as for ``witness``. ``spread``: until each class has so
@@ -230,13 +232,13 @@ class Catalogued(Studied[Meanings, Kept]):
         }
         return write_completions(Path(out), made, titles, asked, formats, specs)
 
-    def _known(self) -> Known:
+    def _known(self) -> PriorResults:
         """What is known of targets before drives are looked for."""
         begins = {x.name: [y.begins for y in self.concrete if x.name in y.names] for x in self.tested.targets}
         copies = {x.entry.id for x in self.concrete if x.entry.copy_of in self.tests}
         tests = {x.name: len({*x.tested} - copies) for x in self.tested.targets}
         gaps = {name: x for name, x in self.result.gap_answers.items() if x is not None and x.gaps}
-        return Known(begins, tests, gaps)
+        return PriorResults(begins, tests, gaps)
 
 
 def catalogue(
@@ -260,7 +262,7 @@ def catalogue(
     jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
-) -> Catalogued:
+) -> CatalogueAnswer:
     """Which scenarios and classes the tests in folders and files show, and which nobody tests.
 
     The first spec set of ``using`` is asked about; of further ones there are figures. ``classes``: whether
@@ -284,6 +286,6 @@ def catalogue(
     numbers = wanted.among(among) or numbers_of(wanted.specification)
     asked = drivers_of(wanted, models)
     made = examine(request, basis, numbers, plain.specification, asked, jobs, progress)
-    return Catalogued.asked(
+    return CatalogueAnswer.asked(
         made.study, out, jobs, progress, say, more=lambda: {"examination": made}, begun=begun
     )

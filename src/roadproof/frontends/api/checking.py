@@ -16,7 +16,7 @@ from roadproof.engines.solve.smt import ask
 from roadproof.evidence.answers import check as kept
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
-from roadproof.evidence.finding import Acceptance, Finding, Ruled, exit_code, summary
+from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
 from roadproof.evidence.folder import conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
@@ -36,7 +36,7 @@ Kernel: TypeAlias = Literal["coq"]
 
 
 @dataclass(frozen=True, repr=False)
-class Checked:
+class CheckReport:
     """A finding for each claim, with the definitions of ``library``.
 
     ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
@@ -49,7 +49,7 @@ class Checked:
     solver: Solver | Kernel
     library: Library
     specs: tuple[Path, ...] = ()
-    kernel: kernels.Answered | None = None
+    kernel: kernels.KernelAnswer | None = None
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     strict: bool = False
 
@@ -125,7 +125,7 @@ def check(
     progress: Progress | None = None,
     kernel: Kernel | None = None,
     strict: bool = False,
-) -> Checked:
+) -> CheckReport:
     """Check certificates, drive files and folders of them, as ``roadproof check`` does.
 
     ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
@@ -164,7 +164,7 @@ def check(
         compared = () if again is None else again.compared
         if unchecked := tuple(x for x in told.not_checked if x not in compared):
             left[str(told.folder)] = unchecked
-    return Checked(tuple(findings), kernel or solver, library, beside, answered, left, strict)
+    return CheckReport(tuple(findings), kernel or solver, library, beside, answered, left, strict)
 
 
 def write_sources(
@@ -180,9 +180,9 @@ def write_sources(
     return {by_name[name]: reason for name, reason in reasons.items()}
 
 
-def _asked(given: Sequence[tuple[Path, tuple[Path, ...]]]) -> list[kernels.Asked]:
+def _asked(given: Sequence[tuple[Path, tuple[Path, ...]]]) -> list[kernels.KernelQuestion]:
     names = kernels.names_of(path for path, _ in given)
-    return [kernels.Asked(names[path], path, specs) for path, specs in given]
+    return [kernels.KernelQuestion(names[path], path, specs) for path, specs in given]
 
 
 @dataclass(frozen=True)
@@ -191,7 +191,7 @@ class _Job:
 
     path: Path
     specs: tuple[Path, ...]
-    ruled: Ruled | None
+    ruled: OtherVerdict | None
 
 
 def _doubt(job: _Job, reason: str) -> Finding:

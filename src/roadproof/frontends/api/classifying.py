@@ -12,7 +12,12 @@ from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.former import make_room
 from roadproof.analysis.classify.shares import Shares, count_shares
-from roadproof.analysis.classify.study import Classification, Classified, Decision, classification_of
+from roadproof.analysis.classify.study import (
+    Classification,
+    ClassificationResult,
+    Decision,
+    classification_of,
+)
 from roadproof.analysis.classify.text import claims_text
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.evidence.kinds import Evidence
@@ -21,7 +26,7 @@ from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import Vehicles, basis_of
-from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import classify as report
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
@@ -38,14 +43,14 @@ SECONDS, SEED = 600.0, 1
 
 
 @dataclass(frozen=True, repr=False)
-class Classifications(Studied[Classification, Example | Decision]):
+class Classifications(StudyAnswers[Classification, Example | Decision]):
     """Classes with a drive for each, and proofs that they are a division; ``shares`` in recordings."""
 
     shares: Shares | None = None
     pieces: ClassVar[str] = "groups of drives and claims"
 
     @cached_property
-    def classified(self) -> Classified:
+    def classified(self) -> ClassificationResult:
         """All answers together, in the order of the classes and of the claims."""
         return self.study.classified(self.found.answers, self.shares)
 

@@ -34,7 +34,7 @@ from roadproof.verdict import ExitCode, Verdict
 
 
 @dataclass(frozen=True, repr=False)
-class Compared(Answer):
+class ComparisonAnswer(Answer):
     """Two formulas side by side; ``relation``: equivalent, stronger, weaker, incomparable or unknown."""
 
     specification: Specification
@@ -121,7 +121,7 @@ def compare(
     jobs: int | None = None,
     each: Callable[[str, Direction], object] | None = None,
     stage: Listener | None = None,
-) -> Compared:
+) -> ComparisonAnswer:
     """Which of two formulas implies the other.
 
     Both directions are asked at once where there are two cores, or as many ``jobs`` as are said, each with
@@ -149,4 +149,4 @@ def compare(
     against = taken_from(home.specification, query, other)
     with listening(stage):
         found = compare_queries(search, against, other, processes, each)
-    return Compared(home.specification, found)
+    return ComparisonAnswer(home.specification, found)

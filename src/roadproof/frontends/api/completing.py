@@ -4,12 +4,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from roadproof.analysis.catalogue.asked import Asked
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.completing import Completion
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.listing import FILE_NAME
 from roadproof.analysis.catalogue.showing import Freedom, show
-from roadproof.analysis.catalogue.writing import Listed, catalogue_text
+from roadproof.analysis.catalogue.writing import CatalogueEntry, catalogue_text
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.frontends.api.exporting import ExportedDrive, can_export, export, formats_in
@@ -22,7 +22,7 @@ _TESTS = {"openscenario": ".xosc", "commonroad": ".xml", "csv": ".csv", "highd":
 
 
 @dataclass(frozen=True)
-class Completed:
+class CompletionAnswer:
     """The drives that were written into ``folder``, and what was proved empty or not found.
 
     ``copies``: of drives in formats of other tools, each an entry of the catalogue; ``told``: what is to be
@@ -31,7 +31,7 @@ class Completed:
 
     folder: Path
     completions: tuple[Completion, ...]
-    copies: tuple[Listed, ...] = ()
+    copies: tuple[CatalogueEntry, ...] = ()
     told: tuple[str, ...] = ()
 
     def __str__(self) -> str:
@@ -58,10 +58,10 @@ def write_completions(
     folder: Path,
     completions: Sequence[Completion],
     titles: Mapping[str, str],
-    asked: Asked,
+    asked: Questions,
     formats: Iterable[str] = (),
     specs: Iterable[str | Path] = (),
-) -> Completed:
+) -> CompletionAnswer:
     """Write drives and proofs, copies in ``formats``, and a ``catalogue.toml``; entries that it has are kept.
 
     ``titles``: what each drive is, by its name. Raises ``InputError``, ``UsageError``.
@@ -74,15 +74,16 @@ def write_completions(
             if x.empty is not None:
                 write_whole(folder / PROOFS / f"{x.name}.json", to_json(x.empty).encode())
         entries = [
-            Listed(path.stem, titles[name], path.name, (made[name].target,)) for name, path in files.items()
+            CatalogueEntry(path.stem, titles[name], path.name, (made[name].target,))
+            for name, path in files.items()
         ]
-        copies, told = list[Listed](), list[str]()
+        copies, told = list[CatalogueEntry](), list[str]()
         for name in names:
             for copy in _exported(folder, name, list(files.values()), specs, told):
                 copies += _listed(folder, copy, entries, asked, told)
         if entries:
             write_whole(folder / FILE_NAME, _with_known(folder / FILE_NAME, [*entries, *copies]).encode())
-    return Completed(folder, tuple(completions), tuple(copies), tuple(told))
+    return CompletionAnswer(folder, tuple(completions), tuple(copies), tuple(told))
 
 
 def _write(folder: Path, name: str, made: Completion) -> Path:
@@ -122,8 +123,8 @@ def _free(folder: Path, name: str) -> Path:
 
 
 def _listed(
-    folder: Path, copy: ExportedDrive, entries: Sequence[Listed], asked: Asked, told: list[str]
-) -> Iterator[Listed]:
+    folder: Path, copy: ExportedDrive, entries: Sequence[CatalogueEntry], asked: Questions, told: list[str]
+) -> Iterator[CatalogueEntry]:
     """The entry of a copy, which claims what its original does; it is looked at again as it was written."""
     original = next(x for x in entries if x.id == copy.name)
     path = next((x for x in copy.files if x.name.endswith(_TESTS.get(copy.format, "\0"))), None)
@@ -137,10 +138,10 @@ def _listed(
     if not claims:
         what = shown.fault or f"it shows {', '.join(sorted(shown.names)) or 'no scenario'}"
         told.append(f"{original.id} as {copy.format} is no test of {original.claims[0]}: {what}")
-    yield Listed(f"{original.id} as {copy.format}", original.title, place, claims, original.id)
+    yield CatalogueEntry(f"{original.id} as {copy.format}", original.title, place, claims, original.id)
 
 
-def _with_known(path: Path, entries: Sequence[Listed]) -> str:
+def _with_known(path: Path, entries: Sequence[CatalogueEntry]) -> str:
     """The text of a ``catalogue.toml``, with what it says already."""
     if not path.exists():
         return catalogue_text(entries)

@@ -17,7 +17,7 @@ from roadproof.runtime.files import hold_folder
 
 
 @dataclass(frozen=True)
-class Converted:
+class Conversion:
     """``samples``: of each recording, how many it has; ``files``: what was written; ``sizes`` in bytes."""
 
     folder: Path
@@ -35,7 +35,7 @@ class Converted:
 
 def convert(
     path: str | Path, out: str | Path, jobs: int | None = None, progress: Progress | None = None
-) -> Converted:
+) -> Conversion:
     """Write recordings of any format as Parquet, as they were read and checked, for quicker reading.
 
     Whatever reads recordings reads the folder ``out`` with the same answers. ``path``: a folder of recordings
@@ -48,18 +48,18 @@ def convert(
     if folder.resolve() == (Path(path) if Path(path).is_dir() else Path(path).parent).resolve():
         raise InputError(f"--out {out} is where the recordings are: name another folder")
     with hold_folder(folder):
-        working = pool.work(_Converting(folder), sources, jobs, None, progress, "recordings", fresh=True)
+        working = pool.work(_Converter(folder), sources, jobs, None, progress, "recordings", fresh=True)
         with closing(pool.in_order(working)) as made:
             counts = list(made)
     files = tuple(folder / f"{source.name}{ending}" for source in sources for ending in (HEAD, SAMPLES))
     before = sum(file.stat().st_size for source in sources for file in source.files)
     after = sum(file.stat().st_size for file in files)
     samples = {source.name: count for source, count in zip(sources, counts, strict=True)}
-    return Converted(folder, samples, files, (before, after))
+    return Conversion(folder, samples, files, (before, after))
 
 
 @dataclass(frozen=True)
-class _Converting:
+class _Converter:
     folder: Path
 
     def __call__(self, source: RecordingSource) -> int:

@@ -13,7 +13,7 @@ from roadproof.analysis.coverage.claims import sets_between
 from roadproof.analysis.coverage.classes import GapSurvey
 from roadproof.analysis.coverage.occurring import GapTraffic
 from roadproof.analysis.coverage.study import Coverage
-from roadproof.analysis.coverage.surveyed import Surveyed
+from roadproof.analysis.coverage.surveyed import Survey
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say
@@ -25,7 +25,7 @@ from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import RoadLike, Vehicles, as_road, basis_of
-from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import coverage as report
 from roadproof.library.words import Called, called
 from roadproof.runtime.executors import Jobs, hands_of
@@ -43,14 +43,14 @@ CODES = {
 
 
 @dataclass(frozen=True, repr=False)
-class Coverages(Studied[Coverage, Any]):
+class Coverages(StudyAnswers[Coverage, Any]):
     """What a spec set misses; ``traffic``: how often each class of gaps occurs in recordings, if asked."""
 
     traffic: GapTraffic | None = None
     pieces: ClassVar[str] = "parts of the survey"
 
     @cached_property
-    def surveyed(self) -> Surveyed:
+    def surveyed(self) -> Survey:
         """Claims that there is no gap, the classes of gaps, and the definitions that are needed."""
         return self.study.together(self.found.answers, self.traffic)
 

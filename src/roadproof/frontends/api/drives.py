@@ -11,20 +11,20 @@ from typing import Any, ClassVar
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.frame import put_away
 from roadproof.analysis.study.pool import Progress, Say
-from roadproof.analysis.witnesses import Witnessing, evidence_files, stems
+from roadproof.analysis.witnesses import WitnessStudy, evidence_files, stems
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.question import Engine, Objective, SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.drives import Answer
 from roadproof.evidence.codec import write
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import RoadLike, Vehicles, one_of, searches_of, setting, work_of
-from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.witness import as_line, files_of, kinds
 from roadproof.library.specification import Library
@@ -37,7 +37,7 @@ from roadproof.verdict import ExitCode, Verdict, exit_code
 
 
 @dataclass(frozen=True)
-class Beside:
+class DriveFolder:
     """Writes samples, and ``pictures``, of drives into a folder, where they are not there yet."""
 
     folder: Path
@@ -59,7 +59,7 @@ class Beside:
 
 
 @dataclass(frozen=True, repr=False)
-class Witnesses(Studied[Witnessing, Outcome]):
+class Witnesses(StudyAnswers[WitnessStudy, Outcome]):
     """Searches for drives, and what came out of each."""
 
     pieces: ClassVar[str] = "questions"
@@ -74,7 +74,7 @@ class Witnesses(Studied[Witnessing, Outcome]):
         return tuple(self.found.answers[name] for name in self.study.names)
 
     @property
-    def drives(self) -> tuple[Judged, ...]:
+    def drives(self) -> tuple[JudgedDrive, ...]:
         """All drives that were found."""
         return tuple(drive for outcome in self.outcomes for drive in outcome.drives)
 
@@ -125,7 +125,7 @@ class Witnesses(Studied[Witnessing, Outcome]):
         if folder != self.folder:
             put_away(self.study, {name: self.found.answers[name] for name in self.study.named}, folder)
         for name in self.study.named:
-            Beside(folder, self.library, pictures)(name, self.found.answers[name])
+            DriveFolder(folder, self.library, pictures)(name, self.found.answers[name])
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         drawn = (draw_drive(x.file, self.library) for x in self.drives)
@@ -215,8 +215,8 @@ def witness_all(
         from roadproof.engines.solve.milp import prepare
 
         prepare()  # what every worker needs is imported once, before they are forked
-    beside = None if out is None else Beside(Path(out), searches[0].specification.library, pictures)
-    study = Witnessing(tuple(searches), beside)
+    beside = None if out is None else DriveFolder(Path(out), searches[0].specification.library, pictures)
+    study = WitnessStudy(tuple(searches), beside)
     found = Witnesses.asked(study, out, jobs, progress, say, each)
     if beside is not None:
         left = [(name, x) for name in study.named if beside.lacks(name, x := found.found.answers[name])]
@@ -225,7 +225,7 @@ def witness_all(
     return found
 
 
-def _finish(beside: Beside, of: tuple[str, Outcome]) -> None:
+def _finish(beside: DriveFolder, of: tuple[str, Outcome]) -> None:
     beside(*of)
 
 

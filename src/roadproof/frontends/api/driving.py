@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import RoadLike, as_road, positive
 from roadproof.library.bind import values_with
@@ -77,7 +77,7 @@ def drive(
     lanes: Mapping[str, str] | None = None,
     horizon: Number = 6,
     collisions: bool = False,
-) -> Judged:
+) -> JudgedDrive:
     """A drive out of ``vehicles`` by name (``motion``), on which ``what`` holds; the judge says so.
 
     ``road``: that of the formula where None; ``lanes``: free lanes, each any lane of the road on which it
@@ -102,7 +102,7 @@ def drive(
         here = home.specification
         said = (query.text, end, chosen, told, here.options, place, moving, collisions)
         try:
-            return Judged(DriveFile(scenario, here.set_name, *said), home.library)
+            return JudgedDrive(DriveFile(scenario, here.set_name, *said), home.library)
         except RejectedError as error:
             refused = refused or error
     assert refused is not None  # every road has a lane

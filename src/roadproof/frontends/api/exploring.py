@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from roadproof.analysis.explore.answer import Explorable, Explored, PointFinding, say_nothing
+from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, say_nothing
 from roadproof.analysis.explore.asking import ask_for
 from roadproof.analysis.explore.measure import Sense
 from roadproof.analysis.explore.study import Exploration
@@ -20,7 +20,7 @@ from roadproof.frontends.api.phrases import Term
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import RoadLike, Vehicles, searches_of, setting, work_of
-from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import explore as report
 from roadproof.library.scenarios import are_numbers
 from roadproof.library.values import Number
@@ -28,13 +28,13 @@ from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 
-class Explorations(Studied[Exploration, Explored]):
+class Explorations(StudyAnswers[Exploration, ExplorationResult]):
     """What was explored, a formula after the other."""
 
     pieces = "formulas"
 
     @property
-    def explored(self) -> dict[str, Explored]:
+    def explored(self) -> dict[str, ExplorationResult]:
         """What was found, by the name of the formula."""
         return {name: self.found.answers[name] for name in self.study.named}
 

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
-from roadproof.evidence.judged import Judged, RejectedError
+from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.api.row import Row
 from roadproof.library.specification import Library, load_library, unknown
@@ -17,7 +17,7 @@ from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.runtime.files import hold_folder, write_whole
 
 # A drive, a drive file, or the path of one or of a folder of them.
-DriveLike: TypeAlias = Judged | DriveFile | str | Path
+DriveLike: TypeAlias = JudgedDrive | DriveFile | str | Path
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class ExportedDrive:
 
 
 @dataclass(frozen=True)
-class Exported:
+class Exports:
     """Drives that were written into ``folder``."""
 
     folder: Path
@@ -71,7 +71,7 @@ def export(
     out: str | Path,
     rate: int = 25,
     specs: Iterable[str | Path] = (),
-) -> Exported:
+) -> Exports:
     """Write drives for other tools: openscenario, opendrive, commonroad, highd, csv.
 
     Every drive is judged first. ``to``: a format or several, which go into folders of their own then;
@@ -81,7 +81,7 @@ def export(
     """
     formats = formats_in(to)
     library = load_library(Path(x) for x in specs)
-    given = [drives] if isinstance(drives, str | Path | Judged | DriveFile) else drives
+    given = [drives] if isinstance(drives, str | Path | JudgedDrive | DriveFile) else drives
     files = _named(_judged(given, library))
     subjects = [subject_of(name, k, file, rate) for k, (name, file) in enumerate(files.items(), 1)]
     if not subjects:
@@ -94,7 +94,7 @@ def export(
             for subject in subjects
             for name in formats
         )
-    return Exported(folder, written)
+    return Exports(folder, written)
 
 
 def _write(folder: Path, subject: Subject, name: str, files: Mapping[str, bytes]) -> ExportedDrive:
@@ -127,7 +127,7 @@ def _judged(drives: Iterable[DriveLike], library: Library) -> Iterator[tuple[str
         if isinstance(drive, str | Path):
             for path in _paths(Path(drive)):
                 yield path.stem, _stands(load_drive(path), str(path), library), path
-        elif isinstance(drive, Judged):
+        elif isinstance(drive, JudgedDrive):
             yield _usual_name(drive.file), drive.file, None
         else:
             yield _usual_name(drive), _stands(drive, "drive", library), None
@@ -135,7 +135,7 @@ def _judged(drives: Iterable[DriveLike], library: Library) -> Iterator[tuple[str
 
 def _stands(file: DriveFile, where: str, library: Library) -> DriveFile:
     try:
-        return Judged(file, library).file
+        return JudgedDrive(file, library).file
     except RejectedError as error:
         raise InputError(f"{where}: the drive is not exported, since it does not stand: {error}") from None
 

@@ -14,17 +14,17 @@ from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.coverage.answers import ClassAnswer, names_of
-from roadproof.analysis.coverage.claims import Covered
+from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.coverage.pieces import name_of
 from roadproof.analysis.explore.measure import Sense
-from roadproof.analysis.study.evidence_store import Shelf, inside
+from roadproof.analysis.study.evidence_store import EvidenceStore, inside
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue import SCHEMA
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Acceptance, Finding
-from roadproof.evidence.folder import INDEX, Told
+from roadproof.evidence.folder import INDEX, FolderStatements
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.restricting import drivers_of
@@ -60,7 +60,7 @@ class Comparison:
     compared: tuple[str, ...] = ()
 
 
-def compare(told: Told, jobs: Jobs = None, progress: Progress | None = None) -> Comparison | None:
+def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None = None) -> Comparison | None:
     """What judging the tests again shows of a folder; None where its index is not that of a catalogue."""
     index, library = told.index, told.library
     if index is None or library is None or index.text("schema") != SCHEMA:
@@ -103,7 +103,7 @@ def _definitions(index: Fields, library: Library, request: Request) -> Definitio
 
 def _facts(index: Fields, folder: Path, study: Meanings) -> Iterator[Fact]:
     """The facts of an index with their drives; certificates are checked as files. Raises ``InputError``."""
-    shelf, home = Shelf(None, study.question), study.basis.specification
+    shelf, home = EvidenceStore(None, study.question), study.basis.specification
     for number, content in enumerate(index.items("facts"), 1):
         said = dict(Fields(content, f"{index.where}, fact {number}").content)
         if isinstance(said.get("drive"), str):
@@ -128,7 +128,7 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
         if said.claim not in claims:
             raise InputError(f"{where}: coverage does not rest on this claim")
         claim = claims[said.claim]
-        answer = Covered(claim.query, said.verdict, None, said.reason)
+        answer = CoverageResult(claim.query, said.verdict, None, said.reason)
         yield GAPS + name_of(claim), AboutGaps(answer)
     parts = (
         {}

@@ -14,9 +14,9 @@ from roadproof.evidence.answers.shared import Kernel
 from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certificate_data
 from roadproof.evidence.derivations.prepare import prepare as prepare_drive
 from roadproof.evidence.drive_file import DriveFile, read_drive
-from roadproof.evidence.finding import Acceptance, Ruled
+from roadproof.evidence.finding import Acceptance, OtherVerdict
 from roadproof.evidence.kernel import accept
-from roadproof.evidence.kernel.accept import Judged, Prepared, Ruling, Word
+from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
 from roadproof.evidence.kernel.coq import THEORIES, ready
 from roadproof.evidence.kernel.source import file
 from roadproof.evidence.strict import read_json
@@ -38,7 +38,7 @@ _EXIT = {
 
 
 @dataclass(frozen=True)
-class Asked:
+class KernelQuestion:
     """A certificate, or the file that it or a drive is in; ``home`` is its library, or the files of that."""
 
     name: str
@@ -47,7 +47,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Answered:
+class KernelAnswer:
     """Rulings by name; seconds of the processor for all Coqs, megabytes of the largest, axioms used."""
 
     version: str
@@ -80,7 +80,7 @@ class Answered:
         return f"coqc {self.version}: {self.seconds:.1f} s of processor time, {held}; axioms: {axioms}"
 
 
-def put(asked: Sequence[Asked], jobs: int | None, progress: Progress | None = None) -> Answered:
+def put(asked: Sequence[KernelQuestion], jobs: int | None, progress: Progress | None = None) -> KernelAnswer:
     """What Coq says of each certificate and drive; nothing of others. Raises ``MissingSolverError``."""
     with ready() as coq:
         prepared = prepare_all(asked, jobs, progress)
@@ -94,10 +94,10 @@ def put(asked: Sequence[Asked], jobs: int | None, progress: Progress | None = No
             rulings |= judged.rulings
             seconds += judged.seconds
             megabytes = max(megabytes, judged.megabytes)
-        return Answered(coq.version, rulings, seconds, megabytes)
+        return KernelAnswer(coq.version, rulings, seconds, megabytes)
 
 
-def write(asked: Sequence[Asked], folder: Path, jobs: int | None) -> dict[str, str]:
+def write(asked: Sequence[KernelQuestion], folder: Path, jobs: int | None) -> dict[str, str]:
     """A file for each certificate and drive, with the theories below; Coq is not asked.
 
     Comes back with why there is no file, by name, where there is none.
@@ -131,13 +131,13 @@ def names_of(paths: Iterable[Path]) -> dict[Path, str]:
 
 
 def prepare_all(
-    asked: Sequence[Asked], jobs: int | None, progress: Progress | None = None
-) -> dict[str, Prepared]:
+    asked: Sequence[KernelQuestion], jobs: int | None, progress: Progress | None = None
+) -> dict[str, CoqModule]:
     made = pool.in_order(pool.work(_prepare, asked, jobs, _unprepared, progress, "claims to be printed"))
     return {x.name: y for x, y in zip(asked, made, strict=True) if y is not None}
 
 
-def _prepare(asked: Asked) -> Prepared | None:
+def _prepare(asked: KernelQuestion) -> CoqModule | None:
     content: object = asked.certificate
     if isinstance(content, Path):
         try:
@@ -159,15 +159,15 @@ def _read(path: Path) -> Certificate | DriveFile | None:
     return read_certificate_data(content, str(path)) if schema in SCHEMAS_READ else None
 
 
-def _unprepared(asked: Asked, reason: str) -> Prepared:
-    return Prepared(None, refusal=Ruling(Word.UNKNOWN, reason))
+def _unprepared(asked: KernelQuestion, reason: str) -> CoqModule:
+    return CoqModule(None, refusal=Ruling(Word.UNKNOWN, reason))
 
 
-def _lost(part: Mapping[str, Prepared], reason: str) -> Judged:
-    return Judged({name: Ruling(Word.UNKNOWN, reason) for name in part})
+def _lost(part: Mapping[str, CoqModule], reason: str) -> KernelRulings:
+    return KernelRulings({name: Ruling(Word.UNKNOWN, reason) for name in part})
 
 
-def ruled(ruling: Ruling) -> Ruled:
+def ruled(ruling: Ruling) -> OtherVerdict:
     """What Coq says, for a finding."""
     premises = ruling.premises
     words = "that is a premise" if premises.count == 1 else "that are premises"
@@ -177,4 +177,4 @@ def ruled(ruling: Ruling) -> Ruled:
         *(("that the inductions hold on every trace",) * bool(premises.inductions)),
     )
     unchecked = ("queries for solvers", *untold)
-    return Ruled(_OUTCOMES[ruling.word], ruling.reason, str(ruling), said, unchecked)
+    return OtherVerdict(_OUTCOMES[ruling.word], ruling.reason, str(ruling), said, unchecked)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.analysis.preventable.study import Answer as Found
-from roadproof.analysis.preventable.study import Plate, Preventable, Proved
+from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.gradual import RATE, check_gradual
 from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre
@@ -18,7 +18,7 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of
-from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import preventable as report
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.library.specification import unknown
@@ -30,7 +30,7 @@ _MOST_LINES = 2000
 _MOST_PLATES = 200
 
 
-class Plates(Studied[Preventable, Found]):
+class Plates(StudyAnswers[Preventable, Found]):
     """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas."""
 
     pieces = "plates and lemmas"
@@ -42,10 +42,10 @@ class Plates(Studied[Preventable, Found]):
         return [x for x in found if isinstance(x, Plate)]
 
     @cached_property
-    def lemmas(self) -> list[Proved]:
+    def lemmas(self) -> list[LemmaResult]:
         """The lemmas that the formulas are the boundary, in order."""
         found = [self.found.answers[name] for name in self.study.lemmas]
-        return [x for x in found if isinstance(x, Proved)]
+        return [x for x in found if isinstance(x, LemmaResult)]
 
     @property
     def verdicts(self) -> dict[str, Verdict]:

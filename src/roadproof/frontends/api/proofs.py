@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
-from roadproof.analysis.claims import Answered, Claims, name_of
+from roadproof.analysis.claims import ClaimResult, Claims, name_of
 from roadproof.analysis.proof_folder import claim_in, former_claims, write_claims
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
@@ -23,10 +23,10 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import RoadLike, Vehicles, models_of, one_of, setting, work_of
-from roadproof.frontends.api.studied import Studied
+from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import claims as claims_text
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import MOTION, Under, at_values, is_moving, limits_of, split
+from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split
 from roadproof.library.scenarios import are_numbers, read_numbers
 from roadproof.library.specification import Specification
 from roadproof.library.values import Number
@@ -42,10 +42,10 @@ _PROPERTY = re.compile(r"[A-Z]\d+")
 
 
 @dataclass(frozen=True, repr=False)
-class Proofs(Studied[Claims, Answered]):
+class Proofs(StudyAnswers[Claims, ClaimResult]):
     """Claims, settled. ``kernel``: what Coq says of those that are proved, by claim, where it was asked."""
 
-    kernel: kernels.Answered | None = None
+    kernel: kernels.KernelAnswer | None = None
     pieces: ClassVar[str] = "claims"
 
     @classmethod
@@ -56,7 +56,7 @@ class Proofs(Studied[Claims, Answered]):
         jobs: Jobs = None,
         progress: Progress | None = None,
         say: Say | None = None,
-        each: Callable[[str, Answered], None] | None = None,
+        each: Callable[[str, ClaimResult], None] | None = None,
         more: Callable[[], Mapping[str, Any]] = dict,
         begun: float | None = None,
     ) -> Self:
@@ -68,7 +68,7 @@ class Proofs(Studied[Claims, Answered]):
             return super().asked(study, folder, jobs, progress, say, each, more, begun)
 
     @property
-    def answers(self) -> tuple[Answered, ...]:
+    def answers(self) -> tuple[ClaimResult, ...]:
         """In the order in which they were asked."""
         return tuple(replace(self.found.answers[name_of(x)], task=x) for x in self.study.tasks)
 
@@ -96,7 +96,7 @@ class Proofs(Studied[Claims, Answered]):
         asked = {name_of(x.task): y for x, y in proved if y is not None}
         names = {f"claim_{number}": name for number, name in enumerate(asked, 1)}
         found = kernels.put(
-            [kernels.Asked(x, asked[y], library) for x, y in names.items()],
+            [kernels.KernelQuestion(x, asked[y], library) for x, y in names.items()],
             hands_of(jobs).processes,
             progress,
         )
@@ -239,7 +239,7 @@ def _said(ruling: Ruling) -> KernelSays:
     return KernelSays(says=str(ruling), reason=ruling.reason, premises=ruling.premises.count)
 
 
-def _premises(answer: Answered) -> str:
+def _premises(answer: ClaimResult) -> str:
     """The limits and facts about motion that a proof uses; empty where there is no proof or it uses none."""
     certificate = answer.settled.result.certificate
     return "" if certificate is None else "; ".join(certificate.assumed.premises)
@@ -256,7 +256,7 @@ def ask_kernel(kernel: str, engine: str) -> None:
 
 
 @dataclass(frozen=True)
-class Assuming:
+class Assumptions:
     """What claims are asked under: whether vehicles move, within the limits of models by name, and values of
     parameters (SI).
     """
@@ -265,7 +265,7 @@ class Assuming:
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
     values: Mapping[str, Fraction] = field(default_factory=dict)
 
-    def of(self, home: Definitions, claim: Under) -> Under:
+    def of(self, home: Definitions, claim: AssumedClaim) -> AssumedClaim:
         """``claim`` under this as well. Raises ``InputError``, ``UsageError``."""
         query = claim.query
         for name in self.vehicles:
@@ -275,13 +275,13 @@ class Assuming:
         models = {x: self.vehicles.get(x, self.vehicles.get("")) for x in query.vehicles}
         limits = [x for name, y in models.items() if y is not None for x in limits_of(query, name, y)]
         said = claim.said if is_moving(claim.said) else ((MOTION,) * self.motion + claim.said)
-        return at_values(home.specification, Under(query, (*said, *limits)), self.values)
+        return at_values(home.specification, AssumedClaim(query, (*said, *limits)), self.values)
 
     def of_list(self, specification: Specification, task: Task) -> Task:
         """A claim of the list at these values, too."""
         if not self.values:
             return task
-        claim = Under(read_claim(specification, task.claim))
+        claim = AssumedClaim(read_claim(specification, task.claim))
         return replace(task, assuming=at_values(specification, claim, self.values).said)
 
 
@@ -294,21 +294,21 @@ def assuming(
     assume: str | None,
     vehicles: Vehicles = None,
     values: Mapping[str, Fraction] | None = None,
-) -> Assuming:
+) -> Assumptions:
     """What is assumed, in the words of Python. Raises ``UsageError``, ``InputError``."""
     if assume not in (None, MOTION):
         raise UsageError(f"assume={assume!r}: write {MOTION!r}")
     if vehicles and assume is None:
         raise UsageError("limits of vehicles are assumed with motion only: ask with assume motion")
-    return Assuming(assume is not None, models_of(vehicles), values or {})
+    return Assumptions(assume is not None, models_of(vehicles), values or {})
 
 
 def claims_of(
     home: Definitions,
-    what: Sequence[What | Under],
+    what: Sequence[What | AssumedClaim],
     set_name: str | None,
     expected: ClaimVerdict = Verdict.PROVED,
-    said: Assuming | None = None,
+    said: Assumptions | None = None,
 ) -> Claims:
     """What is claimed: the list's claims in a set, in all where None; or one's own in that of ``home``.
 
@@ -316,8 +316,8 @@ def claims_of(
     """
     named: list[str] = []
     numbers: set[int] = set()
-    own: list[Under] = []
-    assumed = said or Assuming()
+    own: list[AssumedClaim] = []
+    assumed = said or Assumptions()
     for x in what:
         if isinstance(x, str) and _PROPERTY.fullmatch(x):
             named.append(x)
@@ -340,16 +340,16 @@ def claims_of(
     return Claims(tuple(tasks), specifications)
 
 
-def _read(home: Definitions, what: What | Under) -> Under:
-    if isinstance(what, Under):
+def _read(home: Definitions, what: What | AssumedClaim) -> AssumedClaim:
+    if isinstance(what, AssumedClaim):
         return what
     if not isinstance(what, str):
-        return Under(home.read(what))
+        return AssumedClaim(home.read(what))
     said, claim = split(what)
-    return Under(home.read(claim), said)
+    return AssumedClaim(home.read(claim), said)
 
 
-def _own(home: Definitions, claims: list[Under], expected: ClaimVerdict) -> list[Task]:
+def _own(home: Definitions, claims: list[AssumedClaim], expected: ClaimVerdict) -> list[Task]:
     parts = [str(k) if len(claims) > 1 else "" for k in range(1, len(claims) + 1)]
     name = home.specification.set_name
     return [

@@ -45,7 +45,7 @@ _HALF_WRITTEN = re.compile(r"\..+\.(json|csv|txt|md|tex|png|svg)\.[a-z0-9_]{8}")
 
 
 @dataclass(frozen=True, repr=False)
-class Evaluated:
+class Evaluation:
     """The experiment on recordings: what danger arose, and which scenario matches it.
 
     ``failed``: recordings that were left out, and why; ``denied``: answers that the plain recursive
@@ -196,7 +196,7 @@ def evaluate(
     jobs: Jobs = None,
     tell: Say | None = None,
     drivers: Iterable[str] = (),
-) -> Evaluated:
+) -> Evaluation:
     """Find where danger arises in recordings, and match it with scenarios (paper, RQ1 to RQ5).
 
     ``path``: a folder of recordings in one format, or the file of one. ``out``: where results go and are
@@ -253,7 +253,7 @@ def _evaluate(
     pictures: bool,
     jobs: Jobs,
     tell: Say | None,
-) -> Evaluated:
+) -> Evaluation:
     """As ``evaluate``, with what is asked as a value, in a folder that no other run is writing into."""
     hands = hands_of(jobs)
     experiment = Experiment(path, out, settings, hands, keep_going)
@@ -265,7 +265,7 @@ def _evaluate(
         denied = tuple(_denied(experiment, outcome, say)) if check else ()
         write_report(out, outcome.totals, outcome.failed, pictures)
         _sweep(out)
-        return Evaluated(experiment, outcome, denied, out)
+        return Evaluation(experiment, outcome, denied, out)
 
 
 def _denied(experiment: Experiment, outcome: ExperimentOutcome, say: Say) -> Iterator[str]:

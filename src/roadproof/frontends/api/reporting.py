@@ -9,10 +9,10 @@ from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding, summary
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.heading import version
-from roadproof.frontends.api.checking import Checked, Solver, check
+from roadproof.frontends.api.checking import CheckReport, Solver, check
 from roadproof.frontends.api.settings import one_of
 from roadproof.frontends.report.page.page import page as page_of
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Given, Result, read_results
 from roadproof.frontends.report.page.sections import evidence_section, section
 from roadproof.library.scenarios import numbers_of
@@ -30,7 +30,7 @@ class Page:
     text: str
     drives: int
     results: int
-    checked: Checked | None
+    checked: CheckReport | None
 
     @property
     def exit_code(self) -> ExitCode:
@@ -82,7 +82,7 @@ def page(
     )
     library = load_library((*named, *(checked.specs if checked else ())))
     inside = {} if checked is None else {x.where: x for x in checked.findings if x.kind == "index"}
-    book = Book(library, _by_file(checked), inside, _rejected(checked))
+    book = PageContext(library, _by_file(checked), inside, _rejected(checked))
     sections = [section(x, book, _words(x, library)) for x in given.results]
     alone = _alone(given, checked)
     if alone and checked is not None:
@@ -94,7 +94,7 @@ def page(
     return Page(target, text, len(book.documents), len(given.results) + bool(alone), checked)
 
 
-def _made(checked: Checked | None) -> str:
+def _made(checked: CheckReport | None) -> str:
     """Which version made a page, how much evidence was accepted, and what nothing was compared with."""
     made = f"Made by roadproof {version('roadproof')}"
     if checked is None:
@@ -103,7 +103,7 @@ def _made(checked: Checked | None) -> str:
     return "; ".join([made, summary(checked.findings, checked.solver), *left]) + "."
 
 
-def _rejected(checked: Checked | None) -> dict[str, list[str]]:
+def _rejected(checked: CheckReport | None) -> dict[str, list[str]]:
     """What is not accepted of each index itself, or not decided, in words."""
     found: dict[str, list[str]] = {}
     for x in () if checked is None else checked.findings:
@@ -112,7 +112,7 @@ def _rejected(checked: Checked | None) -> dict[str, list[str]]:
     return found
 
 
-def _by_file(checked: Checked | None) -> dict[Path, Finding]:
+def _by_file(checked: CheckReport | None) -> dict[Path, Finding]:
     """What was found of each file of evidence; of several claims of one file the first that is refused."""
     found: dict[Path, Finding] = {}
     for finding in () if checked is None else checked.findings:
@@ -125,7 +125,7 @@ def _by_file(checked: Checked | None) -> dict[Path, Finding]:
     return found
 
 
-def _alone(given: Given, checked: Checked | None) -> list[Finding]:
+def _alone(given: Given, checked: CheckReport | None) -> list[Finding]:
     """The findings on files of evidence that no index names."""
     wanted = {path.resolve() for path in given.evidence}
     findings = () if checked is None else checked.findings

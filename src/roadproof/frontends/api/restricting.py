@@ -84,6 +84,6 @@ def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iter
                 "from definitions that have one"
             )
         for part in subformulas(home.read(one).formula):
-            number = number_in(part.name.partition("@")[0]) if isinstance(part, f.Named) else None
+            number = number_in(part.name.partition("@")[0]) if isinstance(part, f.Application) else None
             if number is not None:
                 yield number

@@ -11,7 +11,7 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Say
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.specification import bundled_library
 from roadproof.recordings.export.road_toml import road_toml
 from roadproof.recordings.formats.table import Frame, frame_of
@@ -25,7 +25,7 @@ from roadproof.runtime.files import write_whole
 
 
 @dataclass(frozen=True)
-class Simulated:
+class Simulation:
     """Recordings that were written to ``folder``; ``planted``: which drive was woven in where.
 
     ``left_out``: drives that could not be planted, and why.
@@ -53,10 +53,10 @@ def simulate(
     section: float = 420.0,
     ramp: Ramp = "none",
     ramp_flow: float = 400.0,
-    plant: Iterable[Judged | DriveFile] = (),
+    plant: Iterable[JudgedDrive | DriveFile] = (),
     jobs: int | None = None,
     tell: Say | None = None,
-) -> Simulated:
+) -> Simulation:
     """Write simulated traffic in highD's format; the same numbers give the same files.
 
     ``lanes`` each way, ``flow`` in vehicles an hour and way, ``section`` in m. ``ramp``: the lower
@@ -64,7 +64,7 @@ def simulate(
     XX_road.toml describes. ``plant``: drives that are woven in where there is no ramp (``witness`` finds
     some). Raises ``InputError``, ``UsageError``.
     """
-    drives = tuple(x.file if isinstance(x, Judged) else x for x in plant)
+    drives = tuple(x.file if isinstance(x, JudgedDrive) else x for x in plant)
     traffic = Traffic(
         seconds=seconds,
         lanes=lanes,
@@ -101,7 +101,7 @@ def simulate(
         writer.writerow(PLANTED_COLUMNS)
         writer.writerows(rows_of(truths))
         write_whole(folder / "planted.csv", text.getvalue().encode())
-    return Simulated(folder, recordings, tuple(truths), tuple(left_out))
+    return Simulation(folder, recordings, tuple(truths), tuple(left_out))
 
 
 def _make_one(

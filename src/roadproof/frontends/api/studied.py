@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from roadproof.analysis.study.evidence_store import write_index
-from roadproof.analysis.study.frame import Conducted, Study, conduct, put_away
+from roadproof.analysis.study.frame import Study, StudyResult, conduct, put_away
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.restriction import restriction_of
 from roadproof.frontends.api.answer import Answer, Picture
@@ -21,11 +21,11 @@ A = TypeVar("A")
 
 
 @dataclass(frozen=True, repr=False)
-class Studied(Answer, Generic[S, A]):
+class StudyAnswers(Answer, Generic[S, A]):
     """The answers to a ``study``; ``folder`` is where they were kept as they came, if anywhere."""
 
     study: S
-    found: Conducted[A]
+    found: StudyResult[A]
     seconds: float
     folder: Path | None = None
     pieces: ClassVar[str] = "pieces"

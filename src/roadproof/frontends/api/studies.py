@@ -20,7 +20,7 @@ from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import Vehicles, basis_of, one_of, positive
-from roadproof.frontends.api.studied import Studied, drawn
+from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
@@ -33,7 +33,7 @@ from roadproof.verdict import ExitCode, Verdict, exit_code
 _Same: TypeAlias = Literal["same", "any"]
 
 
-class Overlaps(Studied[Overlap, PairVerdict]):
+class Overlaps(StudyAnswers[Overlap, PairVerdict]):
     """Which pairs of scenarios can hold together: a drive, or a proof that there is none, for each."""
 
     pieces = "groups of pairs"
@@ -141,7 +141,7 @@ def overlap(
     return Overlaps.asked(Overlap(basis, pairs, Meeting(lanes, roles, start)), out, jobs, progress, say)
 
 
-class Orders(Studied[Ordering, Any]):
+class Orders(StudyAnswers[Ordering, Any]):
     """Which scenarios imply which: every implication proved, every other one refuted by a drive."""
 
     pieces = "families of scenarios"
@@ -206,7 +206,7 @@ def order(
     return Orders.asked(Ordering(basis, kinds), out, jobs, progress, say)
 
 
-class Redundancies(Studied[Redundancy, ChangeFindings]):
+class Redundancies(StudyAnswers[Redundancy, ChangeFindings]):
     """Which parts of scenarios could be left out, and what shows the others needed."""
 
     pieces = "scenarios"

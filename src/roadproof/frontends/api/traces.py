@@ -14,7 +14,7 @@ from roadproof.evidence.answers.monitor import Override, Place, Truth, View
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.row import Row
@@ -25,7 +25,7 @@ from roadproof.library.query import Query
 from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner
 from roadproof.library.specification import Library
 from roadproof.library.values import Number
-from roadproof.recordings.evaluate.observed import Observed, Spans, observe_drive, observe_samples
+from roadproof.recordings.evaluate.observed import FirstAnswer, Spans, observe_drive, observe_samples
 from roadproof.recordings.evaluate.one_trace import (
     OneTrace,
     is_pair,
@@ -41,7 +41,7 @@ from roadproof.semantics.sampled.answers import Convention
 from roadproof.verdict import ExitCode
 
 # A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
-TraceLike: TypeAlias = str | Path | Judged | DriveFile | OneTrace | Mapping[str, Any] | Frame
+TraceLike: TypeAlias = str | Path | JudgedDrive | DriveFile | OneTrace | Mapping[str, Any] | Frame
 _CODES: dict[Truth, ExitCode] = {
     "true": ExitCode.AS_EXPECTED,
     "false": ExitCode.UNEXPECTED,
@@ -50,11 +50,11 @@ _CODES: dict[Truth, ExitCode] = {
 
 
 @dataclass(frozen=True, repr=False)
-class Monitored:
+class MonitorAnswer:
     """The answer on one trace, with the definitions of ``library``; ``place`` says on which trace."""
 
     library: Library
-    observed: Observed
+    observed: FirstAnswer
     place: Place
     notes: tuple[str, ...] = ()
 
@@ -151,7 +151,7 @@ def monitor(
     dt: Number = Fraction(1, 25),
     frames: tuple[int | None, int | None] = (None, None),
     end: Convention = "truncated",
-) -> Monitored:
+) -> MonitorAnswer:
     """Where a formula holds on one trace.
 
     ``on``: a drive (judged exactly in dense time unless ``view`` is "recorded"; then sampled every ``dt`` s),
@@ -166,8 +166,8 @@ def monitor(
     one_of("end", end, Convention)
     if isinstance(on, str | Path) and str(on).endswith(".json"):
         return _on_drive(what, load_drive(Path(on)), str(on), using, lanes or {}, view, dt, end)
-    if isinstance(on, Judged | DriveFile):
-        file = on.file if isinstance(on, Judged) else on
+    if isinstance(on, JudgedDrive | DriveFile):
+        file = on.file if isinstance(on, JudgedDrive) else on
         return _on_drive(what, file, "drive", using, lanes or {}, view, dt, end)
     if view == "dense":
         raise UsageError("--view dense: only a drive file says what is true between samples")
@@ -211,7 +211,7 @@ def _on_drive(
     view: str | None,
     dt: Number,
     end: Convention,
-) -> Monitored:
+) -> MonitorAnswer:
     home = using or of_file(file)
     values = values_with(home.library, {**file.values, **home.values})
     step = positive("dt", dt, "s")
@@ -224,7 +224,7 @@ def _on_drive(
     lanes = _lanes(home, query, number, samples, file.lanes, asked)
     formula = bind(query.formula, file.road, lanes, values)
     observed = observe_drive(query.text, formula, file.drive, file.horizon, step)
-    return Monitored(home.library, observed, _place(samples, home, lanes, overruled))
+    return MonitorAnswer(home.library, observed, _place(samples, home, lanes, overruled))
 
 
 def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Override]:
@@ -248,13 +248,13 @@ def _on_trace(
     asked: Mapping[str, str],
     known: Mapping[str, str],
     end: Convention,
-) -> Monitored:
+) -> MonitorAnswer:
     number, query = home.numbered(what)
     lanes = _lanes(home, query, number, samples, known, asked)
     formula = bind(query.formula, samples.road, lanes, values)
     refuse_unmeasured(samples, formula)
     observed = observe_samples(query.text, formula, samples.batch, end)
-    return Monitored(home.library, observed, _place(samples, home, lanes), samples.notes)
+    return MonitorAnswer(home.library, observed, _place(samples, home, lanes), samples.notes)
 
 
 def _place(

@@ -15,18 +15,18 @@ from roadproof.frontends.cli.search_options import named
 if TYPE_CHECKING:
     from roadproof.analysis.study.pool import Progress, Say
     from roadproof.frontends.api.definitions import Definitions
-    from roadproof.frontends.api.studied import Studied
-    from roadproof.runtime.executors import Hands
+    from roadproof.frontends.api.studied import StudyAnswers
+    from roadproof.runtime.executors import Executor
 
 A = TypeVar("A")
 
 
-class Asking(TypedDict):
+class RunOptions(TypedDict):
     """How much work, how many processes, where answers are kept, and who is told how far it is."""
 
     effort: float
     timeout: float | None
-    jobs: "Hands"
+    jobs: "Executor"
     out: Path | None
     vehicles: dict[str, str]
     progress: "Progress"
@@ -50,14 +50,14 @@ def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definiti
     return Definitions(library.select(sets[0], options), tuple(sets), values)
 
 
-class Restricting(TypedDict):
+class DriverOptions(TypedDict):
     """The driver models of --preventable and --unpreventable."""
 
     preventable: str | None
     unpreventable: str | None
 
 
-def restricting(args: argparse.Namespace) -> Restricting:
+def restricting(args: argparse.Namespace) -> DriverOptions:
     """What is asked of driver models; nothing where a command does not ask."""
     return {
         "preventable": getattr(args, "preventable", None),
@@ -65,7 +65,7 @@ def restricting(args: argparse.Namespace) -> Restricting:
     }
 
 
-def asking(args: argparse.Namespace, folder: Path | None) -> Asking:
+def asking(args: argparse.Namespace, folder: Path | None) -> RunOptions:
     """What every long question is told besides what is asked."""
     return {
         "effort": args.effort,
@@ -91,7 +91,7 @@ def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[
     return hear
 
 
-def hand_over(args: argparse.Namespace, found: "Studied[Any, Any]") -> int:
+def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any]") -> int:
     """JSON, what is written to be looked at, and the text of an answer; its exit code."""
     if args.json:
         write_json(found.as_data(), args.json)

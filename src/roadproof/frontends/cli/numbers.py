@@ -10,7 +10,7 @@ from roadproof.frontends.cli.options import add_quiet_option
 
 if TYPE_CHECKING:
     from roadproof.runtime.budget import Effort
-    from roadproof.runtime.executors import Hands
+    from roadproof.runtime.executors import Executor
 
 _DECIMAL = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?")
 _WHOLE = re.compile(r"[0-9]{1,20}")
@@ -72,13 +72,13 @@ def add_sharing_options(parser: argparse.ArgumentParser) -> None:
         )
 
 
-def read_hands(args: argparse.Namespace) -> "Hands":
+def read_hands(args: argparse.Namespace) -> "Executor":
     """Who does the work, by ``--jobs``, and where a command has them ``--shard`` and ``--cluster``.
 
     Raises ``UsageError``.
     """
     from roadproof.frontends.cli.progress import note
-    from roadproof.runtime.executors import Cluster, Hands, Shard
+    from roadproof.runtime.executors import Cluster, Executor, Shard
 
     said = vars(args)
     files = {name: said.get(f"tls_{name}") for name in ("ca", "cert", "key")}
@@ -91,7 +91,7 @@ def read_hands(args: argparse.Namespace) -> "Hands":
     if share is not None and args.json is not None:
         raise UsageError("--shard has no answer to the whole: leave --json to the run without it")
     cluster = None if address is None else Cluster(address, files["ca"], files["cert"], files["key"], note)
-    return Hands(args.jobs, cluster, None if share is None else Shard.read(share))
+    return Executor(args.jobs, cluster, None if share is None else Shard.read(share))
 
 
 def decimal(option: str) -> Callable[[str], float]:

@@ -22,7 +22,7 @@ from roadproof.runtime.progress import listening
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
-    from roadproof.analysis.claims import Answered, Claims
+    from roadproof.analysis.claims import ClaimResult, Claims
 
 SUMMARY = "prove claims for all time, or refute them; without a claim, the template properties"
 
@@ -119,7 +119,7 @@ def run(args: argparse.Namespace) -> int:
     if args.kernel is not None:
         ask_kernel(args.kernel, args.engine)
 
-    def show(name: str, answer: "Answered") -> None:
+    def show(name: str, answer: "ClaimResult") -> None:
         clear()
         print_at_once(details(answer, asked) if asked.are_own else line(answer), args.out is not None)
 

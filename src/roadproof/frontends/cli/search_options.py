@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from roadproof.engines.search.question import Engine
 
 
-class Where(TypedDict):
+class SearchPlace(TypedDict):
     """Where, with whom and for how long is searched, as ``api.settings.setting`` takes it."""
 
     road: str | None
@@ -24,7 +24,7 @@ class Where(TypedDict):
     collisions: bool
 
 
-class How(TypedDict):
+class SearchEffort(TypedDict):
     """By whom is searched, and how much work is given."""
 
     engine: "Engine"
@@ -74,7 +74,7 @@ def add_search_options(parser: argparse.ArgumentParser, units: float = 60.0) -> 
     add_effort_options(parser, units)
 
 
-def where_asked(args: argparse.Namespace) -> Where:
+def where_asked(args: argparse.Namespace) -> SearchPlace:
     """What the options say of where, with whom and for how long. Raises ``UsageError``."""
     from roadproof.library.scenarios import LANE
 
@@ -89,7 +89,7 @@ def where_asked(args: argparse.Namespace) -> Where:
     }
 
 
-def how_asked(args: argparse.Namespace) -> How:
+def how_asked(args: argparse.Namespace) -> SearchEffort:
     """What the options say of engine, solver and work."""
     return {"engine": args.engine, "solver": args.solver, "effort": args.effort, "timeout": args.timeout}
 

@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.analysis.witnesses import Witnessing
+    from roadproof.analysis.witnesses import WitnessStudy
     from roadproof.engines.search.question import SearchOptions
     from roadproof.frontends.api.drives import files_written, witness_all
     from roadproof.frontends.api.restricting import restricted
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
     home = restricted(read_definitions(args, chosen_sets(args)), what=what, **restricting(args))
     means = SearchOptions(args.objective, args.engine, args.solver, read_effort(args))
     searches = list(searches_of(home, what, setting(home, **where_asked(args)), means, args.count))
-    named = Witnessing(tuple(searches)).named
+    named = WitnessStudy(tuple(searches)).named
     pictures, plain = not args.no_pictures, args.json != "-"
     written: list[str] = []
 

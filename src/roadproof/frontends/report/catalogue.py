@@ -12,7 +12,7 @@ from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, Figure, kin
 from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.ranges import Span
 from roadproof.analysis.catalogue.result import Result
-from roadproof.analysis.catalogue.tested import Remark, Target, Tested
+from roadproof.analysis.catalogue.tested import Remark, Target, Targets
 from roadproof.frontends.report import catalogue_drivers
 from roadproof.frontends.report.figures import as_bytes, count_axis, make_figure
 from roadproof.library.scenarios import number_in
@@ -24,7 +24,7 @@ _INCH_A_LETTER = 0.06  # of labels at 7 points
 
 def as_text(
     tests: int,
-    found: Tested,
+    found: Targets,
     notes: Sequence[str],
     counted: Sequence[Figure],
     drivers: Iterable[str] = (),
@@ -40,7 +40,7 @@ def as_text(
     return "\n".join([*lines, *(f"note: {x}" for x in notes), _summary(found)])
 
 
-def kinds(found: Tested) -> dict[str, list[Target]]:
+def kinds(found: Targets) -> dict[str, list[Target]]:
     """The targets by what they are."""
     return {kind: [x for x in found.targets if kind_of(x.name) == kind] for kind in (SCENARIOS, CLASSES)}
 
@@ -54,7 +54,7 @@ def _figures(counted: Sequence[Figure]) -> Iterator[str]:
         yield f"{what}: {x.tested} of {x.total} are tested"
 
 
-def _gaps(found: Tested) -> Iterator[str]:
+def _gaps(found: Targets) -> Iterator[str]:
     """What is known of gaps beyond figures."""
     gaps = found.gaps
     if gaps.empty:
@@ -100,7 +100,7 @@ def figures_csv(counted: Sequence[Figure]) -> str:
     return out.getvalue()
 
 
-def headings(found: Tested) -> dict[str, Sequence[Remark]]:
+def headings(found: Targets) -> dict[str, Sequence[Remark]]:
     """The remarks under what is wrong."""
     return {
         "readers contradict each other": found.contradictions,
@@ -122,7 +122,7 @@ def _listed(heading: str, lines: Sequence[str]) -> Iterator[str]:
             yield f"  … {len(lines) - MOST_TOLD} more"
 
 
-def _summary(found: Tested) -> str:
+def _summary(found: Targets) -> str:
     wrong = [
         f"{len(those)} {word}"
         for those, word in (
@@ -136,7 +136,7 @@ def _summary(found: Tested) -> str:
     return ", ".join(wrong) or "complete"
 
 
-def as_csv(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> str:
+def as_csv(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> str:
     """A row a test, a column a scenario, class or gap: ``x`` shown or implied, ``o`` by some drives of it.
 
     ``in_force``: what was asked otherwise than by default, which the first cell says.
@@ -153,7 +153,7 @@ def _mark(test: str, target: Target) -> str:
     return "x" if test in target.tested else "o" if test in target.possible else ""
 
 
-def as_junit(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> str:
+def as_junit(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> str:
     """A suite of the tests, which fail where they are not what they claim, and one of all targets.
 
     ``in_force``: what was asked otherwise than by default, a property of each suite.
@@ -182,7 +182,7 @@ def _suite(suites: xml.Element, name: str, cases: dict[str, str], in_force: Sequ
             xml.SubElement(element, "failure", message=told)
 
 
-def draw_matrix(tests: Sequence[str], found: Tested, in_force: Sequence[str] = ()) -> dict[str, bytes]:
+def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> dict[str, bytes]:
     """Tests over scenarios and gaps, how many tests each class has, and each class of gaps, if that is asked:
     ``{"png": …, "svg": …}``.
     """

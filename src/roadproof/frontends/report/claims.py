@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby
 
-from roadproof.analysis.claims import Answered, Claims
+from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel
-from roadproof.library.motion import Assumed, is_moving, statement
+from roadproof.library.motion import Assumption, is_moving, statement
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Specification
 from roadproof.library.words import called_by, legend
@@ -16,7 +16,7 @@ from roadproof.world.motion import state_at
 from roadproof.world.road import Road
 
 
-def line(answered: Answered) -> str:
+def line(answered: ClaimResult) -> str:
     """The verdict in one line."""
     task = answered.task
     scenario = "" if task.scenario is None else f" {task.scenario}"
@@ -26,13 +26,13 @@ def line(answered: Answered) -> str:
     return f"{task.id}{scenario} {task.set_name}{at}: {verdict(answered)}{mark} ({seconds:.2f} s)"
 
 
-def verdict(answered: Answered) -> str:
+def verdict(answered: ClaimResult) -> str:
     """The verdict; of a claim that is refuted also by what, since not every trace can be driven."""
     by = answered.settled.refuted_by
     return str(answered.verdict) if by is None else f"{answered.verdict} by a {by}"
 
 
-def table(answered: Sequence[Answered], specification: Specification) -> str:
+def table(answered: Sequence[ClaimResult], specification: Specification) -> str:
     """A line for each property and set; below it what was not as expected.
 
     At the end at which values claims were settled, and what scenarios are called.
@@ -58,7 +58,7 @@ def table(answered: Sequence[Answered], specification: Specification) -> str:
     return "\n".join(rows)
 
 
-def details(answered: Answered, asked: Claims) -> str:
+def details(answered: ClaimResult, asked: Claims) -> str:
     """The verdict with its evidence: certificate in numbers, drive or trace.
 
     Also what scenarios are called, and what is supposed of own signals.
@@ -97,12 +97,12 @@ def _values_of(certificate: Certificate) -> str:
     return pinned + (f", for all {', '.join(certificate.assumptions)}" if certificate.assumptions else "")
 
 
-def _show_premises(assumed: Assumed) -> list[str]:
+def _show_premises(assumed: Assumption) -> list[str]:
     """The premises of a certificate: limits, facts about motion and inductions; and the other limits."""
     return [*_show_assumed(assumed), *(f"  by induction over time: {x}" for x in assumed.inductions)]
 
 
-def _show_assumed(assumed: Assumed) -> list[str]:
+def _show_assumed(assumed: Assumption) -> list[str]:
     """The limits and facts about motion that are premises, and the limits that are none."""
     if not is_moving(assumed.said):
         return []
@@ -115,7 +115,7 @@ def _show_assumed(assumed: Assumed) -> list[str]:
     return lines + ([f"  limits not used: {', '.join(assumed.unused)}"] if assumed.unused else [])
 
 
-def _show_drive(judged: Judged) -> list[str]:
+def _show_drive(judged: JudgedDrive) -> list[str]:
     """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
     named = judged.file.lanes
     lanes = named[LANE] if set(named) == {LANE} else ", ".join(f"{k}={v}" for k, v in named.items())

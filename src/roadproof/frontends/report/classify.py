@@ -7,7 +7,7 @@ from typing import Any
 
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
-from roadproof.analysis.classify.study import Classified
+from roadproof.analysis.classify.study import ClassificationResult
 from roadproof.analysis.classify.text import HEADINGS
 from roadproof.frontends.report.figures import as_bytes, count_axis, legend_beside, make_figure
 from roadproof.library.words import Called
@@ -108,7 +108,7 @@ def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     return ["  ".join(x.ljust(width) for x, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
-def summary(found: Classified) -> Iterator[str]:
+def summary(found: ClassificationResult) -> Iterator[str]:
     """What is proved, what was found, what is in doubt, and whether recordings agree."""
     count = len(found.examples)
     verdicts = Counter(x.verdict for x in found.examples)

@@ -7,7 +7,7 @@ from pathlib import Path
 from roadproof.analysis.coverage.answers import ClassAnswer, Gap
 from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.occurring import GapTraffic
-from roadproof.analysis.coverage.surveyed import Surveyed
+from roadproof.analysis.coverage.surveyed import Survey
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
 from roadproof.library.specification import Library
@@ -16,7 +16,7 @@ from roadproof.runtime.files import write_whole
 from roadproof.verdict import Verdict
 
 
-def as_text(surveyed: Surveyed, name: str, seconds: float, words: Called) -> str:
+def as_text(surveyed: Survey, name: str, seconds: float, words: Called) -> str:
     """All that is known of the set ``name``, after so many seconds."""
     lines: list[str] = []
     if surveyed.classes:

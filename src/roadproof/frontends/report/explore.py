@@ -6,8 +6,8 @@ from itertools import pairwise
 from textwrap import wrap
 from typing import Any, TypeAlias
 
-from roadproof.analysis.explore.answer import Boundary, Explorable, Explored, Extreme, PointFinding
-from roadproof.analysis.explore.knobs import Knob
+from roadproof.analysis.explore.answer import Boundary, Explorable, ExplorationResult, Extreme, PointFinding
+from roadproof.analysis.explore.knobs import Variable
 from roadproof.analysis.explore.record import ends_of
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes, legend_beside, make_figure
@@ -34,7 +34,7 @@ def _meaning(verdict: Verdict, findings: Sequence[PointFinding]) -> str:
     return _THERE if there else _MEANING[verdict]
 
 
-def as_text(asked: Explorable, explored: Explored) -> str:
+def as_text(asked: Explorable, explored: ExplorationResult) -> str:
     """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below."""
     notes: Notes = {}
     lines = [_title(asked)]
@@ -70,13 +70,13 @@ def _number(finding: PointFinding, notes: Notes) -> str:
     return f"[{notes.setdefault(finding.reason, len(notes) + 1)}]"
 
 
-def _strip(asked: Explorable, explored: Explored) -> list[str]:
+def _strip(asked: Explorable, explored: ExplorationResult) -> list[str]:
     [knob] = asked.knobs
     signs = "".join(SIGNS[x.verdict] for x in explored.findings)
     return [f"  {knob.name}  {show(knob.low)} {signs} {show(knob.high)} {_unit(knob.unit)}"]
 
 
-def _map(asked: Explorable, explored: Explored) -> list[str]:
+def _map(asked: Explorable, explored: ExplorationResult) -> list[str]:
     """Rows are values of the second knob, the greatest on top; columns those of the first."""
     across, up = asked.knobs
     columns, rows = (knob.values(asked.steps) for knob in asked.knobs)
@@ -105,7 +105,7 @@ def _legend(findings: Sequence[PointFinding], notes: Notes) -> list[str]:
     return lines
 
 
-def _ends(knob: Knob, explored: Explored, notes: Notes) -> list[str]:
+def _ends(knob: Variable, explored: ExplorationResult, notes: Notes) -> list[str]:
     """The least and the greatest value with a drive, and what is beyond; then gaps between."""
     held = [x.at[0] for x in explored.findings if x.found]
     held += [x.held.at[0] for x in explored.boundaries]
@@ -152,7 +152,7 @@ def _extreme(asked: Explorable, extreme: Extreme, notes: Notes) -> list[str]:
     return [line if missed is None else f"{line}; {_beyond(missed, extreme.surely, unit, notes)}"]
 
 
-def draw_all(name: str, asked: Explorable, explored: Explored) -> Iterator[tuple[str, bytes]]:
+def draw_all(name: str, asked: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, bytes]]:
     """Pictures of an exploration, and of the drives at its boundaries and extremes, with names of files."""
     library = asked.search.specification.library
     if explored.findings:
@@ -164,7 +164,7 @@ def draw_all(name: str, asked: Explorable, explored: Explored) -> Iterator[tuple
                 yield f"{file}.{kind}", content
 
 
-def draw_exploration(asked: Explorable, explored: Explored) -> dict[str, bytes]:
+def draw_exploration(asked: Explorable, explored: ExplorationResult) -> dict[str, bytes]:
     """The strip or map of an exploration as ``{"png": …, "svg": …}``, measures over the strip.
 
     Raises ``InputError`` without matplotlib.
@@ -172,7 +172,7 @@ def draw_exploration(asked: Explorable, explored: Explored) -> dict[str, bytes]:
     return (_draw_strip if len(asked.knobs) == 1 else _draw_map)(asked, explored)
 
 
-def _draw_strip(asked: Explorable, explored: Explored) -> dict[str, bytes]:
+def _draw_strip(asked: Explorable, explored: ExplorationResult) -> dict[str, bytes]:
     [knob] = asked.knobs
     measured = [x for x in explored.extremes if x.best is not None and x.point]
     figure, made = make_figure([2.6, 0.7, 0.7] if measured else [0.7, 0.7], width=8.0)
@@ -229,7 +229,7 @@ def _draw_measures(axes: Any, measured: Sequence[Extreme]) -> None:
     legend_beside(axes)
 
 
-def _draw_map(asked: Explorable, explored: Explored) -> dict[str, bytes]:
+def _draw_map(asked: Explorable, explored: ExplorationResult) -> dict[str, bytes]:
     across, up = asked.knobs
     columns, rows = (knob.values(asked.steps) for knob in asked.knobs)
     found = {x.at: x for x in explored.findings}
@@ -257,7 +257,7 @@ def _draw_map(asked: Explorable, explored: Explored) -> dict[str, bytes]:
     return as_bytes(figure)
 
 
-def _finish(figure: Any, below: Any, asked: Explorable, explored: Explored) -> None:
+def _finish(figure: Any, below: Any, asked: Explorable, explored: ExplorationResult) -> None:
     """Title, and what colours mean."""
     present = {x.verdict for x in explored.findings}
     for verdict in (v for v in SIGNS if v in present):

@@ -5,12 +5,12 @@ from textwrap import wrap
 from typing import Any
 
 from roadproof.frontends.report.figures import as_bytes, legend_beside, make_figure, name_rows
-from roadproof.recordings.evaluate.observed import Observed
+from roadproof.recordings.evaluate.observed import FirstAnswer
 
 _TRUE, _UNDECIDED, _WIDEST = "#4b8b3b", "#bbbbbb", 60
 
 
-def as_text(observed: Observed) -> str:
+def as_text(observed: FirstAnswer) -> str:
     """Verdict, how it is meant, and a line for each part."""
     lines = [f"{observed.formula}: {observed.verdict}", f"  {_promise(observed)}", f"  {_margin(observed)}"]
     lines.append("when true, in seconds from the start:")
@@ -23,7 +23,7 @@ def as_text(observed: Observed) -> str:
     return "\n".join(lines)
 
 
-def _promise(observed: Observed) -> str:
+def _promise(observed: FirstAnswer) -> str:
     if observed.view == "dense":
         return "view: dense, every instant of an unbounded drive, judged exactly"
     other = "clip" if observed.convention == "truncated" else "truncated"
@@ -33,7 +33,7 @@ def _promise(observed: Observed) -> str:
     )
 
 
-def _margin(observed: Observed) -> str:
+def _margin(observed: FirstAnswer) -> str:
     low, high = observed.margin
     grid = f", on a grid of {float(observed.dt):g} s" if observed.view == "dense" else ""
     if low == high:
@@ -46,7 +46,7 @@ def _interval(span: tuple[float, float]) -> str:
     return f"{{{begin:g}}}" if begin == end else f"[{begin:g}, {end:g}]"
 
 
-def draw_strips(observed: Observed) -> Mapping[str, bytes]:
+def draw_strips(observed: FirstAnswer) -> Mapping[str, bytes]:
     """A strip a part: green where it is true, grey where undecided. Raises ``InputError``."""
     return as_bytes(compose_strips(observed))
 
@@ -56,7 +56,7 @@ def _short(name: str) -> str:
     return name if len(name) <= _WIDEST else name[: _WIDEST - 1] + "…"
 
 
-def compose_strips(observed: Observed) -> Any:
+def compose_strips(observed: FirstAnswer) -> Any:
     """The figure: all parts, each below what it is part of."""
     strips = observed.strips
     figure, (axes,) = make_figure([0.6 + 0.2 * len(strips)])

@@ -9,7 +9,7 @@ from math import ceil
 from textwrap import wrap
 from typing import Any
 
-from roadproof.analysis.preventable.study import Plate, Preventable, Proved, Shown
+from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable, Shown
 from roadproof.drivers.lines import Line
 from roadproof.drivers.manoeuvres import Quantity
 from roadproof.drivers.models import MODELS, parts_of
@@ -54,7 +54,7 @@ def share_of(study: Preventable, plate: Plate) -> float:
     return total / (float(high - low) * len(plate.lines)) if plate.lines else 0.0
 
 
-def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[Proved]) -> str:
+def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[LemmaResult]) -> str:
     """For the terminal: each plate with some of its lines and its drives, and the lemmas."""
     known = study.manoeuvre.quantities
     along, across = known[study.manoeuvre.line], known[study.manoeuvre.across]

@@ -47,7 +47,7 @@ DIGITS = 6
 
 
 @dataclass(frozen=True)
-class Asked:
+class ShownFormula:
     """A formula to be shown on a drive; ``role``: question, watch, before or after.
 
     ``specification``: the definitions it is read with; the drive's own where None. ``explain``: a part, by
@@ -62,7 +62,10 @@ class Asked:
 
 
 def viewer_data(
-    file: DriveFile, library: Library, asked: Sequence[Asked] = (), verdict: Mapping[str, Any] | None = None
+    file: DriveFile,
+    library: Library,
+    asked: Sequence[ShownFormula] = (),
+    verdict: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """The document for a drive; without ``asked`` the formula of the file is shown.
 
@@ -70,7 +73,7 @@ def viewer_data(
     an ``error`` in place of parts. Raises ``InputError`` where the file's set or options are unknown.
     """
     home = library.select(file.set_name, file.options)
-    every = asked or (Asked("question", file.formula),)
+    every = asked or (ShownFormula("question", file.formula),)
     return {
         "schema": SCHEMA,
         "title": _title(home, file),
@@ -138,7 +141,7 @@ def _shown_motion(file: DriveFile, name: str) -> dict[str, Any]:
 # --- formulas -----------------------------------------------------------------------------------
 
 
-def shown_formula(asked: Asked, file: DriveFile, home: Specification) -> dict[str, Any]:
+def shown_formula(asked: ShownFormula, file: DriveFile, home: Specification) -> dict[str, Any]:
     """One formula on the drive: its parts with truth and margins, or why it cannot be judged."""
     data = {"role": asked.role, "formula": asked.formula, "set": home.set_name}
     try:
@@ -163,7 +166,7 @@ Onto: TypeAlias = Callable[[Formula], Formula]
 """From a formula to what it is on the road of a drive."""
 
 
-def bound_on(asked: Asked, file: DriveFile, home: Specification) -> tuple[Query, Onto]:
+def bound_on(asked: ShownFormula, file: DriveFile, home: Specification) -> tuple[Query, Onto]:
     """The formula that is asked for, and how parts of it are bound to the road of ``file``.
 
     Free lanes are those of the file, else the one that SV is in at the start. Raises ``TextError``,
@@ -192,7 +195,7 @@ def _reasons(
         raise UsageError(f"part={place}: the formula has parts 0 to {len(parts) - 1}")
     found = blame(judgement, parts[place], at)
     because = {str(k): shown_truth(found[x])["true"] for k, x in enumerate(parts) if x in found}
-    said = [x for x in places_of(home, query) if isinstance(x.formula, f.Compare | f.Named)]
+    said = [x for x in places_of(home, query) if isinstance(x.formula, f.Compare | f.Application)]
     said = [x for x in said if _on_road(x.formula, onto) in found]
     return {"because": because, "said": [shown_place(x) for x in said]}
 
@@ -240,7 +243,7 @@ def shown_parts(judgement: Judgement, file: DriveFile, home: Specification) -> d
             "children": [places[x] for x in f.children(part) if x in places],
             **shown_truth(judgement.truth(part)),
         }
-        if isinstance(part, f.Named):
+        if isinstance(part, f.Application):
             definition = home.definitions.get(part.name.partition("@")[0])
             entry["says"] = "" if definition is None else home.describe(definition)
             if part in words:
@@ -267,7 +270,7 @@ def shown_truth(truth: TruthSet) -> dict[str, Any]:
 
 def told(part: Formula) -> str:
     """A part as text, definitions by name with the lanes that they are about."""
-    if isinstance(part, f.Named):
+    if isinstance(part, f.Application):
         return f"{part.name}({', '.join(part.arguments)})"
     return _with_lanes(part, text(as_syntax(_by_name(part))))
 
@@ -276,8 +279,8 @@ def _by_name(part: Formula) -> Formula:
     """As ``part``, with the lanes of roads as names of the language, since others are written out."""
 
     def rename(one: Formula) -> Formula:
-        if isinstance(one, f.Named):
-            return f.Named(one.name, tuple(x.replace("-", "_") for x in one.arguments), one.body)
+        if isinstance(one, f.Application):
+            return f.Application(one.name, tuple(x.replace("-", "_") for x in one.arguments), one.body)
         return one
 
     return f.transform(part, rename)
@@ -285,7 +288,9 @@ def _by_name(part: Formula) -> Formula:
 
 def _with_lanes(part: Formula, written: str) -> str:
     """The text with the names that the road gives its lanes."""
-    named = {x for one in subformulas(part) if isinstance(one, f.Named) for x in one.arguments if "-" in x}
+    named = {
+        x for one in subformulas(part) if isinstance(one, f.Application) for x in one.arguments if "-" in x
+    }
     for name in named:
         written = written.replace(name.replace("-", "_"), name)
     return written
@@ -293,7 +298,7 @@ def _with_lanes(part: Formula, written: str) -> str:
 
 def _operator(part: Formula) -> str:
     match part:
-        case f.Named():
+        case f.Application():
             return "name"
         case f.And():
             return "and"

@@ -10,7 +10,7 @@ from roadproof.frontends.report.viewer_data import SCHEMA, short_number, shown_r
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import SUBJECT
 from roadproof.library.specification import Specification
-from roadproof.recordings.evaluate.observed import Observed, Strip, margins_of
+from roadproof.recordings.evaluate.observed import FirstAnswer, Strip, margins_of
 from roadproof.recordings.evaluate.one_trace import OneTrace
 from roadproof.world.signals import SIGNALS, SizeName
 
@@ -19,7 +19,7 @@ _DIRECTIONS: tuple[Direction, ...] = ("along", "across")
 
 def recorded_data(
     trace: OneTrace,
-    observed: Sequence[tuple[str, Observed]],
+    observed: Sequence[tuple[str, FirstAnswer]],
     home: Specification,
     values: Mapping[str, Fraction],
 ) -> dict[str, Any]:
@@ -111,7 +111,7 @@ def _shown_distance(
     }
 
 
-def _shown_formula(role: str, observed: Observed, set_name: str) -> dict[str, Any]:
+def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> dict[str, Any]:
     strips = observed.strips
     return {
         "role": role,

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from roadproof.engines.search.ask import Outcome
-from roadproof.evidence.judged import Judged
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
@@ -49,7 +49,7 @@ def kinds(pictures: bool) -> tuple[str, ...]:
     return ("csv", "png", "svg") if pictures else ("csv",)
 
 
-def files_of(judged: Judged, stem: str, library: Library, pictures: bool) -> Iterator[tuple[str, bytes]]:
+def files_of(judged: JudgedDrive, stem: str, library: Library, pictures: bool) -> Iterator[tuple[str, bytes]]:
     """The same by name, with what is in them: samples, pictures."""
     yield f"{stem}.csv", csv_of(judged.file).encode()
     if pictures:

@@ -12,7 +12,7 @@ _OWN = ("server", "address", "state", "editor", "actions", "live", "bar", "side"
 
 
 @dataclass(frozen=True)
-class Served:
+class StaticFile:
     """A file: its text and media type."""
 
     text: str
@@ -20,13 +20,13 @@ class Served:
 
 
 @cache
-def served() -> dict[str, Served]:
+def served() -> dict[str, StaticFile]:
     """Every file by its name below /page/."""
-    modules = {f"{name}.js": Served(text, _SCRIPT) for name, text in _modules().items()}
+    modules = {f"{name}.js": StaticFile(text, _SCRIPT) for name, text in _modules().items()}
     return {
         **modules,
-        "viewer.css": Served(viewer_style(), _STYLE),
-        "studio.css": Served(_read("studio.css"), _STYLE),
+        "viewer.css": StaticFile(viewer_style(), _STYLE),
+        "studio.css": StaticFile(_read("studio.css"), _STYLE),
     }
 
 

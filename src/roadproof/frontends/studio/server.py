@@ -25,7 +25,7 @@ from roadproof.frontends.studio.request_validation import (
     safe_headers,
 )
 from roadproof.frontends.studio.start_page import Begun
-from roadproof.frontends.studio.worker_pool import Crew, FullError, Limits
+from roadproof.frontends.studio.worker_pool import FullError, Limits, WorkerPool
 
 if TYPE_CHECKING:
     from starlette.applications import Starlette
@@ -42,12 +42,12 @@ class Studio:
     begun: Begun
     long: Limits = field(default_factory=Limits)
     live: Limits = LIVE
-    crews: dict[str, Crew] = field(default_factory=dict)
+    crews: dict[str, WorkerPool] = field(default_factory=dict)
 
     @contextlib.asynccontextmanager
     async def run(self, app: object) -> AsyncIterator[None]:
         """Workers, for as long as the server runs; they become warm while the page is loaded already."""
-        self.crews = {"live": Crew(self.live), "long": Crew(self.long)}
+        self.crews = {"live": WorkerPool(self.live), "long": WorkerPool(self.long)}
         starting = asyncio.create_task(self._start())
         try:
             yield
@@ -83,7 +83,7 @@ class Studio:
         finally:
             gone.cancel()
 
-    def _crew(self, kind: object) -> tuple[Crew, str]:
+    def _crew(self, kind: object) -> tuple[WorkerPool, str]:
         from roadproof.frontends.studio.jobs import LIVE as quick
         from roadproof.frontends.studio.jobs import LONG as long
 
@@ -94,7 +94,9 @@ class Studio:
         raise RefusedError(400, "there is no question of that kind")
 
 
-async def _told(crew: Crew, kind: str, asked: Mapping[str, Any]) -> AsyncGenerator[dict[str, Any], None]:
+async def _told(
+    crew: WorkerPool, kind: str, asked: Mapping[str, Any]
+) -> AsyncGenerator[dict[str, Any], None]:
     try:
         async with contextlib.aclosing(crew.work(kind, asked)) as told:
             async for message in told:
@@ -133,7 +135,7 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
             return Response("there is no such file", 404)
         return Response(found.text, media_type=found.kind)
 
-    class Asking:
+    class AskEndpoint:
         """An ASGI endpoint, since answers are streams that end when nobody listens."""
 
         async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
@@ -147,7 +149,7 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
             Route("/", page),
             Route("/page/{name:path}", file),
             Route("/start", start, methods=["POST"]),
-            Route("/ask", Asking(), methods=["POST"]),
+            Route("/ask", AskEndpoint(), methods=["POST"]),
         ],
         lifespan=studio.run,
     )

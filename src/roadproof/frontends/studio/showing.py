@@ -8,7 +8,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.strict import Fields
 from roadproof.frontends.api.drafting import BEFORE, Draft, place_in
-from roadproof.frontends.report.viewer_data import Asked, viewer_data
+from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
 from roadproof.frontends.report.viewer_page import viewer_page
 from roadproof.frontends.studio.requests import draft_of, explain_of, set_of, text_of
 from roadproof.library.specification import Library, Specification
@@ -30,14 +30,14 @@ def view(draft: Draft, file: DriveFile, ask: Mapping[str, Any]) -> dict[str, Any
     """The document of the viewer for a drive, with what the page asks of it."""
     home = draft.definitions(set_of(ask))
     explain = explain_of(ask)
-    asked = [Asked("question", text_of(ask, "formula"), home.specification, home.values, explain)]
+    asked = [ShownFormula("question", text_of(ask, "formula"), home.specification, home.values, explain)]
     if ask.get("compare") is True:
         other = draft.definitions(BEFORE if draft.before is not None else draft.base)
-        asked.append(Asked("before", text_of(ask, "formula"), other.specification, home.values))
+        asked.append(ShownFormula("before", text_of(ask, "formula"), other.specification, home.values))
     watches = Fields(ask, "question").texts("watches") if "watches" in ask else ()
     if len(watches) > MOST_WATCHES:
         raise UsageError(f"watches={len(watches)}: at most {MOST_WATCHES} formulas are watched")
-    asked += [Asked("watch", x, home.specification, home.values) for x in watches]
+    asked += [ShownFormula("watch", x, home.specification, home.values) for x in watches]
     document = viewer_data(*_readable(file, home.specification), asked)
     document["marks"] = marks_of(document["formulas"][0].get("said", []), "why")
     return document

@@ -71,7 +71,7 @@ async def _until_ready(process: asyncio.subprocess.Process) -> None:
 
 
 @dataclass
-class Crew:
+class WorkerPool:
     """Workers; to be started and ended in one event loop."""
 
     limits: Limits = field(default_factory=Limits)

@@ -30,7 +30,7 @@ PLACES = ("s", "d")
 
 
 @dataclass(frozen=True)
-class Asked:
+class TraceQuestion:
     """A formula that holds on traces: vehicles and lanes by name as for ``gather``, an entry a trace."""
 
     formula: Formula
@@ -42,11 +42,11 @@ class Asked:
     convention: Convention
 
 
-def uncertain(recording: Recording, asked: Asked) -> Bools:
+def uncertain(recording: Recording, asked: TraceQuestion) -> Bools:
     """For each trace whether what holds there depends on less than places may be off by."""
     if recording.slack is None or not len(asked.low):
         return np.zeros(len(asked.low), np.bool_)
-    plain = _Bounded(without_names(asked.formula))
+    plain = _BoundedFormula(without_names(asked.formula))
     signals = signals_of([asked.formula])
     batch = gather(recording, asked.vehicles, asked.low, asked.high, signals, asked.lanes, asked.atoms)
     comparisons = tuple(plain.comparisons)
@@ -65,7 +65,7 @@ def uncertain(recording: Recording, asked: Asked) -> Bools:
 
 
 @dataclass
-class _Bounded:
+class _BoundedFormula:
     """A formula with two atoms for each comparison of places: that it surely holds, and that it may.
 
     The first stands where truth of the comparison helps the formula, the second where it hurts.

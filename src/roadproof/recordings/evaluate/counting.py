@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from roadproof.recordings.evaluate.evaluate import Findings
-from roadproof.recordings.formats.repeats import Seen
+from roadproof.recordings.formats.repeats import FramePair
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Repeat:
 
 
 @dataclass
-class Counted:
+class Counts:
     """What was counted so far, by what it is and the moment: the recording that showed it."""
 
     known: dict[tuple[str, int], str] = field(default_factory=dict)
@@ -41,12 +41,12 @@ class Counted:
         return True
 
 
-def without_repeats(findings: Findings, counted: Counted) -> Findings:
+def without_repeats(findings: Findings, counted: Counts) -> Findings:
     """The findings without what an earlier recording has too: traces with matches, violations, detections."""
     if not findings.seen:
         return findings
 
-    def is_new(pair: Seen, what: str, k: int | None, keys: tuple[int, ...]) -> bool:
+    def is_new(pair: FramePair, what: str, k: int | None, keys: tuple[int, ...]) -> bool:
         return counted.is_new(findings.recording, (pair.first, pair.second), what, k, keys)
 
     seen = {(x.first, x.second): x for x in findings.seen}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from roadproof.library.scenarios import LANE, PAIR, TRIPLE
-from roadproof.recordings.evaluate.boundary import Asked, uncertain
+from roadproof.recordings.evaluate.boundary import TraceQuestion, uncertain
 from roadproof.recordings.evaluate.detectors import Detection, find_detections, order_of_detections
 from roadproof.recordings.evaluate.disturbances import (
     NEVER,
@@ -23,7 +23,7 @@ from roadproof.recordings.evaluate.traces import gather
 from roadproof.recordings.formats.overlaps import Overlap, find_overlaps, told_overlap
 from roadproof.recordings.formats.pairs import Pairs, triples_of
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
-from roadproof.recordings.formats.repeats import Seen, see_pair
+from roadproof.recordings.formats.repeats import FramePair, see_pair
 from roadproof.recordings.formats.windows import Window
 from roadproof.semantics.sampled.answers import Convention
 from roadproof.semantics.sampled.compiled import Monitor, Observation
@@ -69,7 +69,7 @@ class Findings:
     detections: tuple[Detection, ...]
     notes: tuple[str, ...]
     sectors: tuple[str, ...]
-    seen: tuple[Seen, ...] = ()
+    seen: tuple[FramePair, ...] = ()
 
 
 def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
@@ -123,7 +123,7 @@ class _Part:
     matches: tuple[Match, ...]
     detections: tuple[Detection, ...]
     overlaps: tuple[Overlap, ...]
-    seen: tuple[Seen, ...]
+    seen: tuple[FramePair, ...]
 
 
 def _evaluate(window: Window, questions: Questions) -> _Part:
@@ -170,7 +170,7 @@ def _say_uncertain(matches: Sequence[Match]) -> Iterator[str]:
         yield f"{count} of {len(matches)} matches depend on less than places along the road may be off"
 
 
-def _see(recording: Recording, found: Disturbances, detections: tuple[Detection, ...]) -> Iterator[Seen]:
+def _see(recording: Recording, found: Disturbances, detections: tuple[Detection, ...]) -> Iterator[FramePair]:
     ids = recording.vehicle_id
     violating = set(zip(found.pairs.first.tolist(), found.pairs.second.tolist(), strict=True))
     place = {number: v for v, number in enumerate(ids.tolist())}
@@ -300,7 +300,7 @@ def _ask_all(
         lengths = np.where(arises, end - start + 1, batch.lengths)
         for asked, true in tally.ask(monitor, seen.cut(lengths), arises).items():
             hits = np.flatnonzero(true)
-            there = Asked(
+            there = TraceQuestion(
                 monitor.formulas[asked],
                 {name: index[hits] for name, index in vehicles.items()},
                 start[hits],

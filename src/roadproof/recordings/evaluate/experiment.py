@@ -22,11 +22,11 @@ from roadproof.recordings.evaluate.results import (
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import copies_among, find_sources
-from roadproof.recordings.formats.windows import Divided
+from roadproof.recordings.formats.windows import WindowedRecording
 from roadproof.runtime.dispatch import answers_of
-from roadproof.runtime.executors import Hands
+from roadproof.runtime.executors import Executor
 from roadproof.runtime.memory import keep_freed_memory
-from roadproof.runtime.process_pool import Lost, is_worker
+from roadproof.runtime.process_pool import LostJob, is_worker
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Experiment:
     recordings: Path
     out: Path
     settings: Settings
-    hands: Hands = field(default_factory=lambda: Hands(1))
+    hands: Executor = field(default_factory=lambda: Executor(1))
     keep_going: bool = False
 
 
@@ -82,7 +82,7 @@ def run_experiment(
         tell(f"left out: {copy}")
     lost: list[str] = []
     for done, (source, error) in enumerate(_evaluate_all(experiment, question, marks, waiting), start=1):
-        if isinstance(error, Lost):
+        if isinstance(error, LostJob):
             lost.append(source.name)
             error = error.reason
         elif error is not None and not experiment.keep_going:
@@ -138,7 +138,7 @@ def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findin
 
 def _evaluate_all(
     experiment: Experiment, question: str, marks: Mapping[str, str], sources: list[RecordingSource]
-) -> Iterator[tuple[RecordingSource, str | Lost | None]]:
+) -> Iterator[tuple[RecordingSource, str | LostJob | None]]:
     """Evaluate and save each; the second part is why a recording could not be used."""
     jobs = [_Job(experiment.settings, question, experiment.out, s, marks[s.name]) for s in sources]
     hands = experiment.hands
@@ -190,7 +190,7 @@ _MOST_ASKED = 4
 _asked: dict[tuple[str, int, tuple[str, ...]], Questions] = {}
 
 
-def questions_for(settings: Settings, question: str, recording: Recording | Divided) -> Questions:
+def questions_for(settings: Settings, question: str, recording: Recording | WindowedRecording) -> Questions:
     """Compiled once a process for recordings of one rate and the same zones.
 
     ``question`` is the settings' mark, which tells settings apart, as they come as copies.

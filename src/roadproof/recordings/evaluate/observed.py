@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from roadproof.evidence.answers.monitor import Truth, View
-from roadproof.logic.formula import Formula, Named, nesting
+from roadproof.logic.formula import Application, Formula, nesting
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.robust import robustness
@@ -38,7 +38,7 @@ class Strip:
 
 
 @dataclass(frozen=True)
-class Observed:
+class FirstAnswer:
     """An answer at the first sample (time 0). ``margin`` bounds the robustness; infinite where only
     lanes decide. ``other`` is the answer under the other convention for the end of a trace."""
 
@@ -53,7 +53,7 @@ class Observed:
     other: Truth | None = None
 
 
-def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> Observed:
+def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> FirstAnswer:
     """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
     monitor = compile({"asked": formula})
     other: Convention = "clip" if convention == "truncated" else "truncated"
@@ -64,7 +64,7 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
     dt = float(batch.dt)
     spans = _spans(monitor.evaluate(seen, convention, at="all").answers["asked"], dt)
     whole = Strip(text, *spans, margins=_sampled(margin))
-    return Observed(
+    return FirstAnswer(
         text,
         "recorded",
         _said(verdicts.answers["asked"]),
@@ -77,7 +77,7 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
     )
 
 
-def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction) -> Observed:
+def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction) -> FirstAnswer:
     """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt.
 
     Raises ``InputError`` and ``UsageError``.
@@ -89,10 +89,10 @@ def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, 
     named = [(part, truth) for part, truth in judgement.named() if part != formula]
     strips += [replace(_exact_strip(name_of(part), truth), depth=depths[part]) for part, truth in named]
     verdict: Truth = "true" if judgement.holds else "false"
-    return Observed(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
+    return FirstAnswer(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
 
 
-def name_of(part: Named) -> str:
+def name_of(part: Application) -> str:
     """An application of a definition as a user writes it."""
     return f"{part.name}({', '.join(part.arguments)})"
 
@@ -108,7 +108,10 @@ def _sampled(margin: Margin) -> tuple[float | None, ...]:
 
 
 def _strips(
-    formula: Formula, named: Mapping[Named, TruthArrays], margins: Mapping[Named, Margin], dt: float
+    formula: Formula,
+    named: Mapping[Application, TruthArrays],
+    margins: Mapping[Application, Margin],
+    dt: float,
 ) -> Iterator[Strip]:
     depths = _depths(formula)
     for part, answer in named.items():
@@ -116,9 +119,9 @@ def _strips(
             yield Strip(name_of(part), *_spans(answer, dt), "", depths[part], _sampled(margins[part]))
 
 
-def _depths(formula: Formula) -> dict[Named, int]:
+def _depths(formula: Formula) -> dict[Application, int]:
     """In how many others each part is, below the formula as a whole."""
-    below = 0 if isinstance(formula, Named) else 1
+    below = 0 if isinstance(formula, Application) else 1
     return {part: depth + below for part, depth in nesting(formula).items()}
 
 

@@ -42,7 +42,7 @@ from roadproof.logic.rewrite import all_with_values, with_values, without_names
 from roadproof.recordings.evaluate.courses import Course, courses_of
 from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE, LaneAtom, lane_atoms
 from roadproof.recordings.evaluate.sectors import Sector, is_possible, sectors_of
-from roadproof.recordings.formats.pairs import Reach, Sight
+from roadproof.recordings.formats.pairs import DetectionRange, Reach
 from roadproof.recordings.formats.recording import ZONES
 from roadproof.semantics.sampled.answers import Convention, Key
 from roadproof.semantics.sampled.batch import steps_of
@@ -174,7 +174,7 @@ class Questions:
     lane_atoms: Mapping[Formula, LaneAtom]
     reach: Reach | None
     detectors: Monitor[DetectorKey] | None
-    sight: Sight | None
+    sight: DetectionRange | None
     courses: tuple[Course, ...] = ()
 
 
@@ -340,7 +340,7 @@ def _of_detectors(settings: Settings, spec: Specification) -> dict[DetectorKey, 
     }
 
 
-def _sight(settings: Settings, sought: Mapping[DetectorKey, Query]) -> Sight | None:
+def _sight(settings: Settings, sought: Mapping[DetectorKey, Query]) -> DetectionRange | None:
     """The constants of the detectors' pre-filter, where all are the bundled ones."""
     if not set(settings.detectors) <= set(COMPARISON):
         return None
@@ -349,7 +349,7 @@ def _sight(settings: Settings, sought: Mapping[DetectorKey, Query]) -> Sight | N
         theirs = apply_definition(bundled, detector, (*PAIR, LANE))
         if not _same(sought[DetectorKey(detector, "first")].formula, theirs.formula):
             return None
-    return Sight(*(float(settings.values[x]) for x in ("ttcLimit", "thwLimit", "farthest")))
+    return DetectionRange(*(float(settings.values[x]) for x in ("ttcLimit", "thwLimit", "farthest")))
 
 
 def _bundled(settings: Settings) -> Specification:

@@ -18,7 +18,7 @@ from roadproof.recordings.evaluate.traces import gather
 from roadproof.recordings.formats.recording import Integers, Recording
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import Monitor
-from roadproof.semantics.sampled.recursive import ReadAs, Reading, Trace
+from roadproof.semantics.sampled.recursive import ReadAs, Trace, TraceReader
 from roadproof.world.signals import SignalName
 
 
@@ -125,7 +125,7 @@ def _read(
     vehicles: Mapping[str, int],
     lanes: Mapping[str, int],
     frames: tuple[int, int],
-) -> Reading:
+) -> TraceReader:
     signals = [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals]
     return _reading(recording, vehicles, frames, signals, lanes, questions.lane_atoms)
 
@@ -137,7 +137,7 @@ def _reading(
     signals: Iterable[SignalName | Own],
     lanes: Mapping[str, int] = MappingProxyType({}),
     atoms: Mapping[Formula, LaneAtom] = MappingProxyType({}),
-) -> Reading:
+) -> TraceReader:
     def one(value: int) -> Integers:
         return np.array([value])
 
@@ -150,7 +150,7 @@ def _reading(
         {name: one(k) for name, k in lanes.items()},
         atoms,
     )
-    return Reading(trace_of(batch))
+    return TraceReader(trace_of(batch))
 
 
 def trace_of(batch: Batch) -> Trace:

@@ -24,14 +24,14 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.library.scenarios import MIN_DANGER
 from roadproof.library.words import Called, called_in
-from roadproof.recordings.evaluate.counting import Counted, Repeat, without_repeats
+from roadproof.recordings.evaluate.counting import Counts, Repeat, without_repeats
 from roadproof.recordings.evaluate.detectors import Detection
 from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.recordings.evaluate.sectors import Sector, sectors_of
-from roadproof.recordings.formats.repeats import Seen
+from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.files import make_folder, whole_file
 
 RECORDING_SCHEMA = "roadproof/recording-findings/4"
@@ -114,7 +114,7 @@ def load_findings(path: Path, mark: str) -> Findings | None:
         made["traces"] = tuple(replace(x, sectors=tuple(x.sectors)) for x in made["traces"])
         made["violating"] = tuple((one, other) for one, other in found["violating"])
         made["matches"] = tuple(replace(x, labels=tuple(x.labels)) for x in made["matches"])
-        seen = tuple(Seen(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
+        seen = tuple(FramePair(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
         return Findings(**{**found, **made, **_texts(found, "notes", "sectors"), "seen": seen})
     except (OSError, ValueError, KeyError, TypeError):
         return None
@@ -323,7 +323,7 @@ def write_results(
     recordings are left out and why.
     """
     totals = begin_totals(settings)
-    counted = Counted(repeats=totals.repeats)
+    counted = Counts(repeats=totals.repeats)
     words = words_in(settings)
     with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))

@@ -10,7 +10,7 @@ from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
     LARGEST_SPEED,
-    Doubting,
+    ContradictionChecks,
     Implausible,
     of_those_on_road,
     on_road,
@@ -24,7 +24,7 @@ from roadproof.recordings.formats.recording import (
     Recording,
     beside_by_order,
 )
-from roadproof.recordings.formats.straight import Placed, StraightRoad, place
+from roadproof.recordings.formats.straight import Placement, StraightRoad, place
 from roadproof.world.signals import STARTING
 
 LARGEST_RATE = 1000
@@ -35,14 +35,14 @@ _ROUNDING = 0.015
 """m; highD rounds sizes in two files, and boxes are placed by either."""
 
 
-class Believing:
+class PlausibilityChecks:
     """Checks of one recording, whose vehicles are added one after the other, each whole."""
 
     def __init__(self, head: Path, rate: int, lanes: tuple[Lane, ...]) -> None:
         self.head = head
         if not 1 <= rate <= LARGEST_RATE:
             raise InputError(f"{head}, rate={rate}: must lie between 1 and {LARGEST_RATE}")
-        self.doubting = Doubting(rate, lanes)
+        self.doubting = ContradictionChecks(rate, lanes)
         self.on_road: list[Bools] = []
         self.ids: list[Integers] = []
         self.frames: list[tuple[Integers, Integers]] = []
@@ -137,7 +137,7 @@ def _check_places(head: Path, recording: Recording) -> None:
 _PLACED = ("occupancy", "lane", "zones", "inside")
 
 
-def _placed(recording: Recording, road: StraightRoad, more: float) -> Placed:
+def _placed(recording: Recording, road: StraightRoad, more: float) -> Placement:
     """Where boxes are that are larger by ``more`` (m) in both directions."""
     counts = np.diff(recording.start)
     direction = np.repeat(recording.direction, counts)

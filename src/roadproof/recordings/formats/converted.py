@@ -21,7 +21,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats import windows
-from roadproof.recordings.formats.believable import Believing
+from roadproof.recordings.formats.believable import PlausibilityChecks
 from roadproof.recordings.formats.recording import (
     Integers,
     Lane,
@@ -34,7 +34,7 @@ from roadproof.recordings.formats.recording import (
 from roadproof.recordings.formats.samples import CONVERTED
 from roadproof.recordings.formats.source import Files, Format, RecordingSource, with_suffix
 from roadproof.recordings.formats.table import Column, Frame, polars_module, require_unchanged, stamp_of
-from roadproof.recordings.formats.windows import Divided, Window, divide
+from roadproof.recordings.formats.windows import Window, WindowedRecording, divide
 from roadproof.runtime.files import read_limited, write_json, write_whole
 from roadproof.world.road import Lanelet
 from roadproof.world.signals import RECORDED
@@ -125,7 +125,7 @@ def read_converted(head: Path) -> Recording:
     with _as_written(head):
         said = _read_head(head)
         recording = _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
-        believing = Believing(head, recording.rate, recording.lanes)
+        believing = PlausibilityChecks(head, recording.rate, recording.lanes)
         believing.add(recording)
         return with_notes(recording, believing.notes(recording.notes))
 
@@ -136,7 +136,7 @@ def samples_in(head: Path) -> int:
         return _rows(_read_head(head))
 
 
-def divide_converted(head: Path, checked: bool = False) -> Divided | None:
+def divide_converted(head: Path, checked: bool = False) -> WindowedRecording | None:
     """The recording of NAME.recording.json in windows of time, None where it is small. Raises ``InputError``.
 
     Each is read from the rows of its vehicles. Raises ``InputError`` where the file changes meanwhile.
@@ -164,17 +164,17 @@ def divide_converted(head: Path, checked: bool = False) -> Divided | None:
                 require_unchanged(table, stamp)
             yield Window(with_notes(recording, more), new[vehicles])
 
-    return Divided(int(said["rate"]), zones_in(zones), read)
+    return WindowedRecording(int(said["rate"]), zones_in(zones), read)
 
 
 def _checked_in_parts(head: Path, said: Mapping[str, Any], start: Integers) -> tuple[str, ...]:
     """The notes that the checks of the whole add, some vehicles at a time. Raises ``InputError``."""
-    believing: Believing | None = None
+    believing: PlausibilityChecks | None = None
     group = start[:-1] // windows.MOST_SAMPLES
     for number in np.unique(group):
         vehicles = np.flatnonzero(group == number)
         part = _recording(_of_vehicles(said, vehicles), _read_rows(_table_of(head), start, vehicles))
-        believing = believing or Believing(head, part.rate, part.lanes)
+        believing = believing or PlausibilityChecks(head, part.rate, part.lanes)
         believing.add(part)
     return () if believing is None else believing.notes(said["notes"])
 
@@ -357,7 +357,7 @@ def _read(files: Files) -> Recording:
     return read_converted(files[0])
 
 
-def _divide(files: Files) -> Divided | None:
+def _divide(files: Files) -> WindowedRecording | None:
     return divide_converted(files[0])
 
 

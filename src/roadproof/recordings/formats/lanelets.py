@@ -29,7 +29,7 @@ LONGEST = 100_000.0
 
 
 @dataclass(frozen=True)
-class Said:
+class LaneletAttributes:
     """What a user says of lanelets: attributes and zones by id."""
 
     attributes: Mapping[str, Attribute] = field(default_factory=dict)
@@ -61,9 +61,11 @@ class Network:
     notes: tuple[str, ...]
 
 
-def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet], said: Said | None = None) -> Network:
+def network_of(
+    path: Path, lanelets: Mapping[str, MeasuredLanelet], said: LaneletAttributes | None = None
+) -> Network:
     """The network of the lanelets of ``path``. Raises ``InputError`` for more than 32 lanes."""
-    told = said or Said()
+    told = said or LaneletAttributes()
     for lanelet in lanelets.values():
         if not lanelet.length < LONGEST:
             raise InputError(
@@ -83,13 +85,13 @@ def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet], said: Said |
     return Network(lanelets, attributes, zones, lanes, _beside(lanelets, lanes), main, notes)
 
 
-def read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Said:
+def read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAttributes:
     """What a file NAME_zones.toml says; nothing where there is none.
 
     It has ``[[lanelet]]`` with ``id`` and ``zone``, ``attribute`` or both. Raises ``InputError``.
     """
     if not path.is_file():
-        return Said()
+        return LaneletAttributes()
     content = read_toml(path)
     entries = content.get("lanelet")
     if set(content) != {"lanelet"} or not isinstance(entries, list) or not entries:
@@ -112,7 +114,7 @@ def read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Said:
             attributes[name] = cast(Attribute, entry["attribute"])
         if "zone" in entry:
             zones[name] = cast(Zone, entry["zone"])
-    return Said(attributes, zones)
+    return LaneletAttributes(attributes, zones)
 
 
 def _say_inferred(
@@ -127,7 +129,7 @@ def _say_inferred(
             yield f"{kind} lane {lane.name} ({noun} {named}) inferred, since it {' and '.join(sorted(why))}"
 
 
-def _say_said(said: Said) -> Iterator[str]:
+def _say_said(said: LaneletAttributes) -> Iterator[str]:
     for name in dict.fromkeys((*said.attributes, *said.zones)):
         parts = [f"attribute {said.attributes[name]}"] if name in said.attributes else []
         parts += [f"zone {said.zones[name]}"] if name in said.zones else []

@@ -24,7 +24,7 @@ from roadproof.recordings.formats.converted import (
     head_of,
     same_frame,
 )
-from roadproof.recordings.formats.plausible import Doubting, Implausible, of_those_on_road, on_road
+from roadproof.recordings.formats.plausible import ContradictionChecks, Implausible, of_those_on_road, on_road
 from roadproof.recordings.formats.recording import Integers, Recording, offsets
 from roadproof.recordings.formats.samples import (
     ORDER,
@@ -40,7 +40,7 @@ from roadproof.recordings.formats.samples import (
 from roadproof.recordings.formats.source import Files
 from roadproof.recordings.formats.straight import StraightRoad
 from roadproof.recordings.formats.table import Table, polars_module, require_unchanged, stamp_of
-from roadproof.recordings.formats.windows import Divided, Window
+from roadproof.recordings.formats.windows import Window, WindowedRecording
 from roadproof.runtime.files import write_json
 from roadproof.world.signals import RECORDED
 
@@ -56,7 +56,7 @@ def is_large(path: Path) -> bool:
     return count_samples(path) > windows.MOST_SAMPLES
 
 
-def divide_large(files: Files) -> Divided | None:
+def divide_large(files: Files) -> WindowedRecording | None:
     """A file of samples in windows of time, None where it is small. Raises ``InputError``.
 
     It is converted into a temporary folder, which is gone when the windows are.
@@ -87,8 +87,8 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str)
         require_unchanged(path, stamp)
         groups = _divide_rows(path, survey, Path(temporary))
         require_unchanged(path, stamp)
-        read = _Reading(path, road, survey, groups)
-        doubting = Doubting(survey.clock.rate, road.lanes)
+        read = _GroupReader(path, road, survey, groups)
+        doubting = ContradictionChecks(survey.clock.rate, road.lanes)
         heads, placed, parts = [], [], []
         for number in range(len(groups)):
             recording = read.recording(number)
@@ -201,7 +201,7 @@ def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
 
 
 @dataclass(frozen=True)
-class _Reading:
+class _GroupReader:
     """The recordings of groups of vehicles."""
 
     path: Path

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from roadproof.recordings.formats.lanelets import Network
 from roadproof.recordings.formats.projection import (
-    Along,
+    LineCoordinates,
     boxes_of,
     even_line,
     inside,
@@ -115,9 +115,9 @@ def _lanelets(network: Network) -> Iterator[Lanelet]:
         yield Lanelet(name, lane, network.zones[name], network.attributes[name], (None, None), band)
 
 
-def _project(network: Network, points: Floats, direction: Integers) -> Along:
+def _project(network: Network, points: Floats, direction: Integers) -> LineCoordinates:
     """Each point along the main way of its carriageway."""
-    made = Along(*(np.zeros(len(points)) for _ in range(5)))
+    made = LineCoordinates(*(np.zeros(len(points)) for _ in range(5)))
     for way, chain in enumerate(network.main, start=1):
         ours = np.flatnonzero(direction == way)
         if len(ours):
@@ -135,7 +135,13 @@ def _centre_line(network: Network, chain: tuple[str, ...]) -> Floats:
 
 
 def _slack(
-    along: Along, corners: Along, heading: Floats, s: Floats, d: Floats, length: Floats, width: Floats
+    along: LineCoordinates,
+    corners: LineCoordinates,
+    heading: Floats,
+    s: Floats,
+    d: Floats,
+    length: Floats,
+    width: Floats,
 ) -> Slack:
     """What the corners of the boxes, projected themselves, say against aligned boxes."""
     far, left = corners.s.reshape(-1, 4), corners.d.reshape(-1, 4)
@@ -157,7 +163,7 @@ def _turned(vectors: Floats, heading: Floats) -> tuple[Floats, Floats]:
     return x * along + y * across, y * along - x * across
 
 
-def _say_off(along: Along, slack: Slack, start: Integers, ids: Integers) -> Iterator[str]:
+def _say_off(along: LineCoordinates, slack: Slack, start: Integers, ids: Integers) -> Iterator[str]:
     """How far lengths and places along the reference line are from those in the plane."""
     each = np.add.reduceat(along.stretch, start[:-1]) / np.diff(start)
     worst = int(np.argmax(np.abs(each)))

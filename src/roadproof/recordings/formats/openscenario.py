@@ -54,7 +54,7 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Way:
+class CentreLine:
     """Vertices of the centre of a box in road coordinates, by time (s, m)."""
 
     time: Floats
@@ -210,7 +210,7 @@ def _polyline(path: Path, follow: Element, told: str) -> Floats:
     return found
 
 
-def _in_road(vertices: Floats, box: Box, road: Path) -> Way:
+def _in_road(vertices: Floats, box: Box, road: Path) -> CentreLine:
     """The centre of the box, along and beside the reference line of a straight road."""
     x0, y0, along = origin_of(road)
     time, x, y, heading = vertices.T
@@ -218,10 +218,10 @@ def _in_road(vertices: Floats, box: Box, road: Path) -> Way:
     x = x + ahead * np.cos(heading) - left * np.sin(heading) - x0
     y = y + ahead * np.sin(heading) + left * np.cos(heading) - y0
     turn = math.cos(along), math.sin(along)
-    return Way(time, x * turn[0] + y * turn[1], y * turn[0] - x * turn[1])
+    return CentreLine(time, x * turn[0] + y * turn[1], y * turn[0] - x * turn[1])
 
 
-def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, Way]) -> Table:
+def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, CentreLine]) -> Table:
     columns: dict[str, list[Floats]] = {}
     for name, way in ways.items():
         box = boxes[name]

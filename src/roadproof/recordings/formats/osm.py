@@ -29,7 +29,7 @@ _SCALE, _EASTING = 0.9996, 500_000.0
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class _LaneletNodes:
     """A lanelet as drawn: ids of its ways, and its bounds as nodes in driving direction."""
 
     id: str
@@ -129,7 +129,7 @@ def _draw(
     relation: Element,
     refs: Mapping[str, tuple[str, ...]],
     places: Mapping[str, Floats],
-) -> _Drawn:
+) -> _LaneletNodes:
     where = f"{path}: relation {name}"
     ways: dict[str, str] = {}
     for role in ("left", "right"):
@@ -149,7 +149,7 @@ def _draw(
         right = right[::-1]
     if _area([*(places[x] for x in left), *(places[x] for x in reversed(right))]) > 0:
         left, right = left[::-1], right[::-1]
-    return _Drawn(name, (ways["left"], ways["right"]), left, right)
+    return _LaneletNodes(name, (ways["left"], ways["right"]), left, right)
 
 
 def _area(points: Sequence[Floats]) -> float:
@@ -158,7 +158,7 @@ def _area(points: Sequence[Floats]) -> float:
     return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
 
 
-def _linked(drawn: Mapping[str, _Drawn], places: Mapping[str, Floats]) -> dict[str, MeasuredLanelet]:
+def _linked(drawn: Mapping[str, _LaneletNodes], places: Mapping[str, Floats]) -> dict[str, MeasuredLanelet]:
     begins: dict[tuple[str, str], list[str]] = defaultdict(list)
     for x in drawn.values():
         begins[x.left[0], x.right[0]].append(x.id)

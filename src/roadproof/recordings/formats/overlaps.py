@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from roadproof.recordings.formats.pairs import Pairs, Within, common_pairs, ever_within, row_of
+from roadproof.recordings.formats.pairs import DistanceBounds, Pairs, common_pairs, ever_within, row_of
 from roadproof.recordings.formats.recording import Recording
 
 Overlap: TypeAlias = tuple[int, int, int, float]
@@ -22,7 +22,7 @@ def find_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[
     pairs = common_pairs(recording, np.ones(recording.vehicles, bool)) if among is None else among
     first, second = pairs.first, pairs.second
     touching = [
-        Within(position, size[first], size[second])
+        DistanceBounds(position, size[first], size[second])
         for position, size in ((recording.s, recording.length), (recording.d, recording.width))
     ]
     pairs = pairs.choose(ever_within(recording, pairs, touching))

@@ -47,7 +47,7 @@ class Reach:
 
 
 @dataclass(frozen=True)
-class Sight:
+class DetectionRange:
     """How far the detectors of earlier works look: time to collision and headway (s), distance (m)."""
 
     ttc: float
@@ -224,7 +224,7 @@ def _moments(recording: Recording, pairs: Pairs, pair: Integers, low: Integers, 
     return Moments(pair[place], frame, first, second)
 
 
-def pairs_in_sight(recording: Recording, pairs: Pairs, sight: Sight) -> tuple[Pairs, Masks]:
+def pairs_in_sight(recording: Recording, pairs: Pairs, sight: DetectionRange) -> tuple[Pairs, Masks]:
     """The pairs that a bundled detector may match, and for each the lanes in which it may (bits).
 
     Every one of them needs a frame in which both are in L and the gap from the front of one to the
@@ -241,14 +241,14 @@ def pairs_in_sight(recording: Recording, pairs: Pairs, sight: Sight) -> tuple[Pa
         total: Floats = gap + recording.length[front] + 0.001
         return total
 
-    tests = [Within(recording.s, bound(pairs.second, pairs.first), bound(pairs.first, pairs.second))]
+    tests = [DistanceBounds(recording.s, bound(pairs.second, pairs.first), bound(pairs.first, pairs.second))]
     shared = np.zeros(len(pairs), np.uint32)
     found = ever_within(recording, pairs, tests, shared)
     return pairs.choose(found), shared[found]
 
 
 @dataclass(frozen=True)
-class Within:
+class DistanceBounds:
     """-below <= position of second - position of first <= above; bounds have one entry a pair."""
 
     position: Floats
@@ -283,7 +283,7 @@ def _bound_across(reach: Reach, greatest: Floats) -> Floats:
 
 
 def ever_within(
-    recording: Recording, pairs: Pairs, tests: list[Within], shared: Masks | None = None
+    recording: Recording, pairs: Pairs, tests: list[DistanceBounds], shared: Masks | None = None
 ) -> Bools:
     """For each pair whether all ``tests`` hold in one and the same common frame.
 

@@ -60,7 +60,7 @@ class Implausible:
 
 def find_doubts(recording: Recording) -> list[Implausible]:
     """Everything in which ``recording`` contradicts itself, the gravest first."""
-    found = Doubting(recording.rate, recording.lanes)
+    found = ContradictionChecks(recording.rate, recording.lanes)
     found.add(recording)
     return found.doubts()
 
@@ -342,7 +342,7 @@ class _Places:
                 yield Implausible(rule, "d", self.rows[way], many, many, "vehicles", refused)
 
 
-class Doubting:
+class ContradictionChecks:
     """What a recording contradicts itself in, whose vehicles are added one after the other, each whole."""
 
     def __init__(self, rate: int, lanes: tuple[Lane, ...]) -> None:

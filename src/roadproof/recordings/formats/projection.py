@@ -13,7 +13,7 @@ AROUND = 6
 
 
 @dataclass(frozen=True)
-class Along:
+class LineCoordinates:
     """Points in the coordinates of a line: s along it, d to its left (m), and its direction there (rad).
 
     ``stretch`` is how much longer a way of one metre is at the point than on the line, as a share: d times
@@ -38,7 +38,7 @@ def even_line(line: Floats, step: float = 5.0) -> Floats:
     return np.stack((np.interp(at, way, line[:, 0]), np.interp(at, way, line[:, 1])), axis=1)
 
 
-def project(line: Floats, points: Floats) -> Along:
+def project(line: Floats, points: Floats) -> LineCoordinates:
     """Coordinates of ``points`` (n, 2) along the polyline ``line`` (m, 2), straight on beyond its ends.
 
     The direction of the line turns evenly from vertex to vertex (at a vertex it is that of the chord
@@ -47,10 +47,12 @@ def project(line: Floats, points: Floats) -> Along:
     for autonomous vehicles*, IV 2017).
     """
     blocks = [_project(line, points[k : k + BLOCK]) for k in range(0, max(1, len(points)), BLOCK)]
-    return Along(*(np.concatenate([getattr(block, x.name) for block in blocks]) for x in fields(Along)))
+    return LineCoordinates(
+        *(np.concatenate([getattr(block, x.name) for block in blocks]) for x in fields(LineCoordinates))
+    )
 
 
-def _project(line: Floats, points: Floats) -> Along:
+def _project(line: Floats, points: Floats) -> LineCoordinates:
     step = np.diff(line, axis=0)
     length = np.hypot(step[:, 0], step[:, 1])
     unit = step / length[:, None]
@@ -77,7 +79,7 @@ def _project(line: Floats, points: Floats) -> Along:
     begin = np.concatenate(([0.0], np.cumsum(length)[:-1]))
     angle = unit[:, 0] * turn[:, 1] - unit[:, 1] * turn[:, 0]
     turned = np.concatenate(([0.0], np.cumsum(np.abs(angle))))
-    return Along(
+    return LineCoordinates(
         begin[nearest] + on * length[nearest],
         d,
         np.arctan2(ahead[:, 1], ahead[:, 0]),

@@ -36,7 +36,7 @@ def _number(content: bytes) -> int:
 
 
 @dataclass(frozen=True)
-class Seen:
+class FramePair:
     """A pair of a recording on its common frames from ``low`` on: ``keys`` are its moments, 0 for unknown."""
 
     first: int
@@ -46,7 +46,7 @@ class Seen:
     keys: tuple[int, ...]
 
 
-def see_pair(recording: Recording, first: int, second: int, violating: bool) -> Seen:
+def see_pair(recording: Recording, first: int, second: int, violating: bool) -> FramePair:
     """The pair of two vehicle indices."""
     low = int(max(recording.first_frame[first], recording.first_frame[second]))
     high = int(min(recording.last_frame[first], recording.last_frame[second]))
@@ -59,4 +59,4 @@ def see_pair(recording: Recording, first: int, second: int, violating: bool) -> 
         for a, b in zip(one.tolist(), other.tolist(), strict=True)
     )
     ids = sorted(int(recording.vehicle_id[v]) for v in (first, second))
-    return Seen(ids[0], ids[1], low, violating, keys)
+    return FramePair(ids[0], ids[1], low, violating, keys)

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TypeAlias
 
 from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.windows import Divided, undivided
+from roadproof.recordings.formats.windows import WindowedRecording, undivided
 
 Files: TypeAlias = tuple[Path, ...]
 TRACK_FILES = re.compile(r"(\d+)_(?:recordingMeta|tracksMeta|tracks)\.csv")
 """The names of the files of highD and exiD, with the name of the recording."""
 
 
-def as_a_whole(files: Files) -> Divided | None:
+def as_a_whole(files: Files) -> WindowedRecording | None:
     """What a format does that is never read in windows."""
     return None
 
@@ -36,7 +36,7 @@ class Format:
     find: Callable[[Path], dict[str, Files]]
     read: Callable[[Files], Recording]
     rate_at: Callable[[Files, int], str]
-    divide: Callable[[Files], Divided | None] = as_a_whole
+    divide: Callable[[Files], WindowedRecording | None] = as_a_whole
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class RecordingSource:
         """Read and check it. Raises ``InputError``."""
         return self.format.read(self.files)
 
-    def divided(self) -> Divided:
+    def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
         return self.format.divide(self.files) or undivided(self.read())
 

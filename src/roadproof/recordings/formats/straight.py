@@ -37,7 +37,7 @@ class StraightRoad:
 
 
 @dataclass(frozen=True)
-class Placed:
+class Placement:
     """For each sample what ``Recording`` has: ``occupancy``, ``lane``, ``zones``, and ``inside``."""
 
     occupancy: Masks
@@ -73,7 +73,7 @@ def whole(lane: Lane) -> Lanelet:
 
 def place(
     road: StraightRoad, direction: Integers, s: Floats, d: Floats, length: Floats, width: Floats
-) -> Placed:
+) -> Placement:
     """Where boxes are (semantics §4); all arrays have one entry a sample.
 
     Metres are compared to the micrometre, so that a box which touches a bound in the decimals of its file
@@ -81,7 +81,7 @@ def place(
     """
     if not road.lanelets:
         occupancy, lane = occupy_bands(road.lanes, direction, d, width)
-        return Placed(occupancy, lane, (occupancy != 0).astype(np.uint32), np.zeros((0, 0), np.bool_))
+        return Placement(occupancy, lane, (occupancy != 0).astype(np.uint32), np.zeros((0, 0), np.bool_))
     index = {lane.name: k for k, lane in enumerate(road.lanes)}
     occupancy, zones = np.zeros(len(s), np.uint32), np.zeros(len(s), np.uint32)
     lane = np.full(len(s), -1, np.int64)
@@ -99,7 +99,7 @@ def place(
         zones |= inside[:, j].astype(np.uint32) << np.uint32(ZONES.index(lanelet.zone))
         held = (begin <= along) & (along < end) & (low <= across) & (across < high)
         lane[ours & held] = k
-    return Placed(occupancy, lane, zones, inside)
+    return Placement(occupancy, lane, zones, inside)
 
 
 def _band(road: Road, lane: str) -> tuple[float, float] | None:

@@ -30,7 +30,7 @@ class Window:
 
 
 @dataclass(frozen=True)
-class Divided:
+class WindowedRecording:
     """A recording in ``windows``, of which one at a time is in memory, and what is said of the whole."""
 
     rate: int
@@ -38,10 +38,10 @@ class Divided:
     windows: Callable[[], Iterator[Window]]
 
 
-def undivided(recording: Recording) -> Divided:
+def undivided(recording: Recording) -> WindowedRecording:
     """All of a recording as one window."""
     whole = Window(recording, np.ones(recording.vehicles, np.bool_))
-    return Divided(recording.rate, recording.zone_names, lambda: iter((whole,)))
+    return WindowedRecording(recording.rate, recording.zone_names, lambda: iter((whole,)))
 
 
 def divide(first_frame: Integers, last_frame: Integers, samples: int) -> Iterator[tuple[Bools, Bools]]:

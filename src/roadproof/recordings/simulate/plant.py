@@ -39,7 +39,7 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Planted:
+class PlantedDrive:
     """The ground truth of a planted drive: who (id by the drive's name) and when."""
 
     recording: str
@@ -49,7 +49,7 @@ class Planted:
     removed: tuple[int, ...]
 
 
-def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, Planted]:
+def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, PlantedDrive]:
     """``recording`` with ``drive`` in it, sampled exactly and rounded to hundredths, and who is who.
 
     The drive's vehicles are cars that are seen in the same frames, from its time 0 on, so that the
@@ -94,7 +94,7 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
     merged = join_vehicles(keep_vehicles(recording, ~in_the_way), guests)
     who = dict(zip(names, ids.tolist(), strict=True))
     removed = tuple(recording.vehicle_id[in_the_way].tolist())
-    return merged, Planted(recording.name, who, place.start_frame, last, removed)
+    return merged, PlantedDrive(recording.name, who, place.start_frame, last, removed)
 
 
 def _sample(drive: Drive, name: str, frames: int, place: Place, rate: int) -> list[Floats]:

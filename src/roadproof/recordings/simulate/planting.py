@@ -23,9 +23,9 @@ from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.recordings.evaluate.recheck import trace_of
 from roadproof.recordings.formats.highd import LOWER, UPPER
 from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.simulate.plant import Place, Planted, plant
+from roadproof.recordings.simulate.plant import Place, PlantedDrive, plant
 from roadproof.semantics.sampled.batch import steps_of
-from roadproof.semantics.sampled.recursive import Reading
+from roadproof.semantics.sampled.recursive import TraceReader
 from roadproof.world.motion import state_at
 
 PLANTED_COLUMNS = (
@@ -133,7 +133,7 @@ def _place(recording: Recording, file: DriveFile, way: int, frame: int) -> Place
     return Place(way, frame, steps * dt, round(s, 2), right)
 
 
-def _confirm(recording: Recording, planted: Planted, file: DriveFile, library: Library) -> Truth | str:
+def _confirm(recording: Recording, planted: PlantedDrive, file: DriveFile, library: Library) -> Truth | str:
     """The truth of a planted drive, or why its scenario cannot be told from the samples."""
     number = file.scenario
     assert number is not None
@@ -143,7 +143,7 @@ def _confirm(recording: Recording, planted: Planted, file: DriveFile, library: L
     values = {**default_values(library), **file.values}
     whole = cut_trace(recording, "planted", index, (planted.first_frame, planted.last_frame))
     endangers = bind(danger(spec, *endangered(names)).formula, whole.road, {}, values)
-    reading = Reading(trace_of(whole.batch))
+    reading = TraceReader(trace_of(whole.batch))
     dangers = [k for k in range(whole.batch.samples) if reading.holds(endangers, k, "strong")]
     if not dangers:
         return "no danger within the section"
@@ -153,7 +153,7 @@ def _confirm(recording: Recording, planted: Planted, file: DriveFile, library: L
         return f"its lane {file.lanes.get(LANE)} is not the one that an evaluation takes"
     cut = cut_trace(recording, "planted", index, (planted.first_frame, last))
     formula = bind(read_claim(spec, file.formula).formula, cut.road, {LANE: lane}, values)
-    if not Reading(trace_of(cut.batch)).holds(formula, 0, "strong"):
+    if not TraceReader(trace_of(cut.batch)).holds(formula, 0, "strong"):
         return "the trace ends with its last danger, before the scenario is complete"
     ids = planted.vehicles
     pov2 = ids[names[2]] if len(names) > 2 else None

@@ -76,7 +76,7 @@ def _share(judgement: Judgement, part: Formula, instants: TruthSet, value: bool,
             return
         case f.Not(body):
             want(body, instants, not value)
-        case f.Named(_, _, body):
+        case f.Application(_, _, body):
             want(body, instants, value)
         case f.And(parts) | f.Or(parts):
             if isinstance(part, f.And) is value:

@@ -12,7 +12,7 @@ from typing import assert_never
 
 from roadproof.errors import InputError, UsageError
 from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula, Interval, Named, subformulas
+from roadproof.logic.formula import Application, Formula, Interval, subformulas
 from roadproof.logic.rewrite import bounds_of
 from roadproof.semantics.exact.comparison import compare_truth
 from roadproof.semantics.exact.signals import AbstractSignals, Courses, DriveSignals, Signals
@@ -49,9 +49,9 @@ class Judgement:
             raise UsageError("this formula is no judged part of the formula: judge it for itself")
         return self.truths[formula]
 
-    def named(self) -> tuple[tuple[Named, TruthSet], ...]:
+    def named(self) -> tuple[tuple[Application, TruthSet], ...]:
         """The judged applications of definitions, outermost first, each once."""
-        parts = (x for x in subformulas(self.formula) if isinstance(x, Named) and x in self.truths)
+        parts = (x for x in subformulas(self.formula) if isinstance(x, Application) and x in self.truths)
         return tuple((part, self.truths[part]) for part in parts)
 
     def __str__(self) -> str:
@@ -71,13 +71,13 @@ def judge(
     formula that is not bound, ``UsageError`` for a vehicle that the drive does not have.
     """
     signals = DriveSignals(drive) if isinstance(drive, Drive) else drive
-    judging = _Judging(Courses(signals or AbstractSignals({}, {})), given)
+    judging = _Judge(Courses(signals or AbstractSignals({}, {})), given)
     judging.visit(formula)
     return Judgement(formula, judging.truths)
 
 
 @dataclass(frozen=True)
-class _Judging:
+class _Judge:
     courses: Courses
     given: Mapping[Formula, TruthSet]
     truths: dict[Formula, TruthSet] = field(default_factory=dict)
@@ -100,7 +100,7 @@ class _Judging:
                 return intersection([self.visit(part) for part in parts])
             case f.Or(parts):
                 return union([self.visit(part) for part in parts])
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.visit(body)
             case f.Eventually(interval, body):
                 return eventually(*seconds(interval), self.visit(body))

@@ -63,7 +63,7 @@ def robustness(formula: Formula, drive: Drive, dt: Fraction, horizon: Fraction) 
             f"dt={dt}, horizon={horizon}: that makes {last + 1} samples, above {MOST_SAMPLES}: "
             "choose a larger dt"
         )
-    sampling = _Sampling(Courses(DriveSignals(drive)), dt, last + 1)
+    sampling = _Sampler(Courses(DriveSignals(drive)), dt, last + 1)
     sampling.visit(formula)
     margins = {part: values[: wanted + 1] for part, values in sampling.known.items()}
     return Robustness(formula, dt, horizon, last * dt, _has_endless_window(formula), margins)
@@ -94,7 +94,7 @@ def _has_endless_window(formula: Formula) -> bool:
 
 
 @dataclass(frozen=True)
-class _Sampling:
+class _Sampler:
     """Margins by sample; an array is as long as its values are known, so windows never dangle."""
 
     courses: Courses
@@ -120,7 +120,7 @@ class _Sampling:
                 return _fold(np.minimum, [self.visit(part) for part in parts])
             case f.Or(parts):
                 return _fold(np.maximum, [self.visit(part) for part in parts])
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.visit(body)
             case f.Eventually(interval, body):
                 return _greatest_ahead(self.visit(body), *self._steps(interval))

@@ -23,11 +23,11 @@ def truth_within(formula: Formula, signals: Signals, low: Fraction, high: Fracti
 
     Raises ``InputError`` for a formula with temporal operators, or one that is not bound.
     """
-    return _Within(Courses(_Ending(signals, high + 1)), interval(low, high)).visit(formula)
+    return _RestrictedTruth(Courses(_EndedSignals(signals, high + 1)), interval(low, high)).visit(formula)
 
 
 @dataclass(frozen=True)
-class _Ending:
+class _EndedSignals:
     """Signals that are 0 from ``end`` on, which is behind all that is asked about."""
 
     signals: Signals
@@ -41,7 +41,7 @@ class _Ending:
 
 
 @dataclass(frozen=True)
-class _Within:
+class _RestrictedTruth:
     courses: Courses
     within: TruthSet
     truths: dict[Formula, TruthSet] = field(default_factory=dict)
@@ -74,7 +74,7 @@ class _Within:
                         break
                     found = union([found, self.visit(part)])
                 return found
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.visit(body)
             case _:
                 raise InputError("only a bound formula without temporal operators is judged within a set")

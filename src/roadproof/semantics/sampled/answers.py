@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadproof.errors import InputError
-from roadproof.logic.formula import Formula, Named
+from roadproof.logic.formula import Application, Formula
 from roadproof.semantics.sampled.batch import Array, Batch, Integers, inside
 from roadproof.semantics.sampled.boolean import BITS, unpack
 from roadproof.semantics.sampled.semantics import Evaluation, View
@@ -40,7 +40,7 @@ class Verdicts(Generic[Key]):
 
     convention: Convention
     answers: Mapping[Key, TruthArrays]
-    named: Mapping[Named, TruthArrays]
+    named: Mapping[Application, TruthArrays]
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Margin:
 class Margins(Generic[Key]):
     convention: Convention
     margins: Mapping[Key, Margin]
-    named: Mapping[Named, Margin]
+    named: Mapping[Application, Margin]
 
 
 def views(convention: Convention) -> tuple[View, View]:

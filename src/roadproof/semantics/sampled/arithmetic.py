@@ -169,7 +169,7 @@ def _own(own: t.Own, batch: Batch, rows: slice, columns: slice) -> Array:
 def _program(
     comparisons: Sequence[Compare], operation: Callable[[Compare], tuple[Operation, bool]]
 ) -> Program:
-    building = _Building()
+    building = _Builder()
     results = []
     for compare in comparisons:
         left, right = building.place(compare.left), building.place(compare.right)
@@ -188,7 +188,7 @@ def _dead(steps: Sequence[Step], results: Iterable[int]) -> tuple[tuple[int, ...
     return tuple(tuple(d) for d in dead)
 
 
-class _Building:
+class _Builder:
     def __init__(self) -> None:
         self.steps: list[Step] = []
         self.known: dict[Step, int] = {}

@@ -17,7 +17,7 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
-from roadproof.logic.formula import Compare, Formula, Named
+from roadproof.logic.formula import Application, Compare, Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_names
 from roadproof.logic.terms import Own
@@ -79,8 +79,8 @@ class Monitor(Generic[Key]):
     programs: dict[tuple[Compare, ...], Program] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
-    def named(self) -> Mapping[Named, Formula]:
-        nodes = [x for x in f.subformulas(*self.formulas.values()) if isinstance(x, Named)]
+    def named(self) -> Mapping[Application, Formula]:
+        nodes = [x for x in f.subformulas(*self.formulas.values()) if isinstance(x, Application)]
         return dict(zip(nodes, f.share(nodes, _unnamed), strict=True))
 
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
@@ -213,7 +213,7 @@ def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
 
 
 def _unnamed(formula: Formula) -> Formula:
-    return formula.body if isinstance(formula, Named) else formula
+    return formula.body if isinstance(formula, Application) else formula
 
 
 def _check_closed(formulas: Mapping[Key, Formula]) -> None:

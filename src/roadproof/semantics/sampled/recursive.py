@@ -36,13 +36,13 @@ def answer(formula: Formula, trace: Trace, sample: int = 0, clip: bool = False) 
 
     With ``clip``, windows are cut at the last sample and the answer is never ``undecided``.
     """
-    reading = Reading(trace)
+    reading = TraceReader(trace)
     if reading.holds(formula, sample, "clip" if clip else "strong"):
         return "true"
     return "undecided" if not clip and reading.holds(formula, sample, "weak") else "false"
 
 
-class Reading:
+class TraceReader:
     """Truth and margins of formulas over one trace."""
 
     def __init__(self, trace: Trace) -> None:
@@ -78,7 +78,7 @@ class Reading:
                 return all(self.holds(p, k, view) for p in parts)
             case f.Or(parts):
                 return any(self.holds(p, k, view) for p in parts)
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.holds(body, k, view)
             case f.Eventually(interval, body):
                 window, whole = self.window(interval, k)
@@ -126,7 +126,7 @@ class Reading:
                 return min(self.margin(p, k, view) for p in parts)
             case f.Or(parts):
                 return max(self.margin(p, k, view) for p in parts)
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.margin(body, k, view)
             case f.Eventually(interval, body):
                 window, whole = self.window(interval, k)

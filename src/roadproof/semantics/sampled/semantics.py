@@ -78,7 +78,7 @@ class Evaluation:
             case f.Truth(value):
                 top = self.lattice.top if value else self.lattice.bottom
                 return np.full(self.shape, top)
-            case f.Named(_, _, body):
+            case f.Application(_, _, body):
                 return self.value(body, view)
             case f.Not(body):
                 made: Array = self.lattice.complement(self.value(body, OPPOSITE[view]))

@@ -8,7 +8,7 @@ from roadproof.analysis.catalogue.request import further_options, read_request
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.drivers.models import MODELS
 from roadproof.frontends.report.page.markup import Content, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import folded, short
 
 _SIZES = ("length", "width")
@@ -59,7 +59,7 @@ def _start(x: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} {value:.3g}" for name, value in said if name not in _SIZES)
 
 
-def provenance(data: Mapping[str, Any], book: Book) -> list[Content]:
+def provenance(data: Mapping[str, Any], book: PageContext) -> list[Content]:
     """How the answer was made: command, version, definitions, parameters, and digests of tests."""
     if "request" not in data:
         return []

@@ -9,16 +9,16 @@ from typing import Any
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.frontends.report.page.catalogue_facts import decisions, provenance
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import behind, cell, folded, matrix, short, verdict
 from roadproof.frontends.report.page.results import Result
-from roadproof.frontends.report.viewer_data import Asked
+from roadproof.frontends.report.viewer_data import ShownFormula
 from roadproof.library.scenarios import danger_comes, number_in, roles
 
 MOST_FORMULAS = 6
 
 
-def catalogue(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def catalogue(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """What tests show: a row for each situation, a matrix of tests, and what is odd about them."""
     data = result.data
     gaps = data.get("gaps") or {}
@@ -128,7 +128,7 @@ def _row(
 
 
 def _test(
-    result: Result, place: int, x: Mapping[str, Any], facts: Sequence[Mapping[str, Any]], book: Book
+    result: Result, place: int, x: Mapping[str, Any], facts: Sequence[Mapping[str, Any]], book: PageContext
 ) -> Markup:
     """One test: what it is and claims; its drive with what it shows, or what is proved of its formula."""
     summary = (tag("b", x.get("id")), f" {x['title']}" if x.get("title") else "")
@@ -146,7 +146,7 @@ def _test(
     return folded(summary, *inside, *(_fact(y, result, book) for y in facts), id=_id(result, place))
 
 
-def _drive(result: Result, x: Mapping[str, Any], book: Book) -> Markup:
+def _drive(result: Result, x: Mapping[str, Any], book: PageContext) -> Markup:
     """The drive of a test with the scenarios that it is said to show, judged for the page."""
     path = Path(str(x["file"]))
     if not x.get("dense"):
@@ -172,14 +172,14 @@ def _drive(result: Result, x: Mapping[str, Any], book: Book) -> Markup:
         first, *others = map(str, y.get("vehicles", ()))
         group = others[0] if len(others) == 1 else f"{{{', '.join(others)}}}"
         text = f"{y['what']}({first}, {group}, {lanes[str(y.get('lane'))]})"
-        asked.append(Asked("watch" if k else "question", text))
+        asked.append(ShownFormula("watch" if k else "question", text))
     if not asked:
         home = book.library.select(set_name)
-        asked, since = [Asked("question", danger_comes(home, *roles(2)).text)], []
+        asked, since = [ShownFormula("question", danger_comes(home, *roles(2)).text)], []
     return book.drive(path, put=put, asked=asked, since=since)
 
 
-def _fact(x: Mapping[str, Any], result: Result, book: Book) -> Markup:
+def _fact(x: Mapping[str, Any], result: Result, book: PageContext) -> Markup:
     relation = _RELATIONS.get(str(x.get("relation")), str(x.get("relation")))
     told = f" {x.get('test') or ''} {relation} {x.get('other') or ''} ".replace("  ", " ")
     inside: list[Content] = [tag("p", x["reason"])] if x.get("reason") else []
@@ -193,7 +193,7 @@ def _fact(x: Mapping[str, Any], result: Result, book: Book) -> Markup:
 _RELATIONS = {"runs": "can be run", "empty": "can never be run", "reaches": "reaches", "open": "is open:"}
 
 
-def _gap(x: Mapping[str, Any], result: Result, book: Book) -> Markup:
+def _gap(x: Mapping[str, Any], result: Result, book: PageContext) -> Markup:
     """A class of gaps that no test shows: a drive of it, or a proof that there is none."""
     inside: list[Content] = [tag("p", tag("code", x["claim"]))] if x.get("claim") else []
     inside += [tag("p", x["reason"])] if x.get("reason") else []

@@ -10,14 +10,14 @@ from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim,
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import core, counts, filtered, folded, verdict
 from roadproof.frontends.report.page.results import Result
 from roadproof.library.motion import statement
 from roadproof.verdict import Verdict
 
 
-def evidence(findings: Sequence[Finding], book: Book, solver: str) -> Markup:
+def evidence(findings: Sequence[Finding], book: PageContext, solver: str) -> Markup:
     """Evidence with what was found of it: certificates in a table, each drive with its viewer."""
     accepted = [x for x in findings if x.outcome is Acceptance.ACCEPTED]
     wrong = [(str(x.outcome), x.label, x.where, x.reason) for x in findings if x not in accepted]
@@ -46,7 +46,7 @@ def _notes(finding: Finding) -> str:
     return "; ".join([*finding.checked, *([unchecked] if unchecked else [])])
 
 
-def claims(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def claims(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """An index of claims, or the answer of ``prove --json``."""
     entries = [*_entries_of(result)]
     rows: list[tuple[Content, ...]] = []
@@ -86,7 +86,7 @@ def _label(claim: Claim | ClaimAnswer) -> str:
     return f"{claim.property}{f'-{claim.part}' if claim.part else ''}{scenario}"
 
 
-def _against(claim: Claim | ClaimAnswer, result: Result, book: Book) -> Markup:
+def _against(claim: Claim | ClaimAnswer, result: Result, book: PageContext) -> Markup:
     if isinstance(claim, ClaimAnswer) and claim.refuted_by == "drive":
         return book.drive(claim.counterexample["drive"])
     if isinstance(claim, Claim) and claim.evidence is not None and result.folder is not None:
@@ -94,7 +94,7 @@ def _against(claim: Claim | ClaimAnswer, result: Result, book: Book) -> Markup:
     return tag("p", "Refuted by a trace over points in time, which may jump; it is in the result.")
 
 
-def witnesses(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def witnesses(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """The answer of ``witness --json``."""
     made = []
     outcomes = read(drives.Answer, result.data, result.name).verdicts
@@ -116,7 +116,7 @@ _RELATIONS: Mapping[comparisons.Relation, str] = {
 }
 
 
-def comparison(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def comparison(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """The answer of ``compare --json``."""
     answer = read(comparisons.Answer, result.data, result.name)
     one, two = answer.first, answer.second

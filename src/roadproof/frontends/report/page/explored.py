@@ -7,18 +7,20 @@ from roadproof.evidence.answers.explore import Exploration, Extreme, Finding, In
 from roadproof.evidence.codec import read
 from roadproof.frontends.report.explore import show
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import cell, counts, evidence_of, folded, matrix, verdict
 from roadproof.frontends.report.page.results import Result
 
 
-def explored(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def explored(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """Every exploration: its values, where they change, and the extremes of measures."""
     every = read(Index, result.data, result.name).explored
     return joined([_exploration(f"{result.id}-{k}", x, result, book, words) for k, x in enumerate(every)])
 
 
-def _exploration(place: str, x: Exploration, result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def _exploration(
+    place: str, x: Exploration, result: Result, book: PageContext, words: Mapping[int, str]
+) -> Markup:
     called = "" if x.scenario is None else f"scenario {x.scenario} {words.get(x.scenario, '')}".rstrip()
     parts: list[Content] = [tag("h3", called, " ", tag("code", x.formula))]
     if x.vary and x.values:
@@ -86,7 +88,7 @@ def _measured(found: Finding, extreme: Extreme) -> str:
     return _number(found.at[0], extreme.unit) if found.at else "no value"
 
 
-def _behind(target: str, said: str, found: Finding, result: Result, book: Book) -> Markup:
+def _behind(target: str, said: str, found: Finding, result: Result, book: PageContext) -> Markup:
     inside: list[Content] = [tag("p", tag("code", found.formula))]
     inside += [tag("p", found.reason)] if found.reason else []
     shown = evidence_of(result, book, found.drive, found.certificate)

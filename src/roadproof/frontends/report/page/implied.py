@@ -6,7 +6,7 @@ from roadproof.evidence.answers import order as implications
 from roadproof.evidence.answers import redundancy as parts_of_scenarios
 from roadproof.evidence.codec import read
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import (
     cell,
     counts,
@@ -19,7 +19,7 @@ from roadproof.frontends.report.page.pieces import (
 from roadproof.frontends.report.page.results import Result
 
 
-def order(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def order(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """A matrix of who implies whom: behind each cell the proof, or a drive on which that is false."""
     index = read(implications.Index, result.data, result.name)
     edges = {(x.above, x.below) for x in index.edges}
@@ -86,7 +86,7 @@ def _scenario(name: str, words: Mapping[int, str], scope: str) -> Markup:
     return tag("th", name, scope=scope, title=words.get(_number(name)))
 
 
-def redundancy(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def redundancy(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """The parts of scenarios: which could be left out, by proof, and drives that need the others."""
     every = read(parts_of_scenarios.Index, result.data, result.name).verdicts
     entries = sorted(every, key=lambda x: x.redundant is False)

@@ -7,14 +7,14 @@ from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers.overlap import Index, Pair
 from roadproof.evidence.codec import read
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import cell, counts, evidence_of, folded, matrix, short, verdict
 from roadproof.frontends.report.page.results import Result
 
 End: TypeAlias = tuple[int, str]
 
 
-def overlap(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def overlap(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """Every pair of scenarios: a cell each, and behind it the drive or the clash."""
     pairs = read(Index, result.data, result.name).verdicts
     several = len({x for pair in pairs for x in (pair.set_a, pair.set_b)}) > 1
@@ -55,7 +55,7 @@ def _id(result: Result, what: str, place: object) -> str:
     return f"{what}-{result.id}-{place}"
 
 
-def _pair(result: Result, place: int, pair: Pair, book: Book, words: Mapping[int, str]) -> Markup:
+def _pair(result: Result, place: int, pair: Pair, book: PageContext, words: Mapping[int, str]) -> Markup:
     one, two = (tag("b", f"{x} {words.get(x, '')}".strip()) for x in (pair.a, pair.b))
     inside: list[Content] = [tag("p", tag("code", pair.formula))]
     inside += [tag("p", pair.reason)] if pair.reason else []
@@ -64,7 +64,7 @@ def _pair(result: Result, place: int, pair: Pair, book: Book, words: Mapping[int
     return folded((verdict(pair.verdict), " ", one, " and ", two), *inside, id=_id(result, "pair", place))
 
 
-def coverage(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def coverage(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """Which disturbances a set misses: classes of gaps by scenario, and behind each cell a drive."""
     index = read(gaps.Index, result.data, result.name)
     count = len(index.gaps)
@@ -90,7 +90,7 @@ def coverage(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     return joined(parts)
 
 
-def _no_gap(result: Result, place: int, x: gaps.CountedClass, book: Book) -> Markup:
+def _no_gap(result: Result, place: int, x: gaps.CountedClass, book: PageContext) -> Markup:
     """A class without a drive: what was proved of it, or why it is not known."""
     told = f" scenario {x.scenario}, {x.component}: " if x.scenario is not None else " "
     inside: list[Content] = [tag("p", tag("code", x.claim))] if x.claim else []

@@ -10,7 +10,7 @@ from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.report.page.markup import Markup, tag
-from roadproof.frontends.report.viewer_data import Asked, viewer_data
+from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
 from roadproof.library.specification import Library
 
 MOST_STRIPS = 14
@@ -19,7 +19,7 @@ _NAMES, _CLOCK, _ROW = 250, 420, 16  # pixels of names and of the clock, and bet
 
 
 @dataclass
-class Book:
+class PageContext:
     """``documents`` of the viewer, in the order in which drives are met; ``findings`` of evidence by file.
 
     ``inside``: findings on evidence inside an index, by the place that they name. ``rejected``: what is wrong
@@ -35,7 +35,7 @@ class Book:
     def drive(
         self,
         file: Path | Mapping[str, Any],
-        asked: Sequence[Asked] = (),
+        asked: Sequence[ShownFormula] = (),
         since: Sequence[float] = (0.0,),
         put: Callable[[DriveFile], DriveFile] = lambda file: file,
     ) -> Markup:

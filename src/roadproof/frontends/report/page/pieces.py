@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from roadproof.frontends.report.page.markup import Content, Markup, joined, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result
 
 # What each verdict is drawn as: a sign that needs no colour, and the class of its colour.
@@ -84,7 +84,7 @@ def core(parts: object) -> Markup:
     return joined([tag("p", "No drive: these parts clash."), tag("ul", *items)])
 
 
-def behind(entry: Mapping[str, Any], result: Result, book: Book) -> list[Content]:
+def behind(entry: Mapping[str, Any], result: Result, book: PageContext) -> list[Content]:
     """As ``evidence_of``, of an answer as plain data."""
     cores = entry.get("cores") or ([{"parts": entry["core"]}] if entry.get("core") else [])
     clashes = [(x.get("formula", ""), x.get("parts", ())) for x in cores]
@@ -93,7 +93,7 @@ def behind(entry: Mapping[str, Any], result: Result, book: Book) -> list[Content
 
 def evidence_of(
     result: Result,
-    book: Book,
+    book: PageContext,
     drive: object = None,
     certificate: object = None,
     cores: Sequence[tuple[str, Sequence[str]]] = (),

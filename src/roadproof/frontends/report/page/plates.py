@@ -9,7 +9,7 @@ from roadproof.drivers.manoeuvres import MANOEUVRES, Quantity
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.words import legend
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import behind, counts, folded, verdict, words_in
 from roadproof.frontends.report.page.results import Result
 from roadproof.frontends.report.preventable import COLOURS, measured
@@ -20,7 +20,7 @@ _WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and 
 Plate = Mapping[str, Any]
 
 
-def plates(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def plates(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """Each choice of fixed values as a picture with all its models, then plates and lemmas with evidence."""
     found: Sequence[Plate] = result.data.get("plates", ())
     known = MANOEUVRES[result.data["manoeuvre"]].quantities
@@ -154,7 +154,7 @@ def _number(
     return tag("text", f"{value / _unit(known, name)[1]:.4g}", x=x, y=y, text_anchor=anchor)
 
 
-def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, book: Book) -> Markup:
+def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, book: PageContext) -> Markup:
     """A plate: its formula, some of what it says in words, a drive on each side."""
     fixed = _told(known, x.get("fixed", {}))
     inside: list[Content] = [tag("p", tag("code", x.get("formula")))]

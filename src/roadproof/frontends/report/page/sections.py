@@ -16,17 +16,17 @@ from roadproof.frontends.report.page import (
     traced,
 )
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import behind, filtered, folded, short, verdict
 from roadproof.frontends.report.page.results import Result
 
-Section = Callable[[Result, Book, Mapping[int, str]], Markup]
+Section = Callable[[Result, PageContext, Mapping[int, str]], Markup]
 MOST_ROWS, MOST_REASONS = 2000, 20
 _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters", "specs", "view")
 _EMPTY: tuple[object, ...] = (None, "", [], {})
 
 
-def section(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def section(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """A result of any kind; ``words`` are what scenarios are called. Raises ``InputError``."""
     title, made = _SECTIONS.get(result.kind, (_TITLES.get(result.kind, result.kind), _plain))
     of_set = result.data.get("set")
@@ -42,7 +42,7 @@ def section(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
     return tag("section", tag("h2", told), _rejection(result, book), shown, id=f"result-{result.id}")
 
 
-def _rejection(result: Result, book: Book) -> Markup | None:
+def _rejection(result: Result, book: PageContext) -> Markup | None:
     """In red, above all else, what is wrong with the answer as a whole."""
     reasons = () if result.folder is None else book.rejected.get(str(result.folder / "index.json"), ())
     if not reasons:
@@ -52,12 +52,12 @@ def _rejection(result: Result, book: Book) -> Markup | None:
     return tag("div", tag("p", f"roadproof check rejects this answer{more}:"), listed, class_="wrong")
 
 
-def evidence_section(findings: Sequence[Finding], book: Book, solver: str) -> Markup:
+def evidence_section(findings: Sequence[Finding], book: PageContext, solver: str) -> Markup:
     """Evidence that no result names."""
     return tag("section", tag("h2", "Evidence"), claims.evidence(findings, book, solver))
 
 
-def _plain(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def _plain(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """Each list of entries as a table, with the drives that they name below it; what is left in lines."""
     parts: list[Content] = []
     for key, value in result.data.items():

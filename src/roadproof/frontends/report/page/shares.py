@@ -9,12 +9,12 @@ from roadproof.evidence.answers.traffic import Answer, Prediction, Row
 from roadproof.evidence.codec import read
 from roadproof.frontends.report.explore import show
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book
+from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.pieces import bar, evidence_of, folded, short, verdict
 from roadproof.frontends.report.page.results import Result
 
 
-def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def classes(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """Classes that exclude each other: the share of each, a drive for each, and what is proved of them."""
     index = read(Index, result.data, result.name)
     totals: Counter[int] = Counter()  # situations by how many vehicles they have
@@ -43,7 +43,7 @@ def classes(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
 _SHARES = ("traces", "share of situations with as many vehicles")
 
 
-def traffic(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def traffic(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """The results table of recordings, with recall as bars, and what detectors of earlier works report."""
     answer = read(Answer, result.data, result.name)
     facts = {

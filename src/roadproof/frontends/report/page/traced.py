@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from roadproof.evidence.answers.monitor import Answer, Spans
 from roadproof.evidence.codec import read, write
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
-from roadproof.frontends.report.page.page_context import Book, strips
+from roadproof.frontends.report.page.page_context import PageContext, strips
 from roadproof.frontends.report.page.pieces import short
 from roadproof.frontends.report.page.results import Result
 
 _SIGNS = {"true": ("✓", "proof"), "false": ("✗", "against")}
 
 
-def monitored(result: Result, book: Book, words: Mapping[int, str]) -> Markup:
+def monitored(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """The answer of ``monitor --json``, which holds no trace: what was said of it, and on what."""
     answer = read(Answer, result.data, result.name)
     sign, kind = _SIGNS.get(answer.verdict, ("?", "doubt"))
