@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, line
@@ -82,15 +81,3 @@ def end_of(point: Point) -> End:
     if isinstance(point, Root):
         return End(round(approximate(point), _PLACES), f"root of {list(point.polynomial)}, constant first")
     return End(round(float(point), _PLACES), str(point))
-
-
-def line_data(told: Line) -> dict[str, Any]:
-    """A line as plain data."""
-    spans = [[{"near": end.near, "exact": end.exact} for end in span] for span in told.spans]
-    return {"at": str(told.at), "unpreventable": spans}
-
-
-def read_line(said: Mapping[str, Any]) -> Line:
-    """A line from plain data."""
-    spans = tuple((End(a["near"], a["exact"]), End(b["near"], b["exact"])) for a, b in said["unpreventable"])
-    return Line(Fraction(said["at"]), spans)

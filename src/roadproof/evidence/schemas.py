@@ -17,6 +17,7 @@ from roadproof.evidence.answers import (
     monitor,
     order,
     overlap,
+    plates,
     proofs,
     redundancy,
     shared,
@@ -49,6 +50,10 @@ TITLES: Mapping[type, str] = {
     ),
     order.Index: "roadproof order --json, and index.json of its folder: which scenarios imply which",
     overlap.Index: "roadproof overlap --json, and index.json of its folder: which scenarios hold together",
+    plates.Index: (
+        "roadproof preventable --json, and index.json of its folder: from which initial values a driver "
+        "prevents a collision"
+    ),
     redundancy.Index: (
         "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
     ),
@@ -58,6 +63,7 @@ RECORDS: Mapping[type, type] = {
     coverage.Index: coverage.Record,
     drives.Answer: drives.Record,
     order.Index: order.Record,
+    plates.Index: plates.Record,
 }
 """Kept answers that are made of more than the index."""
 

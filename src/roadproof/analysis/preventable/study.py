@@ -20,20 +20,21 @@ from roadproof.drivers.claims import SIDES, Side
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.idle import chosen, idle
 from roadproof.drivers.lemmas import Lemma, lemmas_for
-from roadproof.drivers.lines import Line, end_of, line_data, read_line, sides_in, told_line, truths
+from roadproof.drivers.lines import Line, end_of, sides_in, told_line, truths
 from roadproof.drivers.manoeuvres import Manoeuvre, Values
 from roadproof.drivers.models import MODELS, Model, boundary_of, parts_of, touched
 from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of, spans_of
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
+from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, statement, value_texts
 from roadproof.runtime.budget import BudgetExceeded
-from roadproof.verdict import Verdict
+from roadproof.verdict import ClaimVerdict, Verdict
 
-SCHEMA = "roadproof/preventable/1"
 _ROWS = 10  # in which a drive of a scenario is looked for
 
 
@@ -74,7 +75,7 @@ class Plate:
         return gradual.TOLD if gradual.RATE in self.fixed else ""
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> kept.SideVerdict:
         """WITNESSED where each side that the plane has is shown by a drive."""
         sides = sides_in(self.lines, self.along, MODELS[self.model].is_stepped)
         lacking = any(x.drive is None and x.side in sides for x in self.shown)
@@ -86,7 +87,7 @@ class LemmaResult:
     """A lemma with its verdict."""
 
     lemma: Lemma
-    verdict: Verdict
+    verdict: ClaimVerdict
     assuming: tuple[str, ...] = ()
     certificate: Certificate | None = None
     reason: str = ""
@@ -134,7 +135,7 @@ class Preventable:
             "along": [self.manoeuvre.line, *map(str, self.along)],
             "across": [self.manoeuvre.across, *map(str, self.across), str(self.rows)],
         }
-        return Question(SCHEMA, said | self.basis.said(), {}, self.basis.library)
+        return Question(kept.SCHEMA, said | self.basis.said(), {}, self.basis.library)
 
     @cached_property
     def plates(self) -> dict[str, PlatePiece]:
@@ -251,82 +252,84 @@ class Preventable:
 
     def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> dict[str, Any]:
         if isinstance(answer, LemmaResult):
-            return {
-                "lemma": {
-                    "name": answer.lemma.name,
-                    "title": answer.lemma.title,
-                    "claim": answer.lemma.claim,
-                    "assuming": list(answer.assuming),
-                    "verdict": str(answer.verdict),
-                    "certificate": shelf.certificate(f"{name}.json", answer.certificate),
-                    "reason": answer.reason,
-                }
-            }
-        return {
-            "plate": {
-                "name": name,
-                "model": answer.model,
-                "fixed": {key: str(value) for key, value in answer.fixed.items()},
-                "verdict": str(answer.verdict),
-                "formula": touched(self.manoeuvre.vehicles)
-                if answer.motion
-                else boundary_of(self.manoeuvre.name, answer.model, self.manoeuvre.vehicles),
-                "stepped": answer.stepped,
-                "motion": answer.motion,
-                "lines": [line_data(x) for x in answer.lines],
-                "shown": [self._shown_data(answer, x, shelf) for x in answer.shown],
-                "reason": answer.reason,
-            }
-        }
+            return write(kept.Record(lemma=self._kept_lemma(name, answer, shelf)))
+        return write(kept.Record(plate=self._kept_plate(name, answer, shelf)))
 
-    def _shown_data(self, plate: Plate, shown: Shown, shelf: EvidenceStore) -> dict[str, Any]:
-        drive = shown.drive
-        claim = "" if drive is None else drive.file.formula
-        return {
-            "side": shown.side,
-            "at": {name: str(value) for name, value in shown.values.items()},
-            "verdict": str(Verdict.UNKNOWN if drive is None else Verdict.WITNESSED),
-            "formula": claim,
-            "scenario": shown.scenario,
-            "drive": shelf.drive(f"{plate.name}-{shown.side}.json", drive),
-            "reason": shown.reason,
-        }
+    def _kept_lemma(self, name: str, answer: LemmaResult, shelf: EvidenceStore) -> kept.Lemma:
+        return kept.Lemma(
+            name=answer.lemma.name,
+            title=answer.lemma.title,
+            claim=answer.lemma.claim,
+            assuming=answer.assuming,
+            verdict=answer.verdict,
+            certificate=shelf.certificate(f"{name}.json", answer.certificate),
+            reason=answer.reason,
+        )
+
+    def _kept_plate(self, name: str, answer: Plate, shelf: EvidenceStore) -> kept.Plate:
+        vehicles = self.manoeuvre.vehicles
+        boundary = boundary_of(self.manoeuvre.name, answer.model, vehicles)
+        return kept.Plate(
+            name=name,
+            model=answer.model,
+            fixed={key: str(value) for key, value in answer.fixed.items()},
+            verdict=answer.verdict,
+            formula=touched(vehicles) if answer.motion else boundary,
+            stepped=answer.stepped,
+            motion=answer.motion,
+            lines=tuple(map(kept.Line.of, answer.lines)),
+            shown=tuple(_kept_drive(name, x, shelf) for x in answer.shown),
+            reason=answer.reason,
+        )
 
     def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Answer]:
-        if "lemma" in record:
-            said = record["lemma"]
-            name = f"lemma-{said['name']}"
-            if name not in self.lemmas or self.lemmas[name].claim != said["claim"]:
+        said = read(kept.Record, record, "a kept answer")
+        if said.lemma is not None:
+            name = f"lemma-{said.lemma.name}"
+            if name not in self.lemmas or self.lemmas[name].claim != said.lemma.claim:
                 raise InputError(f"{name} is no lemma of this question")
-            certificate = shelf.read_certificate(said["certificate"])
-            verdict, assuming = Verdict(said["verdict"]), tuple(said["assuming"])
-            return name, LemmaResult(self.lemmas[name], verdict, assuming, certificate, said["reason"])
-        said = record["plate"]
-        fixed = {name: Fraction(value) for name, value in said["fixed"].items()}
+            certificate = shelf.read_certificate(said.lemma.certificate)
+            known, assuming = self.lemmas[name], said.lemma.assuming
+            return name, LemmaResult(known, said.lemma.verdict, assuming, certificate, said.lemma.reason)
+        plate = said.plate
+        if plate is None:
+            raise InputError("a kept answer has neither a plate nor a lemma")
         shown = tuple(
-            Shown(
-                x["side"],
-                {name: Fraction(value) for name, value in x["at"].items()},
-                shelf.read_drive(x["drive"]),
-                x["reason"],
-                x["scenario"],
-            )
-            for x in said["shown"]
+            Shown(x.side, _exact(x.at), shelf.read_drive(x.drive), x.reason, x.scenario) for x in plate.shown
         )
-        lines = tuple(read_line(x) for x in said["lines"])
-        plate = Plate(said["name"], said["model"], fixed, self.along, lines, shown, said["reason"])
-        return said["name"], plate
+        lines = tuple(x.drawn for x in plate.lines)
+        fixed = _exact(plate.fixed)
+        return plate.name, Plate(plate.name, plate.model, fixed, self.along, lines, shown, plate.reason)
 
     def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
-        return {
-            **self.question.heading,
-            "view": "dense",
-            "seconds": round(seconds, 1),
-            "idle": list(self.idle),
-            "plates": [records[name]["plate"] for name in self.plates],
-            "lemmas": [records[name]["lemma"] for name in self.lemmas],
-        }
+        found = {name: read(kept.Record, x, "a kept answer") for name, x in records.items()}
+        return write(
+            kept.Index(
+                **self.question.heading,
+                seconds=round(seconds, 1),
+                idle=self.idle,
+                plates=tuple(x for name in self.plates if (x := found[name].plate) is not None),
+                lemmas=tuple(y for name in self.lemmas if (y := found[name].lemma) is not None),
+            )
+        )
+
+
+def _kept_drive(plate: str, shown: Shown, shelf: EvidenceStore) -> kept.SideDrive:
+    drive = shown.drive
+    return kept.SideDrive(
+        side=shown.side,
+        at={name: str(value) for name, value in shown.values.items()},
+        verdict=Verdict.UNKNOWN if drive is None else Verdict.WITNESSED,
+        formula="" if drive is None else drive.file.formula,
+        scenario=shown.scenario,
+        drive=shelf.drive(f"{plate}-{shown.side}.json", drive),
+        reason=shown.reason,
+    )
+
+
+def _exact(values: Mapping[str, str]) -> dict[str, Fraction]:
+    return {name: Fraction(value) for name, value in values.items()}
 
 
 def said_of(proved: LemmaResult) -> str:

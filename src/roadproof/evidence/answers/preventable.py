@@ -1,49 +1,53 @@
-"""The index and the kept answers of ``roadproof preventable``: drives on both sides, and lemmas."""
+"""How ``check`` reads the index and the kept answers of ``roadproof preventable``."""
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
+from functools import cached_property, partial
 
 from roadproof.drivers import gradual
+from roadproof.drivers import lines as drawn
 from roadproof.drivers.boundary import Plane, plane_of
-from roadproof.drivers.claims import SIDES, Side, claim_of, with_also
+from roadproof.drivers.claims import SIDES, claim_of, with_also
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.idle import idle
 from roadproof.drivers.lemmas import lemmas_for
-from roadproof.drivers.lines import End, Line, line_data, sides_in, told_line, truths
-from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre, ManoeuvreName, signals_of
+from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre, signals_of
 from roadproof.drivers.models import MODELS, boundary_of, manoeuvre_of, models_for, parts_of, touched
 from roadproof.errors import InputError
-from roadproof.evidence.answers.entry import Entry, evidence_name, shows_of
-from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.answers.entry import Entry, file_of, shows_of
+from roadproof.evidence.answers.plates import Index, Lemma, Line, Plate, Preamble, Record, SideDrive
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.strict import Fields, rational, read_assuming
+from roadproof.evidence.strict import Fields, rational
 from roadproof.library.bind import values_with
+from roadproof.logic.formula import Formula as FormulaTree
+from roadproof.verdict import Verdict
 from roadproof.world.signals import STARTING
 
-SCHEMA = "roadproof/preventable/1"
 DRIVERS = "driver.spec"
-_PLATE = ("name", "model", "fixed", "verdict", "formula", "stepped", "motion", "lines", "shown", "reason")
-_SHOWN = ("side", "at", "verdict", "formula", "scenario", "drive", "reason")
-_LEMMA = ("name", "title", "claim", "assuming", "verdict", "certificate", "reason")
 _PLACES = "that the places of the plate are where it holds of the controller's drives"
 _CONTROLLER = "that the accelerations of SV are what the controller of its model computes"
 
 
 @dataclass(frozen=True)
-class _Plate:
-    """What a plate says of itself, compared with what is asked; ``fixed`` in SI units."""
+class _Plane:
+    """A plate with the plane that the question gives it."""
 
-    line: Fields
-    name: str
-    model: str
-    manoeuvre: Manoeuvre
+    said: Plate
+    where: str
+    background: Background
+    preamble: Preamble
     fixed: Mapping[str, Fraction]
 
     @property
+    def manoeuvre(self) -> Manoeuvre:
+        return MANOEUVRES[self.preamble.manoeuvre]
+
+    @property
     def is_stepped(self) -> bool:
-        return MODELS[self.model].is_stepped
+        return MODELS[self.said.model].is_stepped
 
     @property
     def is_gradual(self) -> bool:
@@ -52,96 +56,117 @@ class _Plate:
     @property
     def boundary(self) -> str:
         vehicles = self.manoeuvre.vehicles
-        return (
-            touched(vehicles) if self.is_gradual else boundary_of(self.manoeuvre.name, self.model, vehicles)
-        )
+        if self.is_gradual:
+            return touched(vehicles)
+        return boundary_of(self.manoeuvre.name, self.said.model, vehicles)
 
-    def fault(self, lines: Sequence[Line], along: tuple[Fraction, Fraction]) -> str:
+    @cached_property
+    def plane(self) -> Plane:
+        """Raises ``InputError``, ``UsageError``."""
+        manoeuvre, where = self.manoeuvre, self.background.said.where
+        line, low, high = self.preamble.along
+        row, least, most, number = self.preamble.across
+        if (line, row) != (manoeuvre.line, manoeuvre.across):
+            raise InputError(f"{where}: a {manoeuvre.name} varies {manoeuvre.line} and {manoeuvre.across}")
+        along = rational(low, where), rational(high, where)
+        across = rational(least, where), rational(most, where)
+        return plane_of(manoeuvre, self.fixed, along, across, int(number))
+
+    def fault(self) -> str:
         """What the plate says that does not follow from its model, its values and its lines, or nothing."""
+        said = self.said
         told = "-".join(f"{name}-{value}".replace("/", "_") for name, value in self.fixed.items())
-        name = f"{self.model}-{told}" if told else self.model
-        if self.name != name:
-            return f"its name is {self.name[:60]}, but its model and values say {name}"
-        if self.line.text("formula") != self.boundary:
-            return (
-                f"its formula is {self.line.text('formula')[:80]}, but that of its model is {self.boundary}"
-            )
-        for field, is_so in (("stepped", self.is_stepped), ("motion", self.is_gradual)):
-            if bool(self.line.text(field)) is not is_so:
+        name = f"{said.model}-{told}" if told else said.model
+        if said.name != name:
+            return f"its name is {said.name[:60]}, but its model and values say {name}"
+        if said.formula != self.boundary:
+            return f"its formula is {said.formula[:80]}, but that of its model is {self.boundary}"
+        for field, text, is_so in (
+            ("stepped", said.stepped, self.is_stepped),
+            ("motion", said.motion, self.is_gradual),
+        ):
+            if bool(text) is not is_so:
                 return f"'{field}' does not go with its model and values"
-        shown = [Fields(x, self.line.where, _SHOWN) for x in self.line.items("shown")]
-        sides = [x.text("side") for x in shown]
-        if lines and sorted(sides) != sorted(SIDES):
+        sides = [x.side for x in said.shown]
+        if said.lines and sorted(sides) != sorted(SIDES):
             return (
                 f"it shows the sides {', '.join(sides)[:60] or 'none'}, but has to show {' and '.join(SIDES)}"
             )
-        asked = sides_in(lines, along, self.is_stepped)
-        lacking = [
-            x.text("side") for x in shown if x.text("side") in asked and x.text("verdict") != "WITNESSED"
-        ]
-        verdict = "UNKNOWN" if lacking or not lines else "WITNESSED"
-        if self.line.text("verdict") != verdict:
-            return f"it is {self.line.text('verdict')[:20]}, but its lines and drives say {verdict}"
+        asked = drawn.sides_in([x.drawn for x in said.lines], self.plane.along, self.is_stepped)
+        lacking = any(x.side in asked and x.verdict is not Verdict.WITNESSED for x in said.shown)
+        verdict = Verdict.UNKNOWN if lacking or not said.lines else Verdict.WITNESSED
+        if said.verdict != verdict:
+            return f"it is {said.verdict}, but its lines and drives say {verdict}"
         return ""
 
+    def claim(self, shown: SideDrive, at: Mapping[str, Fraction]) -> str:
+        """What a drive from these values has to show."""
+        common = self.background.home
+        reading = DriverSettings(values_with(common.library, common.values or {}), common.options)
+        wanted = claim_of(self.manoeuvre, self.said.model, at, shown.side, reading)
+        return with_also(wanted, shown.scenario)
 
-def _read_plate(content: object, background: Background, number: int) -> _Plate:
+
+def _plane(said: Plate, background: Background, number: int) -> _Plane:
     """Raises ``InputError``."""
-    common = background.home
-    line = Fields(content, f"{common.where}, plate {number}", _PLATE)
-    model, said = line.text("model"), background.said.text("manoeuvre")
-    if said not in MANOEUVRES or model not in MODELS or said not in MODELS[model].manoeuvres:
-        raise InputError(f"{line.where}: there is no model '{model[:40]}' of a manoeuvre '{said[:40]}'")
-    fixed = {name: rational(x, f"{line.where}, fixed.{name}") for name, x in line.mapping("fixed").items()}
-    return _Plate(line, line.text("name"), model, MANOEUVRES[said], fixed)
+    where = f"{background.home.where}, plate {number}"
+    preamble = background.once(Preamble)
+    if said.model not in MODELS or preamble.manoeuvre not in MODELS[said.model].manoeuvres:
+        raise InputError(
+            f"{where}: there is no model '{said.model[:40]}' of a manoeuvre '{preamble.manoeuvre}'"
+        )
+    fixed = {name: rational(x, f"{where}, fixed.{name}") for name, x in said.fixed.items()}
+    return _Plane(said, where, background, preamble, fixed)
 
 
-def _plate(content: object, background: Background, number: int) -> Iterator[Entry]:
+def _plate(said: Plate, background: Background, number: int) -> Iterator[Entry]:
     """The entries of a plate."""
-    common, plate = background.home, _read_plate(content, background, number)
-    plane = _plane(background.said, plate)
-    lines = [_read_line(x, plate.line.where) for x in plate.line.items("lines")]
-    of_plate = plate.fault(lines, plane.along)
-    for k, x in enumerate(plate.line.items("shown")):
-        line = Fields(x, f"{plate.line.where}, drive {k + 1}", _SHOWN)
-        side, verdict, claim = line.text("side"), line.text("verdict"), line.text("formula")
-        shows = shows_of(verdict, line.where, "proof", "drive")
-        at = {name: rational(v, f"{line.where}, at.{name}") for name, v in line.mapping("at").items()}
-        fault = of_plate and f"{plate.line.where}: {of_plate}"
+    plate = _plane(said, background, number)
+    of_plate = plate.fault()
+    for k, shown in enumerate(said.shown, 1):
+        where = f"{plate.where}, drive {k}"
+        shows = shows_of(shown.verdict, where, "proof", "drive")
+        at = {name: rational(v, f"{where}, at.{name}") for name, v in shown.at.items()}
+        fault = of_plate and f"{plate.where}: {of_plate}"
         if shows == "drive" and not fault:
-            fault = _drive_fault(line, plate, plane, background, at)
-        elif shows != "drive" and (at or claim) and not fault:
-            fault = f"{line.where}: {verdict} with initial values or a formula"
+            fault = _drive_fault(shown, where, plate, at)
+        elif shows != "drive" and (at or shown.formula) and not fault:
+            fault = f"{where}: {shown.verdict} with initial values or a formula"
         yield Entry(
-            common, line.where, ("drive", plate.name, side), verdict, f"{plate.name}, {side}", shows, claim,
-            evidence_name(line, "drive"), unchecked=(_PLACES, _CONTROLLER) if plate.is_stepped else (),
-            fault=fault, fault_of_drive=partial(_begins_otherwise, plate.manoeuvre, at),
-        )  # fmt: skip
+            background.home,
+            where,
+            ("drive", said.name, shown.side),
+            shown.verdict,
+            f"{said.name}, {shown.side}",
+            shows,
+            shown.formula,
+            file_of(where, shows, None, shown.drive),
+            unchecked=(_PLACES, _CONTROLLER) if plate.is_stepped else (),
+            fault=fault,
+            fault_of_drive=partial(_begins_otherwise, plate.manoeuvre, at),
+            expected=partial(_expected, plate, shown, at),
+        )
 
 
-def _drive_fault(
-    line: Fields, plate: _Plate, plane: Plane, background: Background, at: Mapping[str, Fraction]
-) -> str:
+def _expected(plate: _Plane, shown: SideDrive, at: Mapping[str, Fraction]) -> list[FormulaTree]:
+    return [plate.background.home.formula(plate.claim(shown, at))]
+
+
+def _drive_fault(shown: SideDrive, where: str, plate: _Plane, at: Mapping[str, Fraction]) -> str:
     """Why a drive's formula is not what its side, its values and its scenario demand, or nothing."""
-    common, scenario = background.home, line.text("scenario")
-    side: Side | None = next((x for x in SIDES if x == line.text("side")), None)
-    if side is None:
-        return f"{line.where}: there is no side '{line.text('side')[:40]}'"
-    if DRIVERS not in background.said.texts("specs"):
-        return f"{line.where} is about a driver of {DRIVERS}, which is not among its specification files"
-    if scenario and scenario not in _scenarios(background.said):
-        return f"{line.where} is of '{scenario[:40]}', which is not what is asked for"
+    common, plane = plate.background.home, plate.plane
+    if DRIVERS not in plate.preamble.specs:
+        return f"{where} is about a driver of {DRIVERS}, which is not among its specification files"
+    if shown.scenario and shown.scenario not in _scenarios(plate.preamble, plate.background.said.where):
+        return f"{where} is of '{shown.scenario[:40]}', which is not what is asked for"
     row, place = at.get(plane.manoeuvre.across), at.get(plane.manoeuvre.line)
     if row is None or place is None or dict(at) != plane.values(row, place):
-        return f"{line.where}: its initial values are not those of the plate at a place of its lines"
+        return f"{where}: its initial values are not those of the plate at a place of its lines"
     if row not in plane.rows or not plane.along[0] <= place <= plane.along[1]:
         told = f"{plane.manoeuvre.across}={row}, {plane.manoeuvre.line}={place}"
-        return f"{line.where}: {told} is not on the plate"
-    reading = DriverSettings(values_with(common.library, common.values or {}), common.options)
-    wanted = with_also(claim_of(plate.manoeuvre, plate.model, at, side, reading), scenario)
-    claim = line.text("formula")
-    if common.formula(claim) != common.formula(wanted):
-        return f"{line.where} is '{side}' of {plate.boundary}, but its formula is not: {claim[:120]}"
+        return f"{where}: {told} is not on the plate"
+    if common.formula(shown.formula) != common.formula(plate.claim(shown, at)):
+        return f"{where} is '{shown.side}' of {plate.boundary}, but its formula is not: {shown.formula[:120]}"
     return ""
 
 
@@ -161,154 +186,107 @@ def _begins_otherwise(manoeuvre: Manoeuvre, at: Mapping[str, Fraction], file: Dr
     return ""
 
 
-def _scenarios(said: Fields) -> tuple[str, ...]:
+def _scenarios(said: Preamble, where: str) -> tuple[str, ...]:
     """What drives may be of. Raises ``InputError`` where that is none of the manoeuvre."""
-    if not said.has("scenario"):
+    if said.scenario is None:
         return ()
-    number = said.whole("scenario")
-    manoeuvre, _ = manoeuvre_of(str(number))
-    if manoeuvre != said.text("manoeuvre"):
-        raise InputError(f"{said.where}: scenario {number} is no {said.text('manoeuvre')[:20]}")
-    return parts_of(number, MANOEUVRES[manoeuvre].vehicles)
+    manoeuvre, _ = manoeuvre_of(str(said.scenario))
+    if manoeuvre != said.manoeuvre:
+        raise InputError(f"{where}: scenario {said.scenario} is no {said.manoeuvre}")
+    return parts_of(said.scenario, MANOEUVRES[manoeuvre].vehicles)
 
 
-def _read_line(content: object, where: str) -> Line:
-    """The inverse of ``line_data``. Raises ``InputError``."""
-    data = Fields(content, f"{where}, line", ("at", "unpreventable"))
-    spans = []
-    for span in data.items("unpreventable"):
-        if not isinstance(span, list) or len(span) != 2:
-            raise InputError(f"{data.where}: a span has two ends")
-        begin, end = (Fields(x, data.where, ("near", "exact")) for x in span)
-        spans.append((_end(begin), _end(end)))
-    return Line(data.rational("at"), tuple(spans))
-
-
-def _end(data: Fields) -> End:
-    near = data.get("near")
-    if not isinstance(near, int | float) or isinstance(near, bool):
-        raise InputError(f"{data.where}: near is no number")
-    return End(float(near), data.text("exact"))
-
-
-def _lemma(content: object, background: Background, number: int) -> Iterator[Entry]:
-    common = background.home
-    line = Fields(content, f"{common.where}, lemma {number}", _LEMMA)
-    name, verdict, claim = line.text("name"), line.text("verdict"), line.text("claim")
-    shows = shows_of(verdict, line.where)
-    file, assuming = evidence_name(line, "certificate"), read_assuming(line)
-    manoeuvre = _manoeuvre(background.said)
+def _lemma(said: Lemma, background: Background, number: int) -> Entry:
+    common, where = background.home, f"{background.home.where}, lemma {number}"
+    manoeuvre = background.once(Preamble).manoeuvre
+    shows = shows_of(said.verdict, where)
     known = lemmas_for(manoeuvre, models_for(manoeuvre), common.options.get("cc_aeb", "none"))
-    named = [x.claim for x in known if x.name == name]
-    fault = "" if claim in named else f"{line.where}: the claim of lemma '{name[:60]}' is another"
-    yield Entry(
-        common, line.where, ("lemma", name), verdict, f"lemma {name}", shows, claim, file, fault=fault,
-        assuming=assuming,
-    )  # fmt: skip
+    named = [x.claim for x in known if x.name == said.name]
+    return Entry(
+        common,
+        where,
+        ("lemma", said.name),
+        said.verdict,
+        f"lemma {said.name}",
+        shows,
+        said.claim,
+        file_of(where, shows, said.certificate, None),
+        fault="" if said.claim in named else f"{where}: the claim of lemma '{said.name[:60]}' is another",
+        assuming=said.assuming,
+        expected=lambda: [common.formula(x) for x in named],
+    )
 
 
 def _index(data: Fields, background: Background) -> Iterator[Entry]:
-    _scenarios(data)
-    for number, plate in enumerate(data.items("plates"), 1):
+    said = read(Index, data.content, data.where)
+    _scenarios(said, data.where)
+    for number, plate in enumerate(said.plates, 1):
         yield from _plate(plate, background, number)
-    for number, lemma in enumerate(data.items("lemmas"), 1):
-        yield from _lemma(lemma, background, number)
+    for number, lemma in enumerate(said.lemmas, 1):
+        yield _lemma(lemma, background, number)
 
 
 def _record(record: Fields, background: Background) -> Iterator[Entry]:
-    if record.has("lemma"):
-        yield from _lemma(record.get("lemma"), background, 1)
-    else:
-        yield from _plate(record.get("plate"), background, 1)
+    said = read_kept(Record, record)
+    if said.lemma is not None:
+        yield _lemma(said.lemma, background, 1)
+    if said.plate is not None:
+        yield from _plate(said.plate, background, 1)
 
 
 def _record_faults(record: Fields, background: Background) -> Iterator[str]:
     """As of an index with this plate alone."""
-    if not record.has("lemma"):
-        yield from _line_fault(record.get("plate"), background, 1)
+    plate = read_kept(Record, record).plate
+    if plate is not None:
+        yield from _line_fault(plate, background, 1)
 
 
 def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
-    """Plates whose lines are not what their formula or motion says; a controller's are not looked at.
-
-    And where what is said to have no say is not what has none.
-    """
-    common = background.home
+    """Plates whose lines differ from their formula or motion (controllers aside), and wrong idle options."""
+    said = read(Index, data.content, data.where)
     if data.has("idle"):
-        models = {Fields(x, common.where, _PLATE).text("model") for x in data.items("plates")}
-        found = _idle(data, background, models)
-        if tuple(data.texts("idle")) != found:
+        found = _idle(said, background, {x.model for x in said.plates})
+        if said.idle != found:
             yield f"what no boundary depends on is {', '.join(found) or 'nothing that was chosen'}"
-    for number, content in enumerate(data.items("plates"), 1):
-        yield from _line_fault(content, background, number)
+    for number, plate in enumerate(said.plates, 1):
+        yield from _line_fault(plate, background, number)
 
 
-def _line_fault(content: object, background: Background, number: int) -> Iterator[str]:
+def _line_fault(said: Plate, background: Background, number: int) -> Iterator[str]:
     """Where the lines of a plate are not those of its plane, or say otherwise than its formula or motion."""
-    common, plate = background.home, _read_plate(content, background, number)
-    told = plate.line.items("lines")
-    if not told:
+    if not said.lines:
         return
-    plane = _plane(background.said, plate)
-    rows = [Fields(x, plate.line.where).rational("at") for x in told]
-    if len(told) != len(plane.rows):
-        yield f"plate {plate.name} has {len(told)} lines, but {len(plane.rows)} are asked for"
+    common, plate = background.home, _plane(said, background, number)
+    plane, rows = plate.plane, [Fraction(x.at) for x in said.lines]
+    if len(rows) != len(plane.rows):
+        yield f"plate {said.name} has {len(rows)} lines, but {len(plane.rows)} are asked for"
     elif rows != [*plane.rows]:
-        yield f"plate {plate.name}: its lines are at other values of {plane.manoeuvre.across}"
+        yield f"plate {said.name}: its lines are at other values of {plane.manoeuvre.across}"
     elif not plate.is_stepped:
-        true = truths(common.specification, plane, plate.model, common.values or {})
-        known = map(line_data, map(told_line, plane.rows, true))
-        wrong = next((x for said, x in zip(told, known, strict=True) if said != x), None)
+        true = drawn.truths(common.specification, plane, said.model, common.values or {})
+        known = (Line.of(drawn.told_line(row, x)) for row, x in zip(plane.rows, true, strict=True))
+        wrong = next((x for told, x in zip(said.lines, known, strict=True) if told != x), None)
         if wrong is not None:
-            at = f"{plane.manoeuvre.across}={wrong['at']}"
-            yield f"plate {plate.name} says otherwise at {at} than its formula or its motion"
+            at = f"{plane.manoeuvre.across}={wrong.at}"
+            yield f"plate {said.name} says otherwise at {at} than its formula or its motion"
 
 
-def _idle(data: Fields, background: Background, models: Set[str]) -> tuple[str, ...]:
+def _idle(said: Index, background: Background, models: Set[str]) -> tuple[str, ...]:
     """What was chosen and has no say in the plates. Raises ``InputError``, ``UsageError``."""
-    common, manoeuvre = background.home, _manoeuvre(data)
+    common = background.home
     if not models:
-        raise InputError(f"{data.where}: there is no plate")
-    asked = models_for(manoeuvre, tuple(sorted(models)))
-    return idle(common.specification, common.values or {}, MANOEUVRES[manoeuvre], asked)
+        raise InputError(f"{common.where}: there is no plate")
+    asked = models_for(said.manoeuvre, tuple(sorted(models)))
+    return idle(common.specification, common.values or {}, MANOEUVRES[said.manoeuvre], asked)
 
 
-def _manoeuvre(data: Fields) -> ManoeuvreName:
-    """The manoeuvre that the question names. Raises ``InputError``."""
-    said = data.text("manoeuvre")
-    found = next((x for x in MANOEUVRES if x == said), None)
-    if found is None:
-        raise InputError(f"{data.where}: there is no manoeuvre '{said[:20]}'")
-    return found
-
-
-def _plane(said: Fields, plate: _Plate) -> Plane:
-    """The plane of a plate, as the question says it. Raises ``InputError``, ``UsageError``."""
-    manoeuvre = plate.manoeuvre
-    along, across = said.texts("along"), said.texts("across")
-    if (len(along), len(across)) != (3, 4) or not across[3].isdecimal():
-        raise InputError(f"{said.where}: along and across say no plane")
-    if (along[0], across[0]) != (manoeuvre.line, manoeuvre.across):
-        raise InputError(f"{said.where}: a {manoeuvre.name} varies {manoeuvre.line} and {manoeuvre.across}")
-    low, high = (rational(x, said.where) for x in along[1:])
-    least, most = (rational(x, said.where) for x in across[1:3])
-    return plane_of(manoeuvre, plate.fixed, (low, high), (least, most), int(across[3]))
-
-
-READER = Reader(
-    SCHEMA,
-    ("set", "manoeuvre", "scenario", "along", "across", "options", "parameters", "specs"),
-    ("view", "seconds", "idle", "plates", "lemmas"),
+READER = Reader.of(
+    Index,
+    Preamble,
     _index,
-    ("plate", "lemma"),
+    Record,
     _record,
-    _faults,
-    unchecked=(
-        *("seconds", "plates[].reason", "plates[].shown[].reason", "lemmas[].title", "lemmas[].reason"),
-    ),
-    unchecked_kept=(
-        *("plate.reason", "plate.shown[].reason", "lemma.title", "lemma.reason"),
-        *("said.along", "said.scenario"),
-    ),
+    faults=_faults,
     record_faults=_record_faults,
+    unchecked_kept=("said.along", "said.scenario"),
 )

@@ -6,7 +6,7 @@ from typing import TypeAlias, TypeVar, get_args
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Common, Entry, common_of
-from roadproof.evidence.codec import fields_of, read, unchecked
+from roadproof.evidence.codec import bare, fields_of, read, unchecked
 from roadproof.evidence.heading import HEADING
 from roadproof.evidence.strict import Fields
 from roadproof.library.specification import Library
@@ -45,6 +45,11 @@ class Background:
     def home(self) -> Common:
         """As ``at``, about the set that names without @ are read in."""
         return self.at(first_set(self.said))
+
+    def once(self, kind: type[T]) -> T:
+        """The fields that are said once for all entries, as ``kind`` defines them. Raises ``InputError``."""
+        keys = {x.key for x in fields_of(bare(kind))}
+        return read(kind, {k: x for k, x in self.said.content.items() if k in keys}, self.said.where)
 
 
 def first_set(data: Fields) -> str:
@@ -142,10 +147,14 @@ class Reader:
         read_record: Read,
         file_name: Callable[[Fields], str | None] = _without_name,
         schema: str = "",
+        faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = _without_faults,
+        record_faults: Callable[[Fields, Background], Iterable[str]] = _without_record_faults,
+        unchecked_kept: tuple[str, ...] = (),
     ) -> "Reader":
         """The reader of an index that is defined as ``index``, and whose kept answers are ``record``.
 
-        ``schema``: where there is no index.
+        ``schema``: where there is no index. ``unchecked_kept``: further fields of kept answers that nothing
+        is compared with, such as those of their question.
         """
         every = {x.key: x for x in fields_of(index)}
         once = tuple(x.key for x in fields_of(said))
@@ -159,6 +168,8 @@ class Reader:
             kept,
             read_record,
             unchecked=tuple(sorted(unchecked(index), key=lambda path: (_depth(path), path != "seconds"))),
-            unchecked_kept=tuple(sorted(unchecked(record), key=_depth)),
+            unchecked_kept=(*sorted(unchecked(record), key=_depth), *unchecked_kept),
             file_name=file_name,
+            faults=faults,
+            record_faults=record_faults,
         )

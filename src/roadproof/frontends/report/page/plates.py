@@ -3,34 +3,33 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 from roadproof.drivers.manoeuvres import MANOEUVRES, Quantity
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.words import legend
+from roadproof.evidence.answers.plates import Index, Plate
+from roadproof.evidence.codec import read
 from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
 from roadproof.frontends.report.page.page_context import PageContext
-from roadproof.frontends.report.page.pieces import behind, counts, folded, verdict, words_in
+from roadproof.frontends.report.page.pieces import counts, evidence_of, folded, verdict
 from roadproof.frontends.report.page.results import Result
 from roadproof.frontends.report.preventable import COLOURS, measured
 from roadproof.world.units import UNITS
 
 _WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and the room for its numbers
 
-Plate = Mapping[str, Any]
-
 
 def plates(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
     """Each choice of fixed values as a picture with all its models, then plates and lemmas with evidence."""
-    found: Sequence[Plate] = result.data.get("plates", ())
-    known = MANOEUVRES[result.data["manoeuvre"]].quantities
-    along, across = result.data["along"], result.data["across"]
+    index = read(Index, result.data, result.name)
+    found, along, across = index.plates, index.along, index.across
+    known = MANOEUVRES[index.manoeuvre].quantities
     groups: dict[tuple[tuple[str, str], ...], list[Plate]] = {}
     for x in found:
-        groups.setdefault(tuple(sorted(x.get("fixed", {}).items())), []).append(x)
+        groups.setdefault(tuple(sorted(x.fixed.items())), []).append(x)
     pictures = [_picture(_told(known, dict(of)), here, known, along, across) for of, here in groups.items()]
     parts: list[Content] = [
-        tag("p", counts(words_in(found))),
+        tag("p", counts(x.verdict for x in found)),
         _legend(found),
         tag("div", *pictures, class_="plates"),
     ]
@@ -41,19 +40,19 @@ def plates(result: Result, book: PageContext, words: Mapping[int, str]) -> Marku
             class_="faint",
         )
     )
-    fixed = {name for x in found for name in x.get("fixed", {})}
+    fixed = {name for x in found for name in x.fixed}
     symbols = [x for name, x in known.items() if name in {along[0], across[0], *fixed}]
     parts.append(tag("p", f"{legend(symbols)}.", class_="faint"))
     parts += [_plate(x, known, result, book) for x in found]
-    lemmas = result.data.get("lemmas", ())
-    for x in lemmas:
-        inside = [tag("p", x.get("title")), tag("p", tag("code", x.get("claim"))), *behind(x, result, book)]
-        parts.append(folded((verdict(x.get("verdict")), " lemma ", tag("b", x.get("name"))), *inside))
+    for lemma in index.lemmas:
+        inside: list[Content] = [tag("p", lemma.title), tag("p", tag("code", lemma.claim))]
+        inside += evidence_of(result, book, certificate=lemma.certificate)
+        parts.append(folded((verdict(lemma.verdict), " lemma ", tag("b", lemma.name)), *inside))
     return joined(parts)
 
 
 def _legend(found: Sequence[Plate]) -> Markup:
-    named = dict.fromkeys(str(x.get("model")) for x in found)
+    named = dict.fromkeys(x.model for x in found)
     return tag("p", joined([tag("b", _title(x), style=f"color:{_colour(x)}") for x in named], " · "))
 
 
@@ -98,7 +97,7 @@ def _picture(
 ) -> Markup:
     """The plates of one choice of fixed values over each other, as SVG."""
     low, high = (float(Fraction(x)) for x in along[1:])
-    rows = [float(Fraction(line["at"])) for x in found for line in x["lines"]] or [0.0, 1.0]
+    rows = [float(Fraction(line.at)) for x in found for line in x.lines] or [0.0, 1.0]
     frame = _Frame((low, high), (min(rows), max(rows)))
     edge = {"x": _LEFT, "y": 0, "width": _WIDE - _LEFT, "height": _HIGH - _BELOW}
     told = title or "the plate"
@@ -121,13 +120,13 @@ def _picture(
 
 def _areas(plate: Plate, frame: _Frame) -> Iterator[Markup]:
     """What is unpreventable on each line, and, where lines are exact, its first and last ends joined."""
-    colour, stepped = _colour(str(plate.get("model"))), bool(plate.get("stepped"))
-    thick = 1.2 if stepped else (_HIGH - _BELOW) / max(1, len(plate["lines"]) - 1)
+    colour, stepped = _colour(plate.model), bool(plate.stepped)
+    thick = 1.2 if stepped else (_HIGH - _BELOW) / max(1, len(plate.lines) - 1)
     edges: tuple[list[str], list[str]] = ([], [])
-    for line in plate["lines"]:
-        middle = frame.y(float(Fraction(line["at"])))
+    for line in plate.lines:
+        middle = frame.y(float(Fraction(line.at)))
         top, bottom = max(0.0, middle - thick / 2), min(_HIGH - _BELOW, middle + thick / 2)
-        spans = [(float(a["near"]), float(b["near"])) for a, b in line["unpreventable"]]
+        spans = [(float(a.near), float(b.near)) for a, b in line.unpreventable]
         for begin, end in spans:
             width = max(0.4, frame.x(end) - frame.x(begin))
             place = {"x": frame.x(begin), "y": round(top, 2), "height": round(bottom - top, 2)}
@@ -156,19 +155,19 @@ def _number(
 
 def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, book: PageContext) -> Markup:
     """A plate: its formula, some of what it says in words, a drive on each side."""
-    fixed = _told(known, x.get("fixed", {}))
-    inside: list[Content] = [tag("p", tag("code", x.get("formula")))]
-    inside += [tag("p", x[key]) for key in ("stepped", "motion", "reason") if x.get(key)]
+    fixed = _told(known, x.fixed)
+    inside: list[Content] = [tag("p", tag("code", x.formula))]
+    inside += [tag("p", note) for note in (x.stepped, x.motion, x.reason) if note]
     rows = [
-        (at["at"], "; ".join(f"{a['near']:g} to {b['near']:g}" for a, b in at["unpreventable"]) or "nowhere")
-        for at in x["lines"]
+        (line.at, "; ".join(f"{a.near:g} to {b.near:g}" for a, b in line.unpreventable) or "nowhere")
+        for line in x.lines
     ]
     inside.append(folded(("lines, in SI units",), table(("at", "unpreventable"), rows)))
-    for y in x.get("shown", ()):
-        said = _told(known, {k: v for k, v in y.get("at", {}).items() if k in known})
-        inner: list[Content] = [tag("p", y["reason"])] if y.get("reason") else []
-        inner += [tag("p", tag("code", y.get("formula")))]
-        summary = (verdict(y.get("verdict")), f" {y.get('side')}: {said}")
-        inside.append(folded(summary, *inner, *behind(y, result, book)))
-    name = f" {_title(str(x.get('model')))}{fixed and f'; {fixed}'}"
-    return folded((verdict(x.get("verdict")), tag("b", name)), *inside)
+    for y in x.shown:
+        said = _told(known, {k: v for k, v in y.at.items() if k in known})
+        inner: list[Content] = [tag("p", y.reason)] if y.reason else []
+        inner += [tag("p", tag("code", y.formula))]
+        inner += evidence_of(result, book, y.drive)
+        inside.append(folded((verdict(y.verdict), f" {y.side}: {said}"), *inner))
+    name = f" {_title(x.model)}{fixed and f'; {fixed}'}"
+    return folded((verdict(x.verdict), tag("b", name)), *inside)
