@@ -10,7 +10,8 @@ import pytest
 import roadproof as rp
 from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.nearest import first_false_part
-from roadproof.analysis.catalogue.why import Course, Why, why_none
+from roadproof.analysis.catalogue.why import Course, why_none
+from roadproof.evidence.answers.catalogue_index import Why
 from roadproof.evidence.drive_file import load_drive
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of

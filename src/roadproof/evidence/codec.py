@@ -2,9 +2,9 @@
 
 A field is declared as ``name: Annotated[type, Doc("one sentence"), …]``. Types are ``str``, ``int``,
 ``float``, ``bool``, ``Literal``, enumerations of texts, ``tuple[T, ...]``, ``Mapping[str, T]``, other
-dataclasses, unions with ``None``, and ``Any`` (plain JSON). ``tuple[A, B]`` has one item of each type; a rule
-for the keys of a mapping stands at their type. A field with a default may be missing, as in evidence of
-earlier versions; it is written all the same, but where it is marked ``LEFT_OUT``.
+dataclasses, unions of these or with ``None``, and ``Any`` (plain JSON). ``tuple[A, B]`` has one item of each
+type; a rule for the keys of a mapping stands at their type. A field with a default may be missing, as in
+evidence of earlier versions; it is written all the same, but where it is marked ``LEFT_OUT``.
 """
 
 import re
@@ -203,7 +203,9 @@ def _unruled(kind: Any) -> Read:
         return _object(kind)
     origin, inside = get_origin(kind), get_args(kind)
     if origin in (Union, UnionType):
-        return _optional(_reader(next(x for x in inside if x is not NoneType)))
+        several = [x for x in inside if x is not NoneType]
+        made = _either([bare(x) for x in several]) if len(several) > 1 else _reader(several[0])
+        return _optional(made) if NoneType in inside else made
     if origin is Literal:
         return _one_of(inside)
     if origin is tuple:
@@ -237,6 +239,18 @@ def _object(kind: Any) -> Read:
 
 def _optional(inner: Read) -> Read:
     return lambda content, where: None if content is None else inner(content, where)
+
+
+def _either(kinds: list[Any]) -> Read:
+    """``kinds``: definitions, of which the one is read that has most of the fields that there are."""
+
+    def make(content: object, where: str) -> Any:
+        if not isinstance(content, dict):
+            raise InputError(f"{where}: {_shown(content)} is no object")
+        best = max(kinds, key=lambda kind: len(content.keys() & {x.key for x in fields_of(kind)}))
+        return _reader(best)(content, where)
+
+    return make
 
 
 def _one_of(words: tuple[Any, ...]) -> Read:

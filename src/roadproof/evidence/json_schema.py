@@ -167,8 +167,10 @@ def _plain(kind: Any) -> dict[str, Any]:
     if origin is tuple:
         return {"type": "array", "items": _schema(inside[0])}
     if origin in (Union, UnionType):
-        [inner] = [x for x in inside if x is not NoneType]
-        return {"anyOf": [{"type": "null"}, _schema(inner)]}
+        several = [_schema(x) for x in inside if x is not NoneType]
+        if NoneType not in inside:
+            return {"oneOf": several}
+        return {"anyOf": [{"type": "null"}, *several]}
     names = [{"propertyNames": {"pattern": x.pattern}} for x in notes_of(inside[0]) if isinstance(x, Rule)]
     return {"type": "object", **(names[0] if names else {}), "additionalProperties": _schema(inside[1])}
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from roadproof.evidence.answers import (
+    catalogue_index,
     check,
     classify,
     compare,
@@ -38,6 +39,10 @@ TITLES: Mapping[type, str] = {
     traffic.Answer: (
         "results.json of roadproof evaluate, and its --json: dangers in recordings, and what matches them"
     ),
+    catalogue_index.Index: (
+        "roadproof catalogue --json, and index.json of its folder: what tests show and mean, and what "
+        "nobody tests"
+    ),
     classify.Index: (
         "roadproof classify --json, and index.json of its folder: classes that exclude each other"
     ),
@@ -59,6 +64,7 @@ TITLES: Mapping[type, str] = {
     ),
 }
 RECORDS: Mapping[type, type] = {
+    catalogue_index.Index: catalogue_index.Record,
     classify.Index: classify.Record,
     coverage.Index: coverage.Record,
     drives.Answer: drives.Record,

@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Literal, TypeAlias
 
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.margins import (
@@ -23,6 +22,7 @@ from roadproof.drivers.margins import (
 )
 from roadproof.drivers.models import MODELS, course_in, foreseen, unpreventable
 from roadproof.errors import InputError
+from roadproof.evidence.answers.catalogue_index import TestedSide
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import danger, endangered, number_in
@@ -39,7 +39,6 @@ from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.motion import state_at
 from roadproof.world.signals import SIGNALS
 
-Side: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
 DANGER = "in danger"
 _JUST_AFTER = Fraction(1, 1000)  # s after an instant that is not one of the manoeuvre itself
 _PLACES = 6  # decimals of a state
@@ -60,7 +59,7 @@ class Decision:
     scenario: str
     vehicles: tuple[str, ...]
     driver: str
-    side: Side
+    side: TestedSide
     at: float | None = None
     metres: float | None = None
     seconds: float | None = None
@@ -268,7 +267,7 @@ def _decided(
             yield _of_controller(replace(made, driver=model), near, manoeuvre, vehicles)
             continue
         found = margin(near, drivers.boundary(manoeuvre, model, vehicles), vehicles)
-        side: Side = "unpreventable" if hit[model] else "preventable"
+        side: TestedSide = "unpreventable" if hit[model] else "preventable"
         yield replace(made, driver=model, side=side, metres=found.metres, seconds=found.seconds)
 
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Literal
 
 from roadproof.analysis.study.evidence_store import EvidenceStore
-from roadproof.errors import InputError
+from roadproof.evidence.answers.catalogue_index import FactVerdict, KeptFact, Relation
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import rational
@@ -16,11 +16,7 @@ from roadproof.library.query import Query
 from roadproof.library.specification import Specification
 from roadproof.verdict import Verdict
 
-Relation: TypeAlias = Literal["implies", "excludes", "shows", "runs", "empty", "reaches", "open"]
-"""Of a test to a scenario or test: proved, proved, shown by a drive. Of a test alone: a drive, or a proof
-that there is none. Of no test, to a scenario or class: a drive at the end of a range. ``open``: nothing of
-this was found."""
-_VERDICTS: Mapping[Relation, Verdict] = {
+_VERDICTS: Mapping[Relation, FactVerdict] = {
     "implies": Verdict.PROVED,
     "excludes": Verdict.PROVED,
     "shows": Verdict.WITNESSED,
@@ -35,8 +31,11 @@ _VERDICTS: Mapping[Relation, Verdict] = {
 class Fact:
     """What a test is to ``other``: a scenario, class or test by name, or "" for the test alone.
 
-    ``premise`` is the formula of the test, ``conclusion`` that of the other. ``also``: of a drive, all names
-    that it shows. ``term``, ``sense`` and ``at`` (SI): which number of its start is least or greatest there.
+    ``relation``: to a scenario or a test it is proved (implies, excludes) or shown by a drive (shows); a test
+    alone has a drive (runs) or a proof that there is none (empty); of a scenario or class there is a drive at
+    the end of a range (reaches); open: none of these was found. ``premise`` is the formula of the test,
+    ``conclusion`` that of the other. ``also``: of a drive, all names that it shows. ``term``, ``sense`` and
+    ``at`` (SI): which number of its start is least or greatest there.
     """
 
     test: str
@@ -49,11 +48,11 @@ class Fact:
     drive: JudgedDrive | None = None
     also: tuple[str, ...] = ()
     term: str = ""
-    sense: str = ""
+    sense: Literal["", "least", "greatest"] = ""
     at: Fraction | None = None
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> FactVerdict:
         return _VERDICTS[self.relation]
 
     @property
@@ -70,35 +69,39 @@ class Fact:
                 return both(self.premise, self.conclusion)
 
 
-def record_of(fact: Fact, name: str, shelf: EvidenceStore) -> dict[str, Any]:
-    """A fact as plain data; its evidence goes to the shelf."""
-    return {
-        "test": fact.test,
-        "other": fact.other,
-        "relation": fact.relation,
-        "premise": fact.premise.text,
-        "conclusion": None if fact.conclusion is None else fact.conclusion.text,
-        "formula": fact.query.text,
-        "verdict": str(fact.verdict),
-        "reason": fact.reason,
-        "certificate": shelf.certificate(f"proofs/{name}.json", fact.certificate),
-        "drive": shelf.drive(f"drives/{name}.json", fact.drive),
-        "also": list(fact.also),
-        "term": fact.term,
-        "sense": fact.sense,
-        "at": None if fact.at is None else str(fact.at),
-    }
+def record_of(fact: Fact, name: str, shelf: EvidenceStore) -> KeptFact:
+    """A fact as it is kept; its evidence goes to the shelf."""
+    return KeptFact(
+        test=fact.test,
+        other=fact.other,
+        relation=fact.relation,
+        premise=fact.premise.text,
+        conclusion=None if fact.conclusion is None else fact.conclusion.text,
+        formula=fact.query.text,
+        verdict=fact.verdict,
+        reason=fact.reason,
+        certificate=shelf.certificate(f"proofs/{name}.json", fact.certificate),
+        drive=shelf.drive(f"drives/{name}.json", fact.drive),
+        also=fact.also,
+        term=fact.term,
+        sense=fact.sense,
+        at=None if fact.at is None else str(fact.at),
+    )
 
 
-def read_fact(said: Mapping[str, Any], specification: Specification, shelf: EvidenceStore) -> Fact:
+def read_fact(said: KeptFact, specification: Specification, shelf: EvidenceStore) -> Fact:
     """The inverse of ``record_of``. Raises ``InputError``."""
-    relation = said["relation"]
-    if relation not in get_args(Relation):
-        raise InputError(f"relation={relation!r} is none of {', '.join(get_args(Relation))}")
-    premise = read_claim(specification, said["premise"])
-    conclusion = said["conclusion"] and read_claim(specification, said["conclusion"])
-    certificate, drive = shelf.read_certificate(said["certificate"]), shelf.read_drive(said["drive"])
-    told = said["test"], said["other"], relation, premise, conclusion or None, said["reason"]
-    at = None if said.get("at") is None else rational(said["at"], "at")
-    measure = said.get("term", ""), said.get("sense", ""), at
-    return Fact(*told, certificate, drive, tuple(said["also"]), *measure)
+    return Fact(
+        said.test,
+        said.other,
+        said.relation,
+        read_claim(specification, said.premise),
+        None if said.conclusion is None else read_claim(specification, said.conclusion),
+        said.reason,
+        shelf.read_certificate(said.certificate),
+        shelf.read_drive(said.drive),
+        said.also,
+        said.term,
+        said.sense,
+        None if said.at is None else rational(said.at, "at"),
+    )

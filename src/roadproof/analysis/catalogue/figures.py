@@ -1,29 +1,20 @@
 """How much of everything tests show, in figures: by spec set, by kind of thing, and by road sector."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
-from roadproof.analysis.catalogue.tested import Target, TestedGaps, sectors_of, targets_of
+from roadproof.analysis.catalogue.tested import TestedGaps, sectors_of, targets_of
+from roadproof.evidence.answers.catalogue_index import Figure, Kind, Target
 from roadproof.library.scenarios import number_in
 
-SCENARIOS, CLASSES, GAPS = "scenarios", "classes", "classes of gaps"
+SCENARIOS: Kind = "scenarios"
+CLASSES: Kind = "classes"
+GAPS: Kind = "classes of gaps"
 
 
-@dataclass(frozen=True)
-class Figure:
-    """How many of ``total`` things of a kind tests show, in a spec set; in one road sector, or "" in all."""
-
-    set_name: str
-    kind: str
-    sector: str
-    tested: int
-    total: int
-
-
-def kind_of(target: str) -> str:
+def kind_of(target: str) -> Kind:
     """What a target other than a class of gaps is, by its name."""
     return CLASSES if number_in(target) is None else SCENARIOS
 

@@ -16,7 +16,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.analysis.catalogue.fact import Fact, Relation, read_fact, record_of
+from roadproof.analysis.catalogue.fact import Fact, read_fact, record_of
 from roadproof.analysis.catalogue.gaps import GapKinds
 from roadproof.analysis.catalogue.ranges import Reach, reached
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, shown_by
@@ -28,7 +28,10 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.engines.search.ask import Outcome, Search, answer
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
-from roadproof.evidence.answers.catalogue import SCHEMA
+from roadproof.evidence.answers import catalogue_index as kept
+from roadproof.evidence.answers import coverage
+from roadproof.evidence.answers.catalogue_index import Relation
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both
@@ -99,7 +102,7 @@ class Meanings:
         if self.entries and self.drivers is not None:
             values = sorted(self.drivers.values.items())
             more["drivers"] = repr((self.drivers.models, self.drivers.specification.options, values))
-        return Question(SCHEMA, said | self.basis.said(), more, self.basis.library)
+        return Question(kept.SCHEMA, said | self.basis.said(), more, self.basis.library)
 
     @cached_property
     def survey(self) -> Coverage | None:
@@ -258,19 +261,19 @@ class Meanings:
         if isinstance(answer, AboutGaps):
             assert self.survey is not None
             said = self.survey.record(name.removeprefix(GAPS), answer.answer, shelf)
-            return {"name": name, "facts": [], "gaps": said}
-        facts = [record_of(fact, f"{name}-{k}", shelf) for k, fact in enumerate(answer)]
-        return {"name": name, "facts": facts, "gaps": None}
+            gaps = read(coverage.Record, said, "a kept answer")
+            return write(kept.Record(name=name, facts=(), gaps=gaps))
+        facts = tuple(record_of(fact, f"{name}-{k}", shelf) for k, fact in enumerate(answer))
+        return write(kept.Record(name=name, facts=facts, gaps=None))
 
     def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Kept]:
-        if record.get("gaps") is None:
-            return record["name"], tuple(
-                read_fact(said, self.basis.specification, shelf) for said in record["facts"]
-            )
+        said = read(kept.Record, record, "a kept answer")
+        if said.gaps is None:
+            return said.name, tuple(read_fact(x, self.basis.specification, shelf) for x in said.facts)
         kinds = self.gaps or self.asked.gaps
         if kinds is None:
             raise InputError("there are no classes of gaps here")
-        name, answer = kinds.study().recall(record["gaps"], shelf)
+        name, answer = kinds.study().recall(write(said.gaps), shelf)
         return GAPS + name, AboutGaps(answer)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Entry
 from roadproof.analysis.catalogue.listing import FILE_NAME, listed, unreadable_file
 from roadproof.errors import InputError
-from roadproof.evidence.answers.catalogue import SCHEMA
+from roadproof.evidence.answers.catalogue_index import SCHEMA
 from roadproof.evidence.drive_file import SCHEMAS_READ
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.journal import HEAD

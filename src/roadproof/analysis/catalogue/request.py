@@ -4,19 +4,18 @@ import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Literal, TypeAlias
 
 from roadproof.analysis.catalogue.showing import Freedom
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.strict import Fields
+from roadproof.evidence.answers.catalogue_index import KeptRequest, Look
+from roadproof.evidence.codec import read
 from roadproof.library.bind import values_with
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Specification, on_request, unknown
 from roadproof.world.units import UNITS
 
-Look: TypeAlias = Literal["fixed", "any"]
 NEAR = 0.5
 _CHOICES = ("roles", "lanes", "start")
 
@@ -57,14 +56,10 @@ class Request:
         """What is looked at beside what a test fixes."""
         return Freedom(self.roles == "any", self.lanes == "any", self.start == "any")
 
-    def as_data(self) -> dict[str, Any]:
-        """As plain data."""
-        return {
-            **vars(self),
-            "paths": list(self.paths),
-            "sets": list(self.sets),
-            "drivers": list(self.drivers),
-        }
+    @property
+    def kept(self) -> KeptRequest:
+        """As an index has it."""
+        return KeptRequest(**vars(self))
 
     def command(self, more: tuple[str, ...] = ()) -> str:
         """The command that asks the same; ``more``: further options of it."""
@@ -107,34 +102,8 @@ def further_options(
 
 
 def read_request(content: object, where: str) -> Request:
-    """The inverse of ``as_data``. Raises ``InputError``."""
-    data = Fields(content, where, tuple(Request.__dataclass_fields__))
+    """A request as an index has it. Raises ``InputError``."""
     try:
-        return Request(
-            data.texts("paths"),
-            data.texts("sets"),
-            data.flag("classes"),
-            data.flag("gaps"),
-            data.flag("explore"),
-            _look(data.text("roles"), where),
-            _look(data.text("lanes"), where),
-            _look(data.text("start"), where),
-            _near(data.get("near"), where),
-            data.texts("drivers"),
-        )
+        return Request(**vars(read(KeptRequest, content, where)))
     except UsageError as error:
         raise InputError(f"{where}: {error}") from None
-
-
-def _look(text: str, where: str) -> Look:
-    match text:
-        case "fixed" | "any":
-            return text
-        case _:
-            raise InputError(f"{where}: {text[:60]!r} is neither 'fixed' nor 'any'")
-
-
-def _near(value: object, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"{where}: near={value!r} is no number")
-    return value

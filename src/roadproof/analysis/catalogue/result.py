@@ -1,6 +1,6 @@
 """All that is known of a catalogue: what its tests show, imply and miss, and the index that says so."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -8,14 +8,18 @@ from typing import Any
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_formula
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
 from roadproof.analysis.catalogue.examination import Examination
-from roadproof.analysis.catalogue.figures import Figure, figures, figures_beside
+from roadproof.analysis.catalogue.figures import figures, figures_beside
 from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers, scenarios_shown
 from roadproof.analysis.catalogue.ranges import Span, spans_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
-from roadproof.analysis.catalogue.tested import Remark, Target, Targets, all_facts, targets_of, tested
+from roadproof.analysis.catalogue.tested import Targets, all_facts, targets_of, tested
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
+from roadproof.evidence.answers import catalogue_index as kept
+from roadproof.evidence.answers import coverage
+from roadproof.evidence.answers.catalogue_index import Figure
+from roadproof.evidence.codec import read, write
 from roadproof.library.bind import values_with
 
 
@@ -147,98 +151,69 @@ class Result:
     def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
         """The index, made of the answers as they are recorded."""
         found = self.tested
-        return {
+        answers = [read(kept.Record, record, "a kept answer") for record in records.values()]
+        index = kept.Index(
             **self.study.question.heading,
-            "view": "dense",
-            "request": self.examination.request.as_data(),
-            "tests": [self._test(x) for x in self.catalogue.entries],
-            "targets": [_target(x) for x in found.targets],
-            "gaps": self._gaps(records),
-            "not_tested": list(self.missing),
-            "figures": [vars(x) for x in self.figures],
-            "decisions": [_decision(test, x) for test, x in self.decisions],
-            "ranges": [_range(x) for x in self.spans],
-            "facts": [fact for record in records.values() for fact in record["facts"]],
-            "faults": _remarks(found.faults),
-            "doubts": _remarks(found.doubts),
-            "alike": _remarks(found.alike),
-            "contradictions": _remarks(found.contradictions),
-            "notes": list(self.notes),
-            "seconds": round(seconds, 1),
-        }
+            request=self.examination.request.kept,
+            tests=tuple(map(self._test, self.catalogue.entries)),
+            targets=found.targets,
+            gaps=self._gaps([x.gaps for x in answers if x.gaps is not None]),
+            not_tested=self.missing,
+            figures=self.figures,
+            decisions=tuple(kept.KeptDecision(test=test, **vars(x)) for test, x in self.decisions),
+            ranges=tuple(map(_range, self.spans)),
+            facts=tuple(fact for x in answers for fact in x.facts),
+            faults=found.faults,
+            doubts=found.doubts,
+            alike=found.alike,
+            contradictions=found.contradictions,
+            notes=self.notes,
+            seconds=round(seconds, 1),
+        )
+        return write(index)
 
-    def _gaps(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _gaps(self, answers: Sequence[coverage.Record]) -> kept.Gaps:
         """The classes of gaps: those that tests show, or all with what shows that they are empty or not."""
         gaps = self.tested.gaps
-        kept = [x for record in records.values() if (x := record.get("gaps"))]
-        return {
-            "asked": gaps.asked,
-            "classes_in_all": gaps.total,
-            "targets": [_target(x) for x in gaps.targets],
-            "empty": [x.name for x in gaps.empty],
-            "open": dict(gaps.open),
-            "claims": [x["claim"] for x in kept if "claim" in x and gaps.asked],
-            "classes": [y for x in kept if gaps.asked for y in x.get("classes", ())],
-        }
+        return kept.Gaps(
+            asked=gaps.asked,
+            classes_in_all=gaps.total,
+            targets=gaps.targets,
+            empty=tuple(x.name for x in gaps.empty),
+            open=gaps.open,
+            claims=tuple(x.claim for x in answers if x.claim is not None and gaps.asked),
+            classes=tuple(y for x in answers if gaps.asked for y in x.classes),
+        )
 
-    def _test(self, entry: Concrete | Abstract) -> dict[str, Any]:
-        data: dict[str, Any] = {"id": entry.id, "title": entry.title}
+    def _test(self, entry: Concrete | Abstract) -> kept.ConcreteTest | kept.AbstractTest:
         if isinstance(entry, Abstract):
-            return data | {"formula": entry.query.text, "claims": list(entry.claims)}
+            return kept.AbstractTest(
+                id=entry.id, title=entry.title, formula=entry.query.text, claims=tuple(entry.claims)
+            )
         answer = next(x for x in self.concrete if x.entry == entry)
-        shown = [{**vars(x), "vehicles": list(x.vehicles)} for x in answer.shown]
-        return data | {
-            "file": entry.place,
-            "sha256": answer.sha256,
-            "copy_of": entry.copy_of,
-            "roles": dict(answer.roles),
-            "claims": list(answer.claims),
-            "dense": answer.dense,
-            "shown": shown,
-            "begins": dict(answer.begins),
-            "fault": answer.fault,
-            "why": _why(answer),
-        }
+        return kept.ConcreteTest(
+            id=entry.id,
+            title=entry.title,
+            file=entry.place,
+            sha256=answer.sha256,
+            copy_of=entry.copy_of,
+            roles=dict(answer.roles),
+            claims=tuple(answer.claims),
+            dense=answer.dense,
+            shown=tuple(answer.shown),
+            begins=dict(answer.begins),
+            fault=answer.fault,
+            why=answer.why,
+        )
 
 
-def _decision(test: str, decision: Decision) -> dict[str, Any]:
-    return {
-        "test": test,
-        **vars(decision),
-        "vehicles": list(decision.vehicles),
-        "start": dict(decision.start),
-    }
-
-
-def _range(span: Span) -> dict[str, Any]:
-    return {
-        "target": span.target,
-        "term": span.term,
-        "tested": list(span.tested),
-        "reached": list(span.reached),
-        "untested": [list(part) for part in span.untested],
-        "share": round(span.share, 4),
-        "beyond": list(span.beyond),
-    }
-
-
-def _target(target: Target) -> dict[str, Any]:
-    return {
-        "name": target.name,
-        "words": target.words,
-        "sector": target.sector,
-        "tested": list(target.tested),
-        "possible": list(target.possible),
-        "covered": {name: list(bounds) for name, bounds in target.covered.items()},
-    }
-
-
-def _why(answer: ConcreteAnswer) -> dict[str, Any] | None:
-    if answer.why is None:
-        return None
-    sets = {name: [*held] for name, held in answer.why.sets.items()}
-    return {**vars(answer.why), "vehicles": [*answer.why.vehicles], "sets": sets}
-
-
-def _remarks(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
-    return [{"tests": list(x.tests), "told": x.told} for x in remarks]
+def _range(span: Span) -> kept.Range:
+    return kept.Range(
+        target=span.target,
+        term=span.term,
+        tested=span.tested,
+        reached=span.reached,
+        untested=span.untested,
+        share=round(span.share, 4),
+        beyond=span.beyond,
+    )

@@ -19,9 +19,10 @@ from roadproof.analysis.catalogue.playing import (
     roles_of,
 )
 from roadproof.analysis.catalogue.traces import is_samples, traces_of
-from roadproof.analysis.catalogue.why import Course, Why, signals_of, why_none
+from roadproof.analysis.catalogue.why import Course, signals_of, why_none
 from roadproof.drivers.restriction import restriction_of, unrestricted
 from roadproof.errors import InputError
+from roadproof.evidence.answers.catalogue_index import Shown, Why
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.library.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in
@@ -50,19 +51,6 @@ class Freedom:
     roles: bool = False
     lanes: bool = False
     start: bool = False
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A scenario, a class, ``ENDANGERED``, ``GAP`` or a class of gaps, from the instant ``at`` (s) on first.
-
-    ``vehicles`` are called what the test calls them, in the order of the scenario's roles.
-    """
-
-    what: str
-    vehicles: tuple[str, ...]
-    lane: str
-    at: float
 
 
 @dataclass(frozen=True)

@@ -11,33 +11,10 @@ from roadproof.analysis.catalogue.meaning import Kept, facts_in
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer, Freedom, why_not
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
+from roadproof.evidence.answers.catalogue_index import Remark, Target
 from roadproof.library.scenarios import name_of
 from roadproof.library.words import called
 from roadproof.verdict import Verdict
-
-
-@dataclass(frozen=True)
-class Target:
-    """A scenario or a class that tests may show, in words; ``tested``: the tests that show or imply it.
-
-    ``sector`` is where it happens, "" where the scenarios are not divided. ``possible``: abstract tests some
-    drives of which show it. ``covered``: how the tests that show it begin, least and greatest values by name.
-    """
-
-    name: str
-    words: str
-    sector: str
-    tested: tuple[str, ...]
-    possible: tuple[str, ...]
-    covered: Mapping[str, tuple[float, float]]
-
-
-@dataclass(frozen=True)
-class Remark:
-    """What is to be said of one test, or of two."""
-
-    tests: tuple[str, ...]
-    told: str
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,13 @@
 """Why a test shows no scenario: the nearest one and what it lacks, and the spec sets in which one holds."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.nearest import FalsePart, first_false_part, told
 from roadproof.errors import RoadproofError
+from roadproof.evidence.answers.catalogue_index import Why
 from roadproof.library.scenarios import name_of, numbers_of
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -28,28 +29,6 @@ class Course:
     horizon: Fraction
     roles: tuple[_Roles, ...]
     lanes: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Why:
-    """The ``nearest`` scenario with its ``vehicles`` and ``lane``.
-
-    ``lacks``: its first false part, at the instant ``at`` (s); ``told``: that in words. ``sets``: the
-    scenarios that hold in other spec sets.
-    """
-
-    nearest: str
-    vehicles: tuple[str, ...]
-    lane: str
-    at: float
-    lacks: str
-    told: str
-    sets: Mapping[str, tuple[str, ...]]
-
-    def __str__(self) -> str:
-        where = f"nearest is {self.nearest}({', '.join((*self.vehicles, self.lane))}): {self.told}"
-        others = "; ".join(f"set {name} counts it as {', '.join(x)}" for name, x in self.sets.items())
-        return f"{where}{'; ' if others else ''}{others}"
 
 
 def why_none(course: Course, asked: Questions) -> Why | None:

@@ -44,7 +44,7 @@ class Impossibility:
 
 
 def show_impossible(specification: Specification, query: Query, effort: Effort) -> Impossibility | None:
-    """A proof in dense, unbounded time that ``query`` never holds at 0, or None. Raises ``BudgetExceeded``."""
+    """A proof in dense time that ``query`` never holds at 0, or None. Raises ``BudgetExceeded``."""
     return explain(specification, query, prove_of_scenarios(specification, negation(query), effort), effort)
 
 

@@ -1,70 +1,122 @@
-"""The index and the kept answers of ``roadproof catalogue``: what abstract tests imply, exclude and show.
+"""How ``check`` reads the index and the kept answers of ``roadproof catalogue``: facts about abstract tests.
 
-What concrete tests show is told there too, but the tests themselves are the evidence, and are not in the
-folder: ``api.judging_again`` judges them again, and derives all other fields.
+Concrete tests are their own evidence, and are not in the folder: ``api.judging_again`` judges them again,
+and derives all other fields.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage
-from roadproof.evidence.answers.entry import Common, Entry, one_of, shows_of, shows_of_claim
-from roadproof.evidence.answers.reader import Background, Reader
-from roadproof.evidence.codec import read as read_as
+from roadproof.evidence.answers.catalogue_index import (
+    FactVerdict,
+    Index,
+    KeptFact,
+    Preamble,
+    Record,
+    Relation,
+)
+from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of, shows_of_claim
+from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.codec import read
 from roadproof.evidence.strict import Fields, rational
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim, read_term
+from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, number_in
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.terms import constant_value
+from roadproof.verdict import Verdict
 from roadproof.world.units import unit_text
 
-SCHEMA = "roadproof/catalogue/1"
-_FACT = ("test", "other", "relation", "premise", "conclusion", "formula", "verdict", "reason")
-_FACT_MORE = ("certificate", "drive", "also", "term", "sense", "at")
-_GAPS = ("asked", "classes_in_all", "targets", "empty", "open", "claims", "classes")
-_VERDICTS = {
-    "implies": "PROVED",
-    "excludes": "PROVED",
-    "shows": "WITNESSED",
-    "runs": "WITNESSED",
-    "empty": "IMPOSSIBLE",
-    "reaches": "WITNESSED",
-    "open": "UNKNOWN",
+_VERDICTS: Mapping[Relation, FactVerdict] = {
+    "implies": Verdict.PROVED,
+    "excludes": Verdict.PROVED,
+    "shows": Verdict.WITNESSED,
+    "runs": Verdict.WITNESSED,
+    "empty": Verdict.IMPOSSIBLE,
+    "reaches": Verdict.WITNESSED,
+    "open": Verdict.UNKNOWN,
 }
 
 
-def read(facts: Sequence[object], background: Background, where: str) -> Iterator[Entry]:
-    """What is said of each test. Raises ``InputError``."""
+def _facts(facts: Sequence[KeptFact], background: Background, where: str) -> Iterator[Entry]:
+    """The entries of what is said of each test. Raises ``InputError``."""
     common = background.home
-    for number, content in enumerate(facts, 1):
-        line = Fields(content, f"{where}, fact {number}", (*_FACT, *_FACT_MORE))
-        verdict, relation, claim = line.text("verdict"), line.text("relation"), line.text("formula")
-        test, other = line.text("test"), line.text("other")
-        if relation in ("implies", "excludes"):
-            shows = shows_of_claim(verdict, line.where)
+    for number, fact in enumerate(facts, 1):
+        place = f"{where}, fact {number}"
+        if fact.relation in ("implies", "excludes"):
+            shows = shows_of_claim(fact.verdict, place)
         else:
-            shows = shows_of(verdict, line.where, "impossibility", "drive")
+            shows = shows_of(fact.verdict, place, "impossibility", "drive")
         yield Entry(
             common,
-            line.where,
-            (test, other, relation, line.text("term"), line.text("sense")),
-            verdict,
-            f"{test} {relation} {other}".strip(),
+            place,
+            (fact.test, fact.other, fact.relation, fact.term, fact.sense),
+            fact.verdict,
+            f"{fact.test} {fact.relation} {fact.other}".strip(),
             shows,
-            claim,
-            one_of(line, shows),
-            unchecked=_unchecked(relation),
-            fault=_fault(line, common, relation, other, claim),
+            fact.formula,
+            file_of(place, shows, fact.certificate, fact.drive),
+            unchecked=("that no drive goes farther",) if fact.relation == "reaches" else (),
+            fault=_fault(fact, place, common),
+            expected=partial(_expected, fact, common),
         )
 
 
-def _bounds(line: Fields, common: Common, conclusion: Formula) -> bool:
-    """Whether a formula says that the term of a line is at its value, or beyond, as its sense is."""
-    term, value = line.text("term"), rational(line.get("at"), f"{line.where}, at")
-    sign = {"least": "<=", "greatest": ">="}.get(line.text("sense"), "=")
-    unit = unit_text(read_term(common.specification, term)[1])
-    bare = common.formula(f"{term} {sign} 0 {unit}")
+def _expected(fact: KeptFact, common: Common) -> list[Formula]:
+    found = _query(fact, common)
+    return [(negation(found) if fact.relation == "empty" else found).formula]
+
+
+def _query(fact: KeptFact, common: Common) -> Query:
+    """What a fact says of its premise and conclusion. Raises ``InputError``."""
+    premise = read_claim(common.specification, fact.premise)
+    if fact.conclusion is None:
+        return premise
+    conclusion = read_claim(common.specification, fact.conclusion)
+    match fact.relation:
+        case "implies":
+            return implication(premise, conclusion)
+        case "excludes":
+            return implication(premise, negation(conclusion))
+        case _:
+            return both(premise, conclusion)
+
+
+def _fault(fact: KeptFact, where: str, common: Common) -> str:
+    """Where a fact is not about its premise and conclusion, or these not about the scenario that it names."""
+    if _VERDICTS[fact.relation] != fact.verdict:
+        wanted = _VERDICTS[fact.relation]
+        return f"{where}: relation={fact.relation!r} goes with {wanted}, not with {fact.verdict}"
+    if fact.relation not in ("reaches", "open") and (fact.term or fact.sense or fact.at is not None):
+        return f"{where}: relation={fact.relation!r} goes with no term, no sense and no value"
+    if fact.conclusion is not None:
+        conclusion = read_claim(common.specification, fact.conclusion)
+        name, _, set_name = fact.other.partition("@")
+        number = number_in(name)
+        if number is not None:
+            named = applied(common.specification, Scenario(number, set_name or common.set_name))
+            premise = read_claim(common.specification, fact.premise)
+            about, said = ("premise", premise) if fact.relation == "reaches" else ("conclusion", conclusion)
+            if named.formula != said.formula:
+                return f"{where}: its {about} is not {fact.other}"
+        if fact.relation == "reaches" and not _bounds(fact, where, common, conclusion.formula):
+            return f"{where}: its conclusion is not that its term is at its value or beyond"
+    if common.formula(fact.formula) != _query(fact, common).formula:
+        short = fact.formula[:120]
+        return f"{where}: its formula is not that {fact.relation} of premise and conclusion: {short}"
+    return ""
+
+
+def _bounds(fact: KeptFact, where: str, common: Common, conclusion: Formula) -> bool:
+    """Whether a formula says that the term of a fact is at its value, or beyond, as its sense is."""
+    value = rational(fact.at, f"{where}, at")
+    sign = {"least": "<=", "greatest": ">="}.get(fact.sense, "=")
+    unit = unit_text(read_term(common.specification, fact.term)[1])
+    bare = common.formula(f"{fact.term} {sign} 0 {unit}")
     return (
         isinstance(conclusion, Compare)
         and isinstance(bare, Compare)
@@ -73,65 +125,29 @@ def _bounds(line: Fields, common: Common, conclusion: Formula) -> bool:
     )
 
 
-def _unchecked(relation: str) -> tuple[str, ...]:
-    return ("that no drive goes farther",) if relation == "reaches" else ()
-
-
-def _fault(line: Fields, common: Common, relation: str, other: str, claim: str) -> str:
-    """Where a fact is not about its premise and conclusion, or these not about the scenario that it names."""
-    verdict = line.text("verdict")
-    if _VERDICTS.get(relation) != verdict:
-        return f"{line.where}: relation={relation!r} goes with {_VERDICTS.get(relation)}, not with {verdict}"
-    if relation not in ("reaches", "open") and (line.text("term") or line.text("sense") or line.has("at")):
-        return f"{line.where}: relation={relation!r} goes with no term, no sense and no value"
-    premise = read_claim(common.specification, line.text("premise"))
-    if not line.has("conclusion"):
-        expected = premise
-    else:
-        conclusion = read_claim(common.specification, line.text("conclusion"))
-        name, _, set_name = other.partition("@")
-        number = number_in(name)
-        if number is not None:
-            named = applied(common.specification, Scenario(number, set_name or common.set_name))
-            about, said = ("premise", premise) if relation == "reaches" else ("conclusion", conclusion)
-            if named.formula != said.formula:
-                return f"{line.where}: its {about} is not {other}"
-        if relation == "reaches" and not _bounds(line, common, conclusion.formula):
-            return f"{line.where}: its conclusion is not that its term is at its value or beyond"
-        match relation:
-            case "implies":
-                expected = implication(premise, conclusion)
-            case "excludes":
-                expected = implication(premise, negation(conclusion))
-            case _:
-                expected = both(premise, conclusion)
-    if common.formula(claim) != expected.formula:
-        return f"{line.where}: its formula is not that {relation} of premise and conclusion: {claim[:120]}"
-    return ""
-
-
-def read_gaps(claims: Sequence[object], classes: Sequence[object], background: Background) -> Iterator[Entry]:
+def _gaps(
+    claims: Sequence[coverage.Claim], classes: Sequence[coverage.KeptClass], background: Background
+) -> Iterator[Entry]:
     """What is said of classes of gaps, as an index of ``coverage`` says it. Raises ``InputError``."""
-    numbers = read_as(tuple[int, ...], background.said.items("scenarios"), "scenarios")
-    entries = coverage.Entries(background.home, numbers)
-    yield from entries.of_claims([read_as(coverage.Claim, x, background.where) for x in claims])
-    yield from entries.of_classes([read_as(coverage.KeptClass, x, background.where) for x in classes])
+    entries = coverage.Entries(background.home, background.once(Preamble).scenarios)
+    yield from entries.of_claims(claims)
+    yield from entries.of_classes(classes)
 
 
 def _read_index(data: Fields, background: Background) -> Iterator[Entry]:
-    yield from read(data.items("facts"), background, data.where)
-    gaps = Fields(data.mapping("gaps"), f"{data.where}, gaps", _GAPS)
-    yield from read_gaps(gaps.items("claims"), gaps.items("classes"), background)
+    index = read(Index, data.content, data.where)
+    yield from _facts(index.facts, background, data.where)
+    yield from _gaps(index.gaps.claims, index.gaps.classes, background)
 
 
 def _read_record(record: Fields, background: Background) -> Iterator[Entry]:
-    yield from read(record.items("facts"), background, record.where)
-    if record.has("gaps"):
-        said = Fields(record.mapping("gaps"), f"{record.where}, gaps", ("claim", "group", "classes"))
-        if said.has("group") and record.text("name") != f"gaps-{coverage.name_of_group(said)}":
-            raise InputError(f"{said.where}: group='{said.text('group')[:60]}' does not go with its name")
-        claims = [said.get("claim")] if said.has("claim") else []
-        yield from read_gaps(claims, said.items("classes") if said.has("classes") else [], background)
+    said = read_kept(Record, record)
+    yield from _facts(said.facts, background, record.where)
+    gaps = said.gaps
+    if gaps is not None:
+        if gaps.group is not None and said.name != f"gaps-{coverage.stem_of(gaps.group)}":
+            raise InputError(f"{record.where}, gaps: group='{gaps.group[:60]}' does not go with its name")
+        yield from _gaps([] if gaps.claim is None else [gaps.claim], gaps.classes, background)
 
 
 def _lines(record: Fields) -> Iterator[object]:
@@ -147,33 +163,13 @@ def _record_faults(record: Fields, background: Background) -> Iterator[str]:
         yield from coverage.record_faults(Fields(record.mapping("gaps"), record.where), background)
 
 
-READER = Reader(
-    schema=SCHEMA,
-    said=("set", "options", "parameters", "scenarios", "specs"),
-    index=(
-        *(
-            "view",
-            "request",
-            "seconds",
-            "facts",
-            "tests",
-            "targets",
-            "not_tested",
-            "faults",
-            "doubts",
-            "alike",
-        ),
-        *("contradictions", "notes", "gaps", "figures", "decisions", "ranges"),
-    ),
-    read_index=_read_index,
-    record=("name", "facts", "gaps"),
-    read_record=_read_record,
+READER = replace(
+    Reader.of(Index, Preamble, _read_index, Record, _read_record, lambda record: record.text("name")),
     unchecked=("seconds", "facts[].reason"),
     unchecked_kept=(
         *("said.scenarios", *(f"facts[].{x}" for x in ("test", "other", "reason", "also"))),
         *(f"gaps.{x}" for x in coverage.UNCHECKED_KEPT),
     ),
-    file_name=lambda record: record.text("name"),
     lines=_lines,
     record_faults=_record_faults,
 )

@@ -216,7 +216,7 @@ def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
     yield from _entries(index.classes, index.claims, data.where, common)
     for number, doubt in enumerate(index.doubts, 1):
         where = f"{data.where}, doubt {number}"
-        yield Entry(common, where, ("doubt", number), "UNKNOWN", doubt.about, "nothing", "")
+        yield Entry(common, where, ("doubt", number), "UNKNOWN", doubt.about, "nothing", "", expected=list)
 
 
 def _of_record(record: Fields, background: Background) -> Iterator[Entry]:

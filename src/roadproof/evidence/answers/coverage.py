@@ -343,13 +343,18 @@ class Entries:
                     unchecked=(*not_compared, "that its formula is that of the gap elsewhere"),
                     fault_of=partial(fault_of_gap, self.common, self.numbers),
                     fault_of_drive=partial(_on_other_road, road),
-                    expected=None,
+                    expected=lambda: None,
                 )
 
 
 def name_of_group(record: Fields) -> str | None:
     """Under which name the answer on the classes of a component is kept; None of another answer."""
-    return record.text("group").replace(" ", "-") if record.has("group") else None
+    return stem_of(record.text("group")) if record.has("group") else None
+
+
+def stem_of(group: str) -> str:
+    """Under which name the answer on the classes of a component is kept."""
+    return group.replace(" ", "-")
 
 
 def _on_other_road(road: str, file: DriveFile) -> str:

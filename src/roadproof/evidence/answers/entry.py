@@ -6,7 +6,7 @@ is compared with the claim, on trees; ``fault`` says where that fails.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -58,7 +58,8 @@ class Entry:
     ``claim`` None: what the file says, where ``fault_of`` finds no fault in it. ``trace`` is a counterexample
     inside the index. ``fault_of_drive``: what else a drive has to be, beside what its formula
     says, finds its fault or nothing. ``assuming``: what the claim is said under. ``expected`` returns the
-    formulas of which the evidence has to show one, made of what the entry is about, on trees.
+    formulas of which the evidence has to show one, made of what the entry is about, on trees; None where
+    ``fault_of`` decides by itself.
     """
 
     common: Common
@@ -76,7 +77,7 @@ class Entry:
     fault_of: Callable[[str], str] | None = None
     fault_of_drive: Callable[[DriveFile], str] | None = None
     assuming: tuple[str, ...] = ()
-    expected: Callable[[], Sequence[Formula]] | None = None
+    expected: Callable[[], Sequence[Formula] | None] = field(kw_only=True)
 
 
 def common_of(data: Fields, library: Library, set_name: str, where: str = "") -> Common:
@@ -166,7 +167,8 @@ def _other_values(entry: Entry, said: DriveFile) -> str:
 def _unexpected(entry: Entry, said: Certificate | DriveFile) -> str:
     """Why the evidence shows none of the formulas that it has to show, or nothing."""
     written = said.claim if isinstance(said, Certificate) else said.formula
-    if entry.expected is None or entry.common.formula(written) in entry.expected():
+    wanted = entry.expected()
+    if wanted is None or entry.common.formula(written) in wanted:
         return ""
     return f"{entry.where} is about {entry.label}, but its file is not: {' '.join(written.split())[:120]}"
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import permutations
+from itertools import permutations, product
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError, TextError
@@ -26,7 +26,7 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
-from roadproof.library.compose import implication
+from roadproof.library.compose import both, implication, negation
 from roadproof.library.scenarios import (
     LANE,
     SUBJECT,
@@ -85,6 +85,22 @@ class Refutation:
         tuple[ScenarioName, ...], Rule(least=1), Doc("The scenarios that are false on the drive.")
     ]
     drive: KeptDrive = None
+
+    def expected(self, common: Common) -> list[Formula]:
+        """That the one holds and no other does, for each choice of the vehicles that they share."""
+        holds = _node(self.holds)
+        choices = [_readings(common, holds, _node(name)) for name in self.fails]
+        return [
+            both(
+                applied(common.specification, holds, chosen[0][0]),
+                *(
+                    negation(applied(common.specification, _node(name), below))
+                    for name, (_, below) in zip(self.fails, chosen, strict=True)
+                ),
+            ).formula
+            for chosen in product(*choices)
+            if len({above for above, _ in chosen}) == 1
+        ]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,6 +213,7 @@ def _refutation(said: Refutation, where: str, common: Common) -> Entry:
         None,
         file_of(where, "drive", None, said.drive),
         fault_of=lambda formula: _misread(formula, said.holds, said.fails, common),
+        expected=partial(said.expected, common),
     )
 
 

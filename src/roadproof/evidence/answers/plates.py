@@ -88,7 +88,8 @@ class SideDrive:
     scenario: Annotated[
         str,
         Doc(
-            "The scenario that the drive is of, as a formula, or what happens in it; empty where it is of none."
+            "The scenario that the drive is of, as a formula, or what happens in it; empty where it is of "
+            "none."
         ),
     ]
     drive: KeptDrive

@@ -1,7 +1,7 @@
 """How ``check`` reads the index and the kept answers of ``roadproof preventable``."""
 
 from collections.abc import Iterator, Mapping, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 
@@ -280,13 +280,10 @@ def _idle(said: Index, background: Background, models: Set[str]) -> tuple[str, .
     return idle(common.specification, common.values or {}, MANOEUVRES[said.manoeuvre], asked)
 
 
-READER = Reader.of(
-    Index,
-    Preamble,
-    _index,
-    Record,
-    _record,
+_READER = Reader.of(Index, Preamble, _index, Record, _record)
+READER = replace(
+    _READER,
     faults=_faults,
     record_faults=_record_faults,
-    unchecked_kept=("said.along", "said.scenario"),
+    unchecked_kept=(*_READER.unchecked_kept, "said.along", "said.scenario"),
 )

@@ -147,14 +147,10 @@ class Reader:
         read_record: Read,
         file_name: Callable[[Fields], str | None] = _without_name,
         schema: str = "",
-        faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = _without_faults,
-        record_faults: Callable[[Fields, Background], Iterable[str]] = _without_record_faults,
-        unchecked_kept: tuple[str, ...] = (),
     ) -> "Reader":
         """The reader of an index that is defined as ``index``, and whose kept answers are ``record``.
 
-        ``schema``: where there is no index. ``unchecked_kept``: further fields of kept answers that nothing
-        is compared with, such as those of their question.
+        ``schema``: where there is no index.
         """
         every = {x.key: x for x in fields_of(index)}
         once = tuple(x.key for x in fields_of(said))
@@ -168,8 +164,6 @@ class Reader:
             kept,
             read_record,
             unchecked=tuple(sorted(unchecked(index), key=lambda path: (_depth(path), path != "seconds"))),
-            unchecked_kept=(*sorted(unchecked(record), key=_depth), *unchecked_kept),
+            unchecked_kept=tuple(sorted(unchecked(record), key=_depth)),
             file_name=file_name,
-            faults=faults,
-            record_faults=record_faults,
         )

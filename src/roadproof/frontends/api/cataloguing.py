@@ -12,10 +12,10 @@ from roadproof.analysis.catalogue.courses import Courses, courses_of, of_drive
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete
 from roadproof.analysis.catalogue.examination import Examination, examine
-from roadproof.analysis.catalogue.figures import SCENARIOS, Figure, kind_of
+from roadproof.analysis.catalogue.figures import SCENARIOS, kind_of
 from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
 from roadproof.analysis.catalogue.ranges import Span
-from roadproof.analysis.catalogue.request import NEAR, Look, Request
+from roadproof.analysis.catalogue.request import NEAR, Request
 from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.tested import Targets, all_facts
@@ -24,6 +24,7 @@ from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.models import MODELS
 from roadproof.engines.search.question import Objective
 from roadproof.errors import UsageError
+from roadproof.evidence.answers.catalogue_index import Figure, Look
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions

@@ -21,7 +21,7 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, inside
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import coverage
-from roadproof.evidence.answers.catalogue import SCHEMA
+from roadproof.evidence.answers.catalogue_index import SCHEMA, KeptFact
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, FolderStatements
@@ -105,13 +105,9 @@ def _facts(index: Fields, folder: Path, study: Meanings) -> Iterator[Fact]:
     """The facts of an index with their drives; certificates are checked as files. Raises ``InputError``."""
     shelf, home = EvidenceStore(None, study.question), study.basis.specification
     for number, content in enumerate(index.items("facts"), 1):
-        said = dict(Fields(content, f"{index.where}, fact {number}").content)
-        if isinstance(said.get("drive"), str):
-            said["drive"] = read_json(folder / said["drive"])
-        try:
-            yield read_fact({**said, "certificate": None}, home, shelf)
-        except (KeyError, TypeError) as error:
-            raise InputError(f"{index.where}, fact {number}: {error!r} is missing") from None
+        said = read(KeptFact, content, f"{index.where}, fact {number}")
+        drive = read_json(folder / said.drive) if isinstance(said.drive, str) else said.drive
+        yield read_fact(replace(said, certificate=None, drive=drive), home, shelf)
 
 
 def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
