@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text()
 CHANGES = re.findall(r"```diff\n(.*?)```", TEXT, re.DOTALL)
 SURVEY = dict(re.findall(r"`(src/roadproof/\S+\.py)`[^\n]*\n\n```python\n(.*?)```", TEXT, re.DOTALL))
-NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass Named:")
+NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass Application:")
 READERS_OF_NODES = {
     *(
         "semantics/exact/exact.py",
@@ -221,7 +221,7 @@ def test_when_all_is_done_the_readers_agree(copy):
 
 
 def test_the_example_is_the_list_its_physics_and_its_readers():
-    assert files_in(CHANGES[:1]) == {"signals.py"}
+    assert files_in(CHANGES[:1]) == {"world/signals.py"}
     assert len(files_in(CHANGES)) == 7
 
 

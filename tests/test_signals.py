@@ -71,11 +71,11 @@ def files_with(names):
 
 
 def test_no_second_list_of_signals_stands_in_the_source():
-    assert files_with(SIGNALS) == {"signals.py"}
+    assert files_with(SIGNALS) == {"world/signals.py"}
 
 
 def test_no_second_table_of_units_stands_in_the_source():
-    assert files_with(UNITS) - files_with(SIGNALS) == {"units.py"}
+    assert files_with(UNITS) - files_with(SIGNALS) == {"world/units.py"}
 
 
 def test_a_list_is_found(tmp_path):

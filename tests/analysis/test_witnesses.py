@@ -40,10 +40,10 @@ def accepted(out: Path) -> list[str]:
 
 _KILLED = """
 import os, signal
-from roadproof.analysis.witnesses import Witnessing
+from roadproof.analysis.witnesses import WitnessStudy
 from roadproof.frontends.cli.main import main
 
-settle = Witnessing.settle
+settle = WitnessStudy.settle
 
 def settle_or_die(study, piece):
     if piece == {last!r}:
@@ -51,7 +51,7 @@ def settle_or_die(study, piece):
         os.kill(os.getpid(), signal.SIGKILL)
     return settle(study, piece)
 
-Witnessing.settle = settle_or_die
+WitnessStudy.settle = settle_or_die
 main(["witness", "3", "4", {formula!r}, "--jobs", "1", "--out", {out!r}])
 """
 

@@ -60,11 +60,11 @@ def test_names_stay_when_modules_are_imported() -> None:
     )
     found = {name: getattr(rp, name) for name in names}
     for module in (
-        "proving.prover",
-        "monitoring.batch",
+        "engines.prove.prover",
+        "semantics.sampled.batch",
         "analysis.order.study",
         "evidence.checking",
-        "exporting.registry",
+        "recordings.export.registry",
         "verdict",
     ):
         import_module(f"roadproof.{module}")

@@ -10,7 +10,7 @@ import pytest
 
 from roadproof.evidence.derivations.parts import NoDerivationError, breaks, covered, moments
 from roadproof.evidence.derivations.signs import Part
-from roadproof.evidence.kernel.derivation import Instant, Moment
+from roadproof.evidence.kernel.derivation import Fixed, Moment
 from roadproof.semantics.exact.algebraic import Point, Root
 from roadproof.semantics.exact.truth import Cut, TruthSet
 
@@ -56,7 +56,7 @@ def follow(parts: list[Part], whole: Part) -> None:
 
 
 def at(moment: Moment, time: F) -> F:
-    return moment.time if isinstance(moment, Instant) else time + moment.time
+    return moment.time if isinstance(moment, Fixed) else time + moment.time
 
 
 def sampled(low: F, high: F) -> Iterator[F]:
@@ -140,8 +140,8 @@ def test_a_break_of_a_part_is_one_at_each_of_its_instants(block: int, roots: flo
             continue
         follow([x for x, _ in made], part)
         for piece, moment in made:
-            fixed += isinstance(moment, Instant)
-            later += moment is not None and not isinstance(moment, Instant)
+            fixed += isinstance(moment, Fixed)
+            later += moment is not None and not isinstance(moment, Fixed)
             never_comes += moment is None
             for time in instants(piece.begin, piece.end):
                 if moment is None:

@@ -45,7 +45,7 @@ def expressions(draw: st.DrawFn, depth: int = 4) -> syntax.Expression:
             return syntax.Temporal(shape, draw(_bounds(depth - 1)), left, draw(inner))
         case "quantified":
             kind = draw(st.sampled_from(["some", "every"]))
-            return syntax.Quantification(kind, draw(plain_names), draw(_domains()), draw(inner))  # type: ignore[arg-type]
+            return syntax.Quantified(kind, draw(plain_names), draw(_domains()), draw(inner))  # type: ignore[arg-type]
         case "call":
             name = draw(st.sampled_from([*NAMES, "accel@ext", "max"]))
             return syntax.Call(name, tuple(draw(st.lists(inner, max_size=3))))

@@ -86,7 +86,7 @@ def rank(fault: Edit, seed: int) -> str:
     return sha256(f"{seed}:{fault.key}".encode()).hexdigest()
 
 
-def tests_of(file: str) -> str:
+def noticing_tests(file: str) -> str:
     """The folder below ``tests`` whose tests have to notice a fault in ``file``; empty where none has to."""
     inside = [folder for folder in FOLDERS if file.startswith(f"{folder}/")]
     return FOLDERS[max(inside, key=len)] if inside else ""

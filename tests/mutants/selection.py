@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
-from mutants.choose import FOLDERS, tests_of
+from mutants.choose import FOLDERS, noticing_tests
 from mutants.edits import Edit
 from mutants.places import places_of
 
@@ -64,7 +64,7 @@ class Records:
             met |= self.by_place.get((edit.file, places[line]), set())
         if not met or not function:
             met = met | self._in_function(edit.file, function)
-        return self._fastest(met or self._in_function(edit.file, ""), tests_of(edit.file))
+        return self._fastest(met or self._in_function(edit.file, ""), noticing_tests(edit.file))
 
     def _in_function(self, file: str, function: str) -> set[str]:
         """Tests that run a function; all that run some function of the file where none is named."""

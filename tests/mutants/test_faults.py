@@ -7,7 +7,7 @@ import pytest
 
 from mutants.__main__ import ROOT, within
 from mutants.by_hand import listed
-from mutants.choose import FOLDERS, choose, faults_of, targets, tests_of
+from mutants.choose import FOLDERS, choose, faults_of, noticing_tests, targets
 from mutants.edits import edits_of, is_fault
 from mutants.places import places_of
 from mutants.selection import Records
@@ -103,7 +103,7 @@ def test_the_choice_follows_from_the_seed() -> None:
         == [x.key for x in choose(PACKAGE, 60, 1, "semantics/exact/")]
         != [x.key for x in choose(PACKAGE, 60, 2, "semantics/exact/")]
     )
-    folders = {tests_of(str(file)) or str(file.parent) for file in targets(PACKAGE)}
+    folders = {noticing_tests(str(file)) or str(file.parent) for file in targets(PACKAGE)}
     assert folders == {*FOLDERS.values(), "library/sets"}
 
 

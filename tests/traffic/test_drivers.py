@@ -34,7 +34,7 @@ from roadproof.recordings.formats.recording import Integers, Recording
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.semantics.sampled.recursive import DriverSettings as Plain
+from roadproof.semantics.sampled.recursive import TraceReader as Plain
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.test_windows import cut
 

@@ -115,7 +115,7 @@ def in_some_lane(query: Query, lane: str, variable: str = "M") -> Query:
     """``some M in lanes: query`` with the free lane ``lane`` as M."""
     inside = with_lane(query, lane, variable)
     given = tuple(b for b in inside.claim.given if b.name != variable)
-    said = syntax.Quantification("some", variable, syntax.Name("lanes"), inside.claim.body)
+    said = syntax.Quantified("some", variable, syntax.Name("lanes"), inside.claim.body)
     return replace(
         inside,
         claim=Claim(given, said),
@@ -136,7 +136,7 @@ def taken_from(home: Specification, query: Query, set_name: str) -> Query:
                 return syntax.Call(of_set, tuple(visit(a) for a in arguments), at)
             case syntax.Literal_() | syntax.Name():
                 return expression
-            case syntax.Prefix() | syntax.Quantification():
+            case syntax.Prefix() | syntax.Quantified():
                 return replace(expression, body=visit(expression.body))
             case syntax.Binary():
                 return replace(expression, left=visit(expression.left), right=visit(expression.right))
@@ -211,16 +211,14 @@ def _with_names(expression: Expression, names: Mapping[str, str]) -> Expression:
         case Temporal(op, bounds, left, right, at):
             first = None if left is None else _with_names(left, names)
             return Temporal(op, bounds, first, _with_names(right, names), at)
-        case syntax.Quantification(kind, variable, domain, body, at):
+        case syntax.Quantified(kind, variable, domain, body, at):
             inner = {old: new for old, new in names.items() if old != variable}
             if variable in inner.values():
                 raise UsageError(
                     f"'{variable}' is a variable of a quantifier inside, and would be taken for another: "
                     "rename that variable"
                 )
-            return syntax.Quantification(
-                kind, variable, _in_domain(domain, names), _with_names(body, inner), at
-            )
+            return syntax.Quantified(kind, variable, _in_domain(domain, names), _with_names(body, inner), at)
 
 
 def _in_domain(

@@ -270,7 +270,7 @@ class Elaborator:
                 if left is not None:
                     return f.Until(self.formula(left, scope), interval, goal)
                 return f.Eventually(interval, goal) if op == "F" else f.Always(interval, goal)
-            case syntax.Quantification():
+            case syntax.Quantified():
                 return self._quantified(expression, scope)
 
     def _name(self, name: str, at: Position, scope: Scope) -> Formula | Quantity:
@@ -356,7 +356,7 @@ class Elaborator:
 
     # --- quantifiers and built-in names ----------------------------------------------------------
 
-    def _quantified(self, expression: syntax.Quantification, scope: Scope) -> Formula:
+    def _quantified(self, expression: syntax.Quantified, scope: Scope) -> Formula:
         variable = expression.variable
         scopes.refuse_signal(variable, self.specification.library.signals, expression.at)
         vehicles = scopes.vehicles_in(expression.domain, scope, self._open)

@@ -457,7 +457,7 @@ def beside_lane(specification: Specification, vehicle: str, lane: str = LANE) ->
     """A vehicle occupies a lanelet of a lane beside ``lane``."""
     beside = syntax.Call("adjacentLanes", (syntax.Name(lane),))
     inside = syntax.Call("atLane", (syntax.Name(vehicle), syntax.Name("M")))
-    return elaborate(specification, syntax.Claim((), syntax.Quantification("some", "M", beside, inside)))
+    return elaborate(specification, syntax.Claim((), syntax.Quantified("some", "M", beside, inside)))
 
 
 def is_violation(name: str) -> bool:

@@ -48,4 +48,4 @@ def parameters_used(
 def _free_names(expression: Expression, bound: Iterable[str]) -> set[str]:
     walked = list(syntax.walk(expression))
     names = {part.name for part in walked if isinstance(part, syntax.Name)}
-    return names - set(bound) - {part.variable for part in walked if isinstance(part, syntax.Quantification)}
+    return names - set(bound) - {part.variable for part in walked if isinstance(part, syntax.Quantified)}

@@ -47,7 +47,7 @@ def instances(block: EachBlock) -> list[Definition]:
                 )
             case syntax.Chain():
                 return replace(expression, parts=tuple(rename(p, index) for p in expression.parts))
-            case syntax.Quantification():
+            case syntax.Quantified():
                 return replace(expression, body=rename(expression.body, index))
             case syntax.Temporal():
                 left = None if expression.left is None else rename(expression.left, index)

@@ -100,7 +100,7 @@ def _operator(expression: Expression) -> str:
             return f"{_show(left, UNARY)} {until} {_show(right, UNTIL)}"
         case syntax.Temporal(op, bounds, _, right, _):
             return rf"\mathcal{{{op}}}{_bounds(bounds)} {_show(right, UNARY)}"
-        case syntax.Quantification(kind, variable, domain, body, _):
+        case syntax.Quantified(kind, variable, domain, body, _):
             big = r"\bigvee" if kind == "some" else r"\bigwedge"
             return rf"{big}_{{{_range(symbol(variable), domain)}}} {_show(body, UNARY)}"
         case _:

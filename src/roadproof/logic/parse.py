@@ -355,7 +355,7 @@ class _Build(Transformer_NonRecursive[Token, Any]):
 
     def quantified(self, meta: Meta, items: list[Any]) -> Expression:
         kind: Literal["some", "every"] = "some" if items[0] == "some" else "every"
-        return syntax.Quantification(kind, str(items[1]), items[2], items[3], _at(meta))
+        return syntax.Quantified(kind, str(items[1]), items[2], items[3], _at(meta))
 
     def domain_of(self, meta: Meta, items: list[Token]) -> syntax.Call:
         inner = syntax.Name(str(items[1]), _token_at(items[1]))

@@ -40,9 +40,9 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
         case f.Occupies(vehicle, lanelet):
             return Call("occ", (Name(vehicle), Name(lanelet)))
         case f.Some(variable, domain, body):
-            return syntax.Quantification("some", variable, _domain(domain), as_syntax(body, expand))
+            return syntax.Quantified("some", variable, _domain(domain), as_syntax(body, expand))
         case f.Every(variable, domain, body):
-            return syntax.Quantification("every", variable, _domain(domain), as_syntax(body, expand))
+            return syntax.Quantified("every", variable, _domain(domain), as_syntax(body, expand))
         case f.Not(body):
             return Prefix("not", as_syntax(body, expand))
         case f.And((f.Compare(a, "<=", b), f.Compare(c, ">=", d))) if (a, b) == (c, d):

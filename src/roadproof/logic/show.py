@@ -77,7 +77,7 @@ def level(expression: Expression) -> int:
             return AND if op == "and" else OR
         case syntax.Temporal(op, _, _, _, _):
             return UNTIL if op == "U" else UNARY
-        case syntax.Quantification():
+        case syntax.Quantified():
             return QUANTIFIED
         case _:
             assert_never(expression)
@@ -149,7 +149,7 @@ def _show(expression: Expression, wanted: int, indent: int, width: int | None) -
                 return head + _show(right, UNARY, indent + len(head), width)
             first = _show(left, UNARY, indent, width)
             return f"{first}{broken}{head}{_show(right, UNTIL, indent + len(head), width)}"
-        case syntax.Quantification(kind, variable, domain, body, _):
+        case syntax.Quantified(kind, variable, domain, body, _):
             head = f"{kind} {variable} in {_domain(domain)}: "
             return head + _show(body, QUANTIFIED, indent + 2, width)
         case _:

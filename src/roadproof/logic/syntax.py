@@ -88,7 +88,7 @@ class Temporal:
 
 
 @dataclass(frozen=True)
-class Quantification:
+class Quantified:
     """``some`` / ``every`` variable ``in`` domain.
 
     The domain is ``lanes``, ``lanelets(L)``, ``zone(main)``, ``adjacentLanes(L)``, the name of a
@@ -110,7 +110,7 @@ class Group:
     at: Position = field(default_factory=_nowhere, compare=False, repr=False)
 
 
-Expression: TypeAlias = Literal_ | Name | Call | Prefix | Binary | Chain | Temporal | Quantification
+Expression: TypeAlias = Literal_ | Name | Call | Prefix | Binary | Chain | Temporal | Quantified
 
 
 @dataclass(frozen=True)
@@ -255,7 +255,7 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
             return ()
         case Call(_, arguments, _):
             return arguments
-        case Prefix(_, body, _) | Quantification(_, _, _, body, _):
+        case Prefix(_, body, _) | Quantified(_, _, _, body, _):
             return (body,)
         case Binary(_, left, right, _):
             return (left, right)

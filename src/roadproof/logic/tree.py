@@ -33,7 +33,7 @@ def tree(of: Expression | Claim | Definition) -> dict[str, Any]:
             return {"node": "U", **_interval(bounds), "left": tree(left), "right": tree(right)}
         case syntax.Temporal(op, bounds, _, right, _):
             return {"node": op, **_interval(bounds), "body": tree(right)}
-        case syntax.Quantification(kind, variable, domain, body, _):
+        case syntax.Quantified(kind, variable, domain, body, _):
             return {"node": kind, "variable": variable, "domain": _domain(domain), "body": tree(body)}
         case _:
             assert_never(of)

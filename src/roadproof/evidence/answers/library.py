@@ -20,7 +20,7 @@ SCHEMA: Final = "roadproof/list/1"
 class Scenario:
     """A scenario that can be asked about."""
 
-    name: Annotated[str, Rule(pattern="^scenario_[0-9]+$")]
+    name: Annotated[str, Rule(least=1), Doc("Its definition, such as that of number 4.")]
     arguments: Annotated[tuple[str, ...], Doc("Vehicles and lane that it is about.")]
     doc: str
     words: KeptWords

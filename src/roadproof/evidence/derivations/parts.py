@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.derivations.signs import Part
-from roadproof.evidence.kernel.derivation import Instant, Later, Moment, Step, split
+from roadproof.evidence.kernel.derivation import Fixed, Later, Moment, Step, split
 from roadproof.semantics.exact.algebraic import Point, Root, bounds
 from roadproof.semantics.exact.truth import START, Cut, Span, TruthSet
 
@@ -103,7 +103,7 @@ def widened(part: Part, window: tuple[Fraction, Fraction | None]) -> Part:
 
 
 def image(part: Part, moment: Moment) -> Part:
-    if isinstance(moment, Instant):
+    if isinstance(moment, Fixed):
         return Part(Cut(moment.time, False), Cut(moment.time, True))
     return Part(_moved(part.begin, moment.time), None if part.end is None else _moved(part.end, moment.time))
 
@@ -111,7 +111,7 @@ def image(part: Part, moment: Moment) -> Part:
 def run(part: Part, moment: Moment, low: Fraction, out: bool) -> Part:
     """From the begin of windows to the moment, without it where ``out``."""
     begin = _moved(part.begin, low)
-    if isinstance(moment, Instant):
+    if isinstance(moment, Fixed):
         return Part(begin, Cut(moment.time, not out))
     if part.end is None:
         return Part(begin, None)
@@ -188,7 +188,7 @@ def _later(
         time = _instant(span, stop, wanted)
         if time is not None:
             end = Cut(time - low, True)
-            return (part.end if part.end is not None and part.end <= end else end), Instant(time)
+            return (part.end if part.end is not None and part.end <= end else end), Fixed(time)
     raise NoDerivationError("no rational instant was found at which it comes")
 
 
@@ -242,7 +242,7 @@ def breaks(
                 raise NoDerivationError("both sides of an until change exactly at an irrational instant")
             time = max(found)
             after = Cut(time - low, True)
-            end, moment = (part.end if part.end is not None and part.end <= after else after), Instant(time)
+            end, moment = (part.end if part.end is not None and part.end <= after else after), Fixed(time)
         yield Part(cut, end), moment
         if end == part.end:
             return

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 
 @dataclass(frozen=True)
-class Instant:
+class Fixed:
     """One instant, in s."""
 
     time: Fraction
@@ -20,7 +20,7 @@ class Later:
     time: Fraction
 
 
-Moment: TypeAlias = Instant | Later
+Moment: TypeAlias = Fixed | Later
 
 
 @dataclass(frozen=True)

@@ -270,4 +270,4 @@ def _quantified(kind: Any, domain: Phrase, body: Callable[[Phrase], Phrase], nam
     wanted = name or next(iter(inspect.signature(body).parameters), "K")
     free = next(x for x in (wanted, *(f"{wanted}{k}" for k in range(2, len(words) + 3))) if x not in words)
     inside = _lift(body(Phrase(syntax.Name(free))))
-    return Phrase(syntax.Quantification(kind, free, over, inside.expression), _given([domain, inside]))
+    return Phrase(syntax.Quantified(kind, free, over, inside.expression), _given([domain, inside]))
