@@ -15,6 +15,7 @@ from pathlib import Path
 
 from console import sessions_of
 from mutants import journal
+from mutants.choose import folder_of
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs/tests.md"
@@ -87,7 +88,7 @@ def mutants() -> str:
     equivalent = journal.equivalents()
     for line in journal.read().values():
         verdict = "equivalent" if line.key in equivalent else line.verdict
-        counted.setdefault(line.file.split("/")[0], Counter())[verdict] += 1
+        counted.setdefault(folder_of(line.file), Counter())[verdict] += 1
     counted["all"] = sum(counted.values(), Counter())
     columns = ("caught", "hung", "equivalent", "survived", "unreached")
     body = [(name, found.total(), *(found[c] for c in columns)) for name, found in counted.items()]

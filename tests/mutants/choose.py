@@ -86,7 +86,12 @@ def rank(fault: Edit, seed: int) -> str:
     return sha256(f"{seed}:{fault.key}".encode()).hexdigest()
 
 
+def folder_of(file: str) -> str:
+    """The folder of ``FOLDERS`` that a file is in, the innermost; that of specifications for the others."""
+    inside = [folder for folder in FOLDERS if file.startswith(f"{folder}/")]
+    return max(inside, key=len, default=SPECS)
+
+
 def noticing_tests(file: str) -> str:
     """The folder below ``tests`` whose tests have to notice a fault in ``file``; empty where none has to."""
-    inside = [folder for folder in FOLDERS if file.startswith(f"{folder}/")]
-    return FOLDERS[max(inside, key=len)] if inside else ""
+    return FOLDERS.get(folder_of(file), "")
