@@ -18,7 +18,7 @@ from roadproof.frontends.report.traffic_figures import compose_figures, draw_fig
 from roadproof.frontends.report.write_traffic import write_report
 from roadproof.library.scenarios import COMPARISON
 from roadproof.recordings.evaluate.questions import Settings, default_settings
-from roadproof.recordings.evaluate.results import Totals, begin_totals
+from roadproof.recordings.evaluate.totals import Totals, begin_totals
 
 
 def settings(**changes: object) -> Settings:

@@ -13,7 +13,8 @@ from roadproof.recordings.evaluate import detectors
 from roadproof.recordings.evaluate.detectors import Detection, find_detections
 from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
-from roadproof.recordings.evaluate.results import add_findings, as_json, begin_totals
+from roadproof.recordings.evaluate.results import as_json
+from roadproof.recordings.evaluate.totals import add_findings, begin_totals
 from roadproof.recordings.formats.pairs import DetectionRange, common_pairs
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.simulate.plant import Place, plant

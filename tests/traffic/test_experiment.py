@@ -18,7 +18,8 @@ from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import default_settings
-from roadproof.recordings.evaluate.results import add_findings, as_json, begin_totals
+from roadproof.recordings.evaluate.results import as_json
+from roadproof.recordings.evaluate.totals import add_findings, begin_totals
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.synthetic import simulate

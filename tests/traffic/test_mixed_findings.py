@@ -12,7 +12,8 @@ from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
-from roadproof.recordings.evaluate.results import add_findings, begin_totals, driver_cells, foretold_rows
+from roadproof.recordings.evaluate.results import driver_cells, foretold_rows
+from roadproof.recordings.evaluate.totals import add_findings, begin_totals
 
 SPEAKS = {"r157": {1}, "careful": {1, 2, 4}, "rss": {1, 4}}
 """Scenarios of which a model speaks, of those that are asked for."""

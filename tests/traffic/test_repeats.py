@@ -17,7 +17,7 @@ from roadproof.library.specification import bundled_library
 from roadproof.recordings.evaluate.counting import Counts
 from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
 from roadproof.recordings.evaluate.questions import default_settings
-from roadproof.recordings.evaluate.results import Row, Totals
+from roadproof.recordings.evaluate.totals import Row, Totals
 from roadproof.recordings.formats.repeats import STEPS, moments_of
 from roadproof.recordings.formats.sources import find_sources
 from traffic.tiny_commonroad import Car, document

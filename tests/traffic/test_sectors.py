@@ -12,8 +12,8 @@ from roadproof.library.specification import Source, build_library, bundled_libra
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import Settings, ask, askable, default_settings
 from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.evaluate.results import add_findings, begin_totals
 from roadproof.recordings.evaluate.sectors import ANYWHERE, is_possible, sectors_of
+from roadproof.recordings.evaluate.totals import add_findings, begin_totals
 from roadproof.recordings.formats.recording import ZONES, Recording
 from traffic.test_evaluate import planted_traffic
 

@@ -32,7 +32,8 @@ from roadproof.recordings.evaluate.experiment import (
 )
 from roadproof.recordings.evaluate.questions import Settings, askable
 from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.evaluate.results import Totals, as_json, driver_cells, driver_columns, question_mark
+from roadproof.recordings.evaluate.results import as_json, driver_cells, driver_columns, question_mark
+from roadproof.recordings.evaluate.totals import Totals
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.runtime.executors import Jobs, hands_of

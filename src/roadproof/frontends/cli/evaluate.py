@@ -23,7 +23,7 @@ from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.definitions import Definitions
-    from roadproof.recordings.evaluate.results import Totals
+    from roadproof.recordings.evaluate.totals import Totals
 
 SUMMARY = "find disturbances in recorded traffic and match them with the scenarios"
 

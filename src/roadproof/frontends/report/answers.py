@@ -20,7 +20,8 @@ from roadproof.frontends.report.traffic import (
     traces_of,
 )
 from roadproof.library.scenarios import DETECTORS
-from roadproof.recordings.evaluate.results import Row, Totals, words_in
+from roadproof.recordings.evaluate.results import words_in
+from roadproof.recordings.evaluate.totals import Row, Totals
 
 
 def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> str:

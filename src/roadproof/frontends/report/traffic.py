@@ -12,8 +12,9 @@ from roadproof.frontends.report.tables import Table
 from roadproof.library.scenarios import DETECTORS, Metric
 from roadproof.library.words import Called
 from roadproof.recordings.evaluate.foretelling import LABELS
-from roadproof.recordings.evaluate.results import Row, Totals, foretold_rows, words_in
+from roadproof.recordings.evaluate.results import foretold_rows, words_in
 from roadproof.recordings.evaluate.sectors import ANYWHERE
+from roadproof.recordings.evaluate.totals import Row, Totals
 
 NONE_FAILED: Mapping[str, str] = MappingProxyType({})
 OURS = "here"

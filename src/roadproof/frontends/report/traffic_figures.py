@@ -9,7 +9,8 @@ from roadproof.frontends.report.figures import as_bytes, count_axis, legend_besi
 from roadproof.frontends.report.paper import MARK
 from roadproof.frontends.report.traffic import decimal, ending_of, paper_row
 from roadproof.library.words import Called
-from roadproof.recordings.evaluate.results import Row, Totals, words_in
+from roadproof.recordings.evaluate.results import words_in
+from roadproof.recordings.evaluate.totals import Row, Totals
 
 COLOURS = ("#9db8d9", "#4f7fb8", "#1f4a80", "#e0b990", "#c8783c", "#8a4a1c", "#8fb884", "#4b8b3b", "#2b5a20")
 BAR, GREY = "#9db8d9", "#555555"

@@ -7,7 +7,7 @@ from roadproof.frontends.report.answers import answer_questions
 from roadproof.frontends.report.tables import LOOKS
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.frontends.report.traffic_figures import draw_figures
-from roadproof.recordings.evaluate.results import Totals
+from roadproof.recordings.evaluate.totals import Totals
 from roadproof.runtime.files import cannot_write, write_whole
 
 

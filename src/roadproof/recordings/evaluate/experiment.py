@@ -12,13 +12,13 @@ from roadproof.errors import InputError, SharedError
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_windows
 from roadproof.recordings.evaluate.questions import Questions, Settings, ask
 from roadproof.recordings.evaluate.results import (
-    Totals,
     fingerprint,
     load_findings,
     question_mark,
     save_findings,
     write_results,
 )
+from roadproof.recordings.evaluate.totals import Totals
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import copies_among, find_sources

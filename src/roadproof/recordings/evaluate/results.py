@@ -7,16 +7,15 @@ a run that was killed and started again ends with the same bytes as one that was
 import csv
 import hashlib
 import json
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from fractions import Fraction
 from importlib.metadata import version
 from io import TextIOWrapper
 from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple, TextIO
+from typing import Any, TextIO
 
 from roadproof.drivers.models import MODELS, course_in
 from roadproof.evidence.answers import traffic as kept
@@ -30,7 +29,7 @@ from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
-from roadproof.recordings.evaluate.sectors import Sector, sectors_of
+from roadproof.recordings.evaluate.totals import Foretold, Row, Totals, add_findings, begin_totals
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.files import make_folder, whole_file
 
@@ -137,181 +136,6 @@ def whole_text(path: Path) -> Iterator[TextIO]:
             yield text
         finally:
             text.detach()
-
-
-@dataclass
-class Row:
-    """One row of a results table (paper, Table of results): a spec set under one minDanger, in a sector.
-
-    Counts are of unordered pairs whose trace begins in the sector. ``matching`` is by scenarios of two cars,
-    as in the paper; ``matching_with_three`` counts those of three cars too, ``several`` those of these that
-    match more than one scenario. ``together`` counts how many traces match two scenarios at once.
-    ``matching_violating`` counts the pairs among all violating ones that match a scenario of two cars here.
-    """
-
-    sector: Sector
-    min_danger: Fraction
-    set_name: str
-    traces: int = 0
-    matching: int = 0
-    matching_with_three: int = 0
-    matching_violating: int = 0
-    scenarios: Counter[int] = field(default_factory=Counter)
-    several: int = 0
-    together: Counter[tuple[int, int]] = field(default_factory=Counter)
-
-    @property
-    def recall(self) -> float | None:
-        """Matching traces by traces; None where there are none."""
-        return self.matching / self.traces if self.traces else None
-
-
-class Foretold(NamedTuple):
-    """What driver models say of matches: ``min_danger`` is an index into the settings'."""
-
-    min_danger: int
-    set_name: str
-    scenario: int
-    driver: str
-    label: str
-
-
-@dataclass
-class Totals:
-    """Everything that the tables need, added up recording by recording.
-
-    ``tables``: the rows of each road sector by its name, the first being the paper's main road unless it is
-    not asked for; ``met``: the sectors that a road of the recordings has. ``foretold`` counts the labels that
-    driver models give to matches.
-
-    The following count in all road sectors together: ``violating`` the pairs with an rssViolation in some
-    frame; ``traces`` the disturbance traces by minDanger (an index); by minDanger and set, ``matching`` the
-    traces and ``matching_violating`` the violating pairs that match a scenario of two cars.
-    """
-
-    settings: Settings
-    tables: Mapping[str, list[Row]]
-    met: set[str] = field(default_factory=set)
-    recordings: int = 0
-    vehicles: int = 0
-    samples: int = 0
-    violating: int = 0
-    traces: Counter[int] = field(default_factory=Counter)
-    matching: Counter[tuple[int, str]] = field(default_factory=Counter)
-    matching_violating: Counter[tuple[int, str]] = field(default_factory=Counter)
-    asked: int = 0
-    undecided: int = 0
-    differing: int = 0
-    detected: Counter[str] = field(default_factory=Counter)
-    unequal_3_4: list[tuple[str, int, int, str]] = field(default_factory=list)
-    broken: list[str] = field(default_factory=list)
-    notes: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    repeats: list[Repeat] = field(default_factory=list)
-    foretold: Counter[Foretold] = field(default_factory=Counter)
-
-    @property
-    def rows(self) -> list[Row]:
-        """Those of the first sector."""
-        return next(iter(self.tables.values()))
-
-    @property
-    def shown(self) -> dict[str, list[Row]]:
-        """The tables of the first sector, and of the others that a road of the recordings has."""
-        return {name: rows for k, (name, rows) in enumerate(self.tables.items()) if not k or name in self.met}
-
-    @property
-    def repeated(self) -> int:
-        """How many traces are left out because an earlier recording has them too."""
-        return sum(x.what == "trace" for x in self.repeats)
-
-
-def begin_totals(settings: Settings) -> Totals:
-    """No recordings yet."""
-    sectors = sectors_of(settings.library.select(settings.sets[0], settings.options), settings.scenarios)
-    each = [(m, s) for m in settings.min_danger for s in settings.sets]
-    return Totals(settings, {sector.name: [Row(sector, *x) for x in each] for sector in sectors})
-
-
-def add_findings(totals: Totals, findings: Findings) -> None:
-    """Count one recording, and check the facts of semantics §6 on it."""
-    totals.recordings += 1
-    for name in ("vehicles", "samples", "asked", "undecided", "differing"):
-        setattr(totals, name, getattr(totals, name) + getattr(findings, name))
-    violating = {*findings.violating}
-    totals.violating += len(violating)
-    totals.traces.update(x.min_danger for x in findings.traces)
-    totals.detected.update(name for name, _ in {(x.detector, x.pair) for x in findings.detections})
-    totals.met.update(findings.sectors)
-    for match in findings.matches:
-        for driver, label in zip(totals.settings.drivers, match.labels, strict=bool(match.labels)):
-            if label:
-                of = (match.min_danger, match.set_name, match.scenario)
-                totals.foretold[Foretold(*of, driver, label)] += 1
-    for place, (k, set_name) in enumerate(
-        product(range(len(totals.settings.min_danger)), totals.settings.sets)
-    ):
-        traces = {(t.first, t.second): t for t in findings.traces if t.min_danger == k}
-        matches = [x for x in findings.matches if x.min_danger == k and x.set_name == set_name]
-        for rows in totals.tables.values():
-            _count(rows[place], traces.values(), matches, violating)
-        of_two = {x.pair for x in matches if x.pov2 is None}
-        totals.matching[k, set_name] += len(of_two & traces.keys())
-        totals.matching_violating[k, set_name] += len(of_two & violating)
-        _check(totals, findings, traces, _scenarios_by_pair(matches), k, set_name)
-
-
-def _scenarios_by_pair(matches: Iterable[Match]) -> dict[tuple[int, int], set[int]]:
-    """The scenarios of each pair that matches some."""
-    matched: dict[tuple[int, int], set[int]] = {}
-    for match in matches:
-        matched.setdefault(match.pair, set()).add(match.scenario)
-    return matched
-
-
-def _count(
-    row: Row, traces: Iterable[Trace], matches: Iterable[Match], violating: Set[tuple[int, int]]
-) -> None:
-    """Add what was found in the sector of a row."""
-    ours = [x for x in matches if x.scenario in row.sector.scenarios]
-    matched = _scenarios_by_pair(ours)
-    row.traces += sum(row.sector.name in x.sectors for x in traces)
-    row.matching_with_three += len(matched)
-    of_two = {x.pair for x in ours if x.pov2 is None}
-    row.matching += len(of_two)
-    row.matching_violating += len(of_two & violating)
-    for numbers in matched.values():
-        row.scenarios.update(numbers)
-        row.several += len(numbers) > 1
-        row.together.update((i, j) for i in numbers for j in numbers if i < j)
-
-
-def _check(
-    totals: Totals,
-    findings: Findings,
-    traces: Mapping[tuple[int, int], Trace],
-    matched: Mapping[tuple[int, int], set[int]],
-    k: int,
-    set_name: str,
-) -> None:
-    """semantics §6: matches are disturbances; a set matches all that the one before it does; s3 = s4."""
-    where = f"recording {findings.recording}, minDanger {totals.settings.min_danger[k]}, {set_name}"
-    totals.broken += [
-        f"{where}: {pair} matches but is no disturbance" for pair in matched if pair not in traces
-    ]
-    wider = {"base": "extA", "extA": "ext"}.get(set_name)
-    if wider in totals.settings.sets:
-        theirs = (x for x in findings.matches if x.min_danger == k and x.set_name == wider)
-        other = _scenarios_by_pair(theirs)
-        lost = [p for p, numbers in matched.items() if not numbers <= other.get(p, set())]
-        totals.broken += [f"{where}: {pair} does not match as much in {wider}" for pair in lost]
-    if set_name == "base" and {3, 4} <= set(totals.settings.scenarios):
-        for pair, numbers in matched.items():
-            if (3 in numbers) != (4 in numbers):
-                straddles = traces[pair].first_lane != traces[pair].second_lane
-                totals.unequal_3_4.append((findings.recording, *pair, str(totals.settings.min_danger[k])))
-                totals.broken += (
-                    [] if straddles else [f"{where}: {pair} matches only one of scenarios 3 and 4"]
-                )
 
 
 def write_results(
