@@ -10,7 +10,7 @@ from itertools import groupby
 from typing import assert_never
 
 from roadproof.logic import syntax
-from roadproof.logic.parse import LONGEST_EXPONENT, LONGEST_NUMBER
+from roadproof.logic.build_syntax import LONGEST_EXPONENT, LONGEST_NUMBER
 from roadproof.logic.restore import as_syntax as as_syntax
 from roadproof.logic.syntax import Binding, Bounds, Claim, Definition, Expression
 
