@@ -166,6 +166,52 @@ def hostile_traffic() -> dict:
     }
 
 
+def catalogue_of(**more: object) -> dict:
+    """The answer of a catalogue without tests, with ``more`` in it."""
+    gaps = {"asked": False, "classes_in_all": 0, "targets": [], "empty": [], "open": {}}
+    nothing = ("tests", "targets", "not_tested", "figures", "ranges", "facts", "notes")
+    nothing += ("faults", "doubts", "alike", "contradictions")
+    return {
+        **{"set": "base", "scenarios": [4], **SAID, "view": "dense", "seconds": 1},
+        **{name: [] for name in nothing},
+        "gaps": gaps | {"claims": [], "classes": []},
+        **more,
+    }
+
+
+def concrete(**more: object) -> dict:
+    """A test of a catalogue that is a drive, with ``more`` in it."""
+    plain = {"title": "", "copy_of": "", "roles": {}, "claims": [], "dense": True, "begins": {}, "fault": ""}
+    return plain | more
+
+
+def a_fact(**more: object) -> dict:
+    """A fact of a catalogue, with ``more`` in it."""
+    plain = {"premise": "true", "conclusion": None, "formula": "true", "reason": "", "certificate": None}
+    return plain | {"drive": None, "also": []} | more
+
+
+def hostile_catalogue() -> dict:
+    shown = {"what": CLOSED, "vehicles": [HOSTILE], "lane": HOSTILE, "at": 0}
+    target = {"name": HOSTILE, "words": CLOSED, "sector": HOSTILE, "tested": [HOSTILE], "possible": [CLOSED]}
+    spread = {"target": HOSTILE, "term": CLOSED, "tested": [0, 1], "reached": [0, 2], "untested": [[1, 2]]}
+    fact = a_fact(test=HOSTILE, other=CLOSED, relation="shows", verdict="WITNESSED", reason=HOSTILE)
+    empty = {"scenario": 1, "component": HOSTILE, "description": CLOSED, "condition": CLOSED, "gaps": []}
+    said = catalogue_of(set=HOSTILE)
+    return said | {
+        "targets": [target | {"covered": {HOSTILE: [0, 1]}}],
+        "tests": [
+            {"id": HOSTILE, "title": CLOSED, "formula": CLOSED, "claims": [HOSTILE]},
+            concrete(id=CLOSED, title=HOSTILE, file=HOSTILE, shown=[shown]),
+        ],
+        "notes": [CLOSED],
+        "alike": [{"tests": [HOSTILE], "told": CLOSED}],
+        "ranges": [spread | {"share": 0.5, "beyond": [HOSTILE, CLOSED]}],
+        "facts": [fact],
+        "gaps": said["gaps"] | {"classes": [empty | {"verdict": "IMPOSSIBLE", "claim": HOSTILE}]},
+    }
+
+
 def hostile_answers(drive: dict) -> dict[str, dict]:
     named = drive | {"formula": f"danger(SV,POV) {HOSTILE} {CLOSED}"}
     claim = {"property": HOSTILE, "part": CLOSED, "scenario": None, "set": HOSTILE, "claim": HOSTILE}
@@ -188,18 +234,7 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
         },
         "classify": hostile_classes(),
         "coverage": hostile_gaps(),
-        "catalogue": {
-            "targets": [{"name": HOSTILE, "words": CLOSED, "tested": [HOSTILE]}],
-            "tests": [
-                {"id": HOSTILE, "title": CLOSED, "claims": [HOSTILE], "shown": []},
-                {"id": CLOSED, "file": HOSTILE, "dense": True, "shown": [{"what": CLOSED, "lane": HOSTILE}]},
-            ],
-            "notes": [CLOSED],
-            "alike": [{"tests": [HOSTILE], "told": CLOSED}],
-            "ranges": [{"target": HOSTILE, "term": CLOSED, "tested": [HOSTILE], "share": 0.5}],
-            "facts": [{"test": HOSTILE, "other": CLOSED, "relation": HOSTILE, "verdict": CLOSED}],
-            "gaps": {"targets": [{"name": CLOSED}], "classes": [{"claim": HOSTILE, "description": CLOSED}]},
-        },
+        "catalogue": hostile_catalogue(),
         "traffic-results": hostile_traffic(),
         "preventable": hostile_plates(named),
         "explore": {**SAID, "view": "dense", "seconds": 1, "explored": [explored(named)]},
@@ -221,18 +256,17 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
 def hostile_plates(drive: dict) -> dict:
     ends = [{"near": 1, "exact": HOSTILE}, {"near": 2.5, "exact": CLOSED}]
     lines = [{"at": "0", "unpreventable": []}, {"at": "1/2", "unpreventable": [ends]}]
-    shown = {
-        "side": HOSTILE,
-        "at": {HOSTILE: CLOSED},
-        "verdict": CLOSED,
-        "formula": HOSTILE,
-        "reason": CLOSED,
-    }
-    plate = {"name": HOSTILE, "model": CLOSED, "fixed": {HOSTILE: CLOSED}, "verdict": HOSTILE}
+    shown = {"side": "preventable", "at": {HOSTILE: "1"}, "verdict": "WITNESSED", "formula": HOSTILE}
+    shown |= {"scenario": CLOSED, "reason": CLOSED, "drive": drive}
+    plate = {"name": HOSTILE, "model": CLOSED, "fixed": {HOSTILE: "1"}, "verdict": "UNKNOWN"}
+    plate |= {"stepped": HOSTILE, "motion": CLOSED, "reason": HOSTILE}
+    lemma = {"name": HOSTILE, "title": CLOSED, "claim": HOSTILE, "verdict": "PROVED", "assuming": [CLOSED]}
+    lemma |= {"certificate": None, "reason": CLOSED}
     return {
+        **{"set": HOSTILE, **SAID, "scenario": None, "view": "dense", "seconds": 1},
         **{"manoeuvre": "cut-in", "along": ["dx0", "0", "3"], "across": ["dV0", "0", "1/2", "2"]},
-        "plates": [plate | {"formula": CLOSED, "lines": lines, "shown": [shown | {"drive": drive}]}],
-        "lemmas": [{"name": HOSTILE, "title": CLOSED, "claim": HOSTILE, "verdict": "PROVED"}],
+        "plates": [plate | {"formula": CLOSED, "lines": lines, "shown": [shown]}],
+        "lemmas": [lemma],
     }
 
 
@@ -294,7 +328,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'set' is missing"),
         ('{"schema": "roadproof/classify/1", "classes": 3}', "'set' is missing"),
         ('{"schema": "roadproof/traffic-results/3", "table": 3}', "'settings' is missing"),
-        ('{"schema": "roadproof/catalogue/1", "tests": 3}', "is no result that can be shown"),
+        ('{"schema": "roadproof/catalogue/1", "tests": 3}', "'set' is missing"),
     ],
 )
 def test_mistakes_are_named(tmp_path, capsys, content, wrong):
@@ -354,12 +388,15 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
 
     def test(name: str, what: str, file: object) -> dict:
         shown = [{"what": what, "vehicles": ["SV", "POV"], "lane": "main-1", "at": 0.0}]
-        return {"id": name, "file": str(file), "claims": [what], "dense": True, "shown": shown, "fault": ""}
+        return concrete(id=name, file=str(file), claims=[what], shown=shown)
 
-    answer = {
-        "schema": "roadproof/catalogue/1",
-        "set": "base",
-        "tests": [
+    def target(number: int, words: str, *tested: str) -> dict:
+        plain = {"sector": "", "possible": [], "covered": {}}
+        return plain | {"name": f"scenario_{number}", "words": words, "tested": tested}
+
+    answer = {"schema": "roadproof/catalogue/1"} | catalogue_of(
+        **{"options": {}, "parameters": {}, "specs": []},
+        tests=[
             test("right", "scenario_4", drive),
             test("wrong", "scenario_1", drive),
             test("away", "scenario_4", tmp_path / "away.json"),
@@ -370,14 +407,10 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
                 "claims": ["scenario_1", "scenario_5"],
             },
         ],
-        "targets": [
-            {"name": "scenario_1", "words": "one", "tested": ["wrong"], "possible": []},
-            {"name": "scenario_5", "words": "five", "tested": [], "possible": []},
-            {"name": "scenario_4", "words": "four", "tested": ["right", "away", "all"], "possible": []},
-        ],
-        "facts": [{"test": "all", "other": "scenario_1", "relation": "excludes", "verdict": "PROVED"}],
-        "alike": [{"tests": ["right", "away"], "told": "show the same"}],
-    }
+        targets=[target(1, "one", "wrong"), target(5, "five"), target(4, "four", "right", "away", "all")],
+        facts=[a_fact(test="all", other="scenario_1", relation="excludes", verdict="PROVED")],
+        alike=[{"tests": ["right", "away"], "told": "show the same"}],
+    )
     (tmp_path / "tests.json").write_text(json.dumps(answer), "utf-8")
     found, text = made(tmp_path / "tests.json", out=tmp_path / "page.html")
     seen = body_of(text)

@@ -1,7 +1,7 @@
 """The answer of ``roadproof catalogue``: what tests show and mean, and which situations no test shows."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import coverage
@@ -121,7 +121,7 @@ class ConcreteTest:
             "What the test calls the vehicle of each role, where that is not the role: as it says, or by "
             "usual names."
         ),
-    ]
+    ] = field(default_factory=dict)
     claims: Names
     dense: Annotated[bool, Doc("Judged in dense time; else monitored on samples.")]
     shown: tuple[Shown, ...]

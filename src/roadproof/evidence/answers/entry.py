@@ -168,9 +168,17 @@ def _unexpected(entry: Entry, said: Certificate | DriveFile) -> str:
     """Why the evidence shows none of the formulas that it has to show, or nothing."""
     written = said.claim if isinstance(said, Certificate) else said.formula
     wanted = entry.expected()
-    if wanted is None or entry.common.formula(written) in wanted:
+    shown = entry.common.formula(written)
+    if wanted is None or any(_is_same(shown, x) for x in wanted):
         return ""
     return f"{entry.where} is about {entry.label}, but its file is not: {' '.join(written.split())[:120]}"
+
+
+def _is_same(one: Formula, other: Formula) -> bool:
+    """Whether two formulas are equal, the order of what a conjunction is made of aside."""
+    if isinstance(one, f.And) and isinstance(other, f.And):
+        return set(one.parts) == set(other.parts)
+    return one == other
 
 
 def _other_claim(entry: Entry, said: Certificate | DriveFile) -> str:
