@@ -14,7 +14,8 @@ from roadproof.analysis.coverage.claims import claims_of
 from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence.answers.coverage import Entries, KeptClass
-from roadproof.evidence.answers.entry import Entry, mismatch
+from roadproof.evidence.answers.entry import Common, Entry, is_same, mismatch
+from roadproof.evidence.answers.order import Refutation
 from roadproof.evidence.answers.read import (
     faults_of,
     index_fields,
@@ -534,3 +535,13 @@ def test_fields_that_no_index_has() -> None:
         index_fields({"schema": "roadproof/index/9"}, "index.json")
     with pytest.raises(InputError, match="names no set"):
         first_set(Fields({"sets": []}, "index.json"))
+
+
+def test_a_drive_of_order_may_name_scenarios_in_any_order():
+    common = Common("here", bundled_library(), "base", {}, None)
+    drive = Refutation(holds="1@base", fails=("4@base", "4@ext"), drive="drive.json")
+    one, other, third = "scenario_1(SV,POV,L)", "scenario_4(SV,POV,L)", "scenario_4@ext(SV,POV,L)"
+    [wanted] = drive.expected(common)
+    assert is_same(common.formula(f"{one} and not {third} and not {other}"), wanted)
+    assert not is_same(common.formula(f"{one} and not {third}"), wanted)
+    assert not is_same(common.formula(f"{other} and not {third} and not {one}"), wanted)

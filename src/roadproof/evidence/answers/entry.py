@@ -169,12 +169,12 @@ def _unexpected(entry: Entry, said: Certificate | DriveFile) -> str:
     written = said.claim if isinstance(said, Certificate) else said.formula
     wanted = entry.expected()
     shown = entry.common.formula(written)
-    if wanted is None or any(_is_same(shown, x) for x in wanted):
+    if wanted is None or any(is_same(shown, x) for x in wanted):
         return ""
     return f"{entry.where} is about {entry.label}, but its file is not: {' '.join(written.split())[:120]}"
 
 
-def _is_same(one: Formula, other: Formula) -> bool:
+def is_same(one: Formula, other: Formula) -> bool:
     """Whether two formulas are equal, the order of what a conjunction is made of aside."""
     if isinstance(one, f.And) and isinstance(other, f.And):
         return set(one.parts) == set(other.parts)
