@@ -34,7 +34,7 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import catalogue_drives
-from roadproof.frontends.report.catalogue_drives import TestPicture, draw_tests
+from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
 from roadproof.frontends.report.figures import make_page, shorten
 from roadproof.library.bind import bind, values_with
 from roadproof.semantics.exact.exact import judge
@@ -275,7 +275,7 @@ def test_all_tests_are_drawn_on_pages_and_titles_fit(monkeypatch: pytest.MonkeyP
     courses = courses_of(Concrete("x", str(CUT_IN)))
     assert courses is not None
     assert courses_of(Concrete("x", str(DRIVES / "torn.json"))) is None
-    pages = list(draw_tests([TestPicture("W" * 60, "1 cut-in", courses)] * 3))
+    pages = list(draw_tests([DrivePicture("W" * 60, "1 cut-in", courses)] * 3))
     assert [page["png"][:4] for page in pages] == [b"\x89PNG"] * 2
     text = make_page(4, 4).text(0, 0, "W" * 60, fontsize=6.5)
     shorten(text, 1.9)

@@ -112,7 +112,8 @@ def question(formula: str = "scenario_1(SV,POV,L)", text: str = "", **other: Any
 
 def workers_of(process: int) -> set[int]:
     """The processes below a process that are workers of the studio."""
-    found = subprocess.run(["ps", "-eo", "pid,ppid,args"], capture_output=True, text=True, check=True).stdout
+    asked = ["ps", "-wweo", "pid,ppid,args"]  # -ww: whole lines, however wide the terminal is
+    found = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
     rows = [line.split(None, 2) for line in found.splitlines()[1:]]
     children = {int(pid): (int(parent), words) for pid, parent, words in rows}
 

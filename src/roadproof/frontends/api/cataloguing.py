@@ -35,7 +35,7 @@ from roadproof.frontends.api.settings import Vehicles, basis_of, one_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report import catalogue_drivers as decisions
-from roadproof.frontends.report.catalogue_drives import TestPicture, draw_tests
+from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict
@@ -160,7 +160,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept]):
         for k, page in enumerate(draw_tests(self._drawn()), 1):
             yield f"tests-{k}", picture(page)
 
-    def _drawn(self) -> list[TestPicture]:
+    def _drawn(self) -> list[DrivePicture]:
         """The tests to be drawn, by the first scenario that each shows."""
         targets = [x for x in self.tested.targets if kind_of(x.name) == SCENARIOS]
         groups = {
@@ -176,7 +176,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept]):
             elif (drive := runs.get(entry.id)) is not None:
                 courses[entry.id] = of_drive(drive.file)
         drawn = [
-            TestPicture(test, groups.get(test, "no scenario"), x)
+            DrivePicture(test, groups.get(test, "no scenario"), x)
             for test, x in courses.items()
             if x is not None
         ]

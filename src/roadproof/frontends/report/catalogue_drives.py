@@ -16,7 +16,7 @@ _MARGIN = (0.35, 0.55)  # left of all cells, above them
 
 
 @dataclass(frozen=True)
-class TestPicture:
+class DrivePicture:
     """A test to be drawn: its ``title``, the ``group`` it stands in, in words, and how its vehicles move."""
 
     title: str
@@ -24,14 +24,14 @@ class TestPicture:
     courses: Courses
 
 
-def draw_tests(tests: Sequence[TestPicture]) -> Iterator[dict[str, bytes]]:
+def draw_tests(tests: Sequence[DrivePicture]) -> Iterator[dict[str, bytes]]:
     """Pages of small pictures, groups in the order in which they come: ``{"png": …, "svg": …}`` each."""
     for k in range(0, len(tests), MOST_ON_A_PAGE):
         yield _page(tests[k : k + MOST_ON_A_PAGE])
 
 
-def _page(tests: Sequence[TestPicture]) -> dict[str, bytes]:
-    groups: dict[str, list[TestPicture]] = {}
+def _page(tests: Sequence[DrivePicture]) -> dict[str, bytes]:
+    groups: dict[str, list[DrivePicture]] = {}
     for test in tests:
         groups.setdefault(test.group, []).append(test)
     columns = _COLUMNS if len(tests) > 2 * _FEW else _FEW
@@ -64,7 +64,7 @@ def _legend(figure: Any, colours: Mapping[str, str], height: float) -> None:
 
 def _draw(
     figure: Any,
-    test: TestPicture,
+    test: DrivePicture,
     colours: Mapping[str, str],
     corner: tuple[float, float],
     page: tuple[float, float],
