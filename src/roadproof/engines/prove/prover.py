@@ -109,20 +109,15 @@ def prove(
     premise, claim = goal_of(specification, query, assumed, atoms, pinned)
     attempt = _Attempt(query, states, meter, is_moving(assumed.said))
 
-    def result(
-        verdict: ClaimVerdict,
-        reason: str = "",
-        certificate: Certificate | None = None,
-        countermodel: Countermodel | None = None,
-    ) -> Result:
-        return Result(verdict, reason, since(begun), meter.spent, certificate, countermodel)
+    def result(verdict: ClaimVerdict, reason: str = "", certificate: Certificate | None = None) -> Result:
+        return Result(verdict, reason, since(begun), meter.spent, certificate)
 
     names: dict[Site, str] = {}
     proofs: list[Proof] = []
     for goal in conjuncts(claim):
         found = attempt.decide(f.implication(premise, goal), names)
         if isinstance(found, Countermodel):
-            return result(Verdict.REFUTED, "", None, with_truths(found, atoms))
+            return replace(result(Verdict.REFUTED), countermodel=with_truths(found, atoms))
         if isinstance(found, GaveUp):
             return replace(result(Verdict.UNKNOWN, found.reason), stop=found.stop)
         proofs.append(found)
@@ -138,6 +133,25 @@ def prove(
     except InputError as error:
         why = f"a proof was found, but no certificate can be made of it: {error}"
         return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
+    rejected = _rejection(certificate, proofs, meter)
+    if rejected is not None:
+        verdict, why = rejected
+        return replace(result(verdict, why), stop=Stop.CERTIFICATE if verdict is Verdict.UNKNOWN else None)
+    if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
+        return result(Verdict.VACUOUS, CONTRADICTION, certificate)
+    condition = _premise(query, claim)
+    if condition is not None and attempt.never_holds(premise, condition):
+        return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
+    return result(Verdict.PROVED, "", certificate)
+
+
+def _rejection(
+    certificate: Certificate, proofs: Sequence[Proof], meter: Budget
+) -> tuple[ClaimVerdict, str] | None:
+    """The verdict and the reason where z3 does not confirm a query of the certificate; None where it does.
+
+    A query that the search for the ``proofs`` has put to z3 itself is not asked again.
+    """
     settled = frozenset[str]().union(*(proof.settled for proof in proofs))
     for title, script in certificate.queries:
         if script in settled:
@@ -145,15 +159,8 @@ def prove(
         answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
         if answer != "unsat":
             why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
-            if answer == "unknown":
-                return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
-            return result(Verdict.CROSSCHECK_FAILED, why)
-    if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
-        return result(Verdict.VACUOUS, CONTRADICTION, certificate)
-    condition = _premise(query, claim)
-    if condition is not None and attempt.never_holds(premise, condition):
-        return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
-    return result(Verdict.PROVED, "", certificate)
+            return (Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED), why
+    return None
 
 
 class ProofHeuristic:
@@ -285,9 +292,7 @@ class _Attempt:
     def _search(
         self, goal: Formula, names: dict[Site, str], wishful: bool, roster: Roster | None = None
     ) -> InstanceSearch:
-        return InstanceSearch(
-            goal, self.atoms, self.bounds, self.states, self.query.lanes, names, wishful, roster, self.moving
-        )
+        return InstanceSearch(goal, self.states, self.query.lanes, names, wishful, roster, self.moving)
 
 
 def _certificate(

@@ -18,7 +18,7 @@ from roadproof.engines.prove.grounding import Grounding, Universal
 from roadproof.engines.prove.small_roads import Roster, open_quantifiers
 from roadproof.engines.prove.states import CASE, StateChecker
 from roadproof.engines.solve.smt import Satisfiability
-from roadproof.evidence.atoms import Atoms, free_lanelets, membership
+from roadproof.evidence.atoms import free_lanelets, membership
 from roadproof.evidence.derivation import Lemma, Site, free_prefix
 from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
@@ -86,8 +86,6 @@ class InstanceSearch:
     def __init__(
         self,
         claim: Formula,
-        atoms: Atoms,
-        bounds: Mapping[str, str],
         states: StateChecker,
         lanes: Sequence[str],
         names: dict[Site, str],
@@ -95,9 +93,10 @@ class InstanceSearch:
         roster: Roster | None = None,
         sparing: bool = False,
     ) -> None:
+        bounds = dict(states.bounds)
         prefixes = free_prefix("t", bounds), free_prefix("M", {*lanes, *road_names(claim)})
         self.grounding = Grounding(
-            atoms, dict(bounds), prefixes, bound_parameters(claim), wishful, names, roster
+            states.atoms, bounds, prefixes, bound_parameters(claim), wishful, names, roster
         )
         if roster is not None:
             self.grounding.elements |= roster.elements()
