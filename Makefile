@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test long demo browser findings interop mutants fuzz lint unit format clean
+.PHONY: test long demo docs browser findings interop mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -38,6 +38,10 @@ demo: $(READY)
 		--title 'roadproof: 162 claims, 24 drives, a matrix and a recording' --out $(DEMO)/demo.html
 	@echo "Open $(CURDIR)/$(DEMO)/demo.html in a browser; it needs no network."
 
+# The documentation site, in out/site: open out/site/index.html in a browser; it needs no network.
+docs: $(READY)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
+
 # The studio in a real browser: Debian's Chromium (apt-get install chromium fonts-dejavu-core), or CHROMIUM=/path/to/it.
 browser: $(READY)
 	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/studio/test_browser.py tests/report/test_page.py $(ARGS)
@@ -46,11 +50,11 @@ browser: $(READY)
 findings: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m findings $(ARGS)
 
-# Exported drives, put to clients that nobody here wrote (docs/interop.md); environments under out/interop.
+# Exported drives, put to clients that nobody here wrote (docs/how-to/interop.md); environments under out/interop.
 interop: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m interop $(ARGS)
 
-# Small faults in the source, each tried against the tests that run its line (docs/tests.md); hours, taken
+# Small faults in the source, each tried against the tests that run its line (docs/explanation/tests.md); hours, taken
 # up again where it stopped. ARGS='--only semantics/exact/ --most 20' asks for less.
 mutants: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m mutants record --jobs $(JOBS)

@@ -1,5 +1,5 @@
 """Labels of two published grids of cut-ins, by reading of the regulation and by clock: the tables of
-docs/preventable.md.
+docs/explanation/preventable.md.
 
     python benchmarks/preventable.py
 

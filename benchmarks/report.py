@@ -3,7 +3,7 @@
 The drives are those of ``roadproof witness --all`` in base, extA and ext, found anew in a folder of its own.
 What is told is the time from the start of loading until the page's scripts have run, by the browser's own
 clock, of five openings; and how long it took to make the page. With ``--picture FILE`` the picture of
-docs/report.md is made again.
+docs/how-to/report.md is made again.
 """
 
 import argparse

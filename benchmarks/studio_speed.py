@@ -2,7 +2,7 @@
 
 Measured in the page, from the event to the next frame that shows the answer. The machine's load is printed
 with the figures, since they are those of an idle machine only where it is idle. With --pictures the pictures
-of docs/studio.md are made again.
+of docs/how-to/studio.md are made again.
 """
 
 import argparse
@@ -98,7 +98,7 @@ def stopping(tab: Tab, process: int) -> float:
 
 
 def draw(folder: Path) -> None:
-    """The pictures of docs/studio.md."""
+    """The pictures of docs/how-to/studio.md."""
     folder.mkdir(parents=True, exist_ok=True)
     with running() as (address, _), browsing() as browser:
         tab = Tab(browser, address)

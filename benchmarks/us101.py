@@ -1,4 +1,4 @@
-"""What docs/us101.md says beyond the results of `roadproof evaluate`.
+"""What docs/explanation/us101.md says beyond the results of `roadproof evaluate`.
 
     python benchmarks/us101.py ../shared/data/us101 out/us101
 

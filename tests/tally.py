@@ -1,4 +1,4 @@
-"""The figures of docs/tests.md, counted from what lies in the repository: ``python -m tally`` writes them.
+"""Counts the figures of docs/explanation/tests.md in the repository: ``python -m tally`` writes them.
 
 Each stands between ``<!-- tally: NAME -->`` and ``<!-- end -->``. Nothing is run for them but pytest's
 collection, and that only to count planted faults.
@@ -18,7 +18,7 @@ from mutants import journal
 from mutants.choose import folder_of
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs/tests.md"
+PAGE = ROOT / "docs/explanation/tests.md"
 PLANTED = ("fault", "planted", "mutant", "noticed")
 """A test case with one of these words in its name plants a fault in the program and asks to be told of it."""
 
@@ -59,7 +59,7 @@ def attacks() -> str:
         if path.name != "README.md":
             title = page.partition("\n")[0].removeprefix("# ")
             asked = len(re.findall(r"^## ", page, re.M))
-            found.append((f"[{title}](../tests/attacks/{path.name})", asked, len(sessions_of(page))))
+            found.append((f"[{title}](../../tests/attacks/{path.name})", asked, len(sessions_of(page))))
     total = ("all", sum(row[1] for row in found), sum(row[2] for row in found))
     return rows(("page", "questions", "commands run by the tests"), [*found, total])
 

@@ -1,4 +1,4 @@
-"""docs/tests.md says what lies in the repository, and the faults that are called equivalent exist."""
+"""The figures of docs/explanation/tests.md are right, and the faults that it calls equivalent exist."""
 
 import json
 import re

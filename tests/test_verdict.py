@@ -34,7 +34,7 @@ def test_the_gravest_outcome_gives_the_exit_code(outcomes: list[tuple[Verdict, V
 
 
 def test_every_verdict_and_exit_code_is_explained() -> None:
-    page = (Path(__file__).parents[1] / "docs/meaning.md").read_text("utf-8")
+    page = (Path(__file__).parents[1] / "docs/explanation/meaning.md").read_text("utf-8")
     assert {str(verdict) for verdict in Verdict} <= set(re.findall(r"`([A-Z-]+)`", page))
     listed = page.partition("Exit codes: ")[2].partition("\n")[0]
     told = [int(entry.split()[0]) for entry in listed.split(" · ")]

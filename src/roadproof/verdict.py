@@ -1,4 +1,4 @@
-"""What an answer promises, and the exit code that goes with it (docs/meaning.md)."""
+"""What an answer promises, and the exit code that goes with it (docs/explanation/meaning.md)."""
 
 from collections.abc import Iterable
 from enum import IntEnum, StrEnum

@@ -17,9 +17,9 @@ PAGES = [
     *sorted(ROOT.joinpath("tests/attacks").glob("*.md")),
     *EXAMPLES,
     ROOT / "README.md",
-    ROOT / "docs/language.md",
-    ROOT / "docs/interop.md",
-    ROOT / "docs/motion.md",
+    ROOT / "docs/reference/language.md",
+    ROOT / "docs/how-to/interop.md",
+    ROOT / "docs/explanation/motion.md",
 ]
 
 

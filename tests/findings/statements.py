@@ -5,7 +5,7 @@ from findings.checking import Sessions
 from findings.figures import Figures, Picture, Statement
 from findings.results import ROOT
 
-FINDINGS, PERFORMANCE = "docs/findings.md", "docs/performance.md"
+FINDINGS, PERFORMANCE = "docs/explanation/findings.md", "docs/explanation/performance.md"
 FRONT_DOOR = "docs/adr/0023-one-front-door.md"
 FRONT_DOOR_ROWS = (
     "lines of cli",
@@ -23,8 +23,8 @@ FRONT_DOOR_ROWS = (
 
 SESSIONS = (
     Sessions("README.md"),
-    Sessions("docs/language.md"),
-    Sessions("docs/highd.md"),
+    Sessions("docs/reference/language.md"),
+    Sessions("docs/how-to/highd.md"),
     *(
         Sessions(
             f"examples/{name}/README.md",
@@ -486,7 +486,7 @@ LIMITS = (
 )
 
 EVALUATE = "roadproof evaluate ../shared/data/us101 --out out/us101 --no-pictures"
-US101 = "docs/us101.md"
+US101 = "docs/explanation/us101.md"
 ROWS = "".join(f"| {x} | {name} | {{}} |\n" for x in ("0", "0.6") for name in ("base", "extA", "ext"))
 COLUMNS = "| minDanger | set | traces | matching | recall | {} |\n|---:|---|---:|---:|---:|{}|\n"
 

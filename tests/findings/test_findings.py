@@ -13,7 +13,7 @@ from findings.results import ROOT, Results
 from findings.statements import PICTURES, STATEMENTS
 
 QUICK = [statement for statement in STATEMENTS if statement.quick]
-PAGES = ("docs/findings.md", "docs/us101.md")
+PAGES = ("docs/explanation/findings.md", "docs/explanation/us101.md")
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ BY_HAND = {"report.png", "studio.png", "studio-compare.png", "studio-explain.png
 
 
 def test_pictures_are_those_of_pages() -> None:
-    pages = "".join(path.read_text("utf-8") for path in (ROOT / "README.md", *ROOT.glob("docs/*.md")))
+    pages = "".join(path.read_text("utf-8") for path in (ROOT / "README.md", *ROOT.glob("docs/**/*.md")))
     pictures = {path.name for path in ROOT.glob("docs/pictures/*.png")}
     assert {Path(picture.file).name for picture in PICTURES} == pictures - BY_HAND
     assert all(f"pictures/{name})" in pages for name in pictures)

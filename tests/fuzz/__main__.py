@@ -1,4 +1,4 @@
-"""``python -m fuzz``: random formulas and traces through every reader (docs/tests.md).
+"""``python -m fuzz``: random formulas and traces through every reader (docs/explanation/tests.md).
 
 A case on which two readers disagree is made smaller and kept in ``found/``, where a test replays it.
 """

@@ -2,7 +2,7 @@
 
 Every client runs in an environment of its own (environments.py) and is asked about every file of its format;
 its complaints are counted, and it has to refuse damaged copies. What cannot be installed is skipped, with a
-reason. The table goes into docs/interop.md where all were asked.
+reason. The table goes into docs/how-to/interop.md where all were asked.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from roadproof.frontends.cli.main import main as roadproof
 from tally import put, rows
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "interop.md"
+PAGE = ROOT / "docs" / "how-to" / "interop.md"
 EACH = 2
 """So many files are damaged in each way."""
 _ALL = 6

@@ -1,4 +1,4 @@
-"""docs/trust.md: the files that it names are there, and as long as it says, within a tenth."""
+"""docs/explanation/trust.md: the files that it names are there, and as long as it says, within a tenth."""
 
 import re
 from pathlib import Path
@@ -8,7 +8,7 @@ ROW = re.compile(r"^\| \((\d)\) \| [^|]+ \| ([^|]+) \| (\d+) \|$", re.MULTILINE)
 
 
 def test_what_has_to_be_believed_is_as_long_as_the_page_says():
-    rows = ROW.findall((HOME / "docs" / "trust.md").read_text("utf-8"))
+    rows = ROW.findall((HOME / "docs" / "explanation" / "trust.md").read_text("utf-8"))
     assert [number for number, _, _ in rows] == list("1234567")
     for number, files, said in rows:
         lines = 0

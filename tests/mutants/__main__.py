@@ -1,4 +1,4 @@
-"""``python -m mutants``: make small faults in roadproof and see which test fails (docs/tests.md).
+"""``python -m mutants``: make small faults in roadproof and see which test fails (docs/explanation/tests.md).
 
 ``record`` which tests run which lines, ``run`` the faults, ``report`` what came out. A run goes on where
 it stopped: what was tried is in ``results.jsonl``, and is tried again where the function has changed, or

@@ -1,6 +1,6 @@
 """An independent simulation: drivers stepped at a clock's rate, boxes compared at every step.
 
-It knows nothing of formulas; what drivers do is written again from the sources in docs/preventable.md.
+It knows nothing of formulas. docs/explanation/preventable.md names the sources of its driver models.
 """
 
 from dataclasses import dataclass

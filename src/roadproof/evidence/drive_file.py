@@ -223,7 +223,9 @@ def _lanelet(content: object, where: str) -> Lanelet:
     data = Fields(content, where, ("id", "lane", "zone", "attribute", "s", "d"))
     zone, attribute = data.text("zone"), data.text("attribute")
     if zone not in get_args(Zone) or attribute not in get_args(Attribute):
-        raise InputError(f"{where}: zone={zone!r}, attribute={attribute!r} are none of docs/semantics.md §4")
+        raise InputError(
+            f"{where}: zone={zone!r}, attribute={attribute!r} are none of docs/explanation/semantics.md §4"
+        )
     s, d = data.items("s"), data.items("d")
     if len(s) != 2 or len(d) != 2:
         raise InputError(f"{where}: s and d are pairs")

@@ -9,7 +9,7 @@ from roadproof.evidence.json_schema import Other, Shared
 from roadproof.library.words import Words
 
 Formula: TypeAlias = Annotated[
-    str, Rule(least=1), Doc("A formula or a claim as text (docs/language.md)."), Shared("formula")
+    str, Rule(least=1), Doc("A formula or a claim as text (docs/reference/language.md)."), Shared("formula")
 ]
 Number: TypeAlias = Annotated[int, Rule(minimum=0), Doc("Number of a scenario."), Shared("number")]
 Count: TypeAlias = Annotated[int, Rule(minimum=0)]

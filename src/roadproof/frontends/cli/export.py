@@ -18,7 +18,7 @@ formats:
   csv            NAME.csv, a row a time and vehicle; NAME_road.toml
 
 Each drive is judged before it is written. One format goes into DIR, several into a folder for each. What is
-converted how is in docs/interop.md.
+converted how is in docs/how-to/interop.md.
 
 examples:
   roadproof export drives/scenario-04-base.json --to openscenario --out play

@@ -1,7 +1,7 @@
 """Whether a recording contradicts itself: motion against positions, sizes against classes and lanes.
 
 Each rule is asked of many samples or vehicles. Above a stated share of broken ones the recording is
-refused, below it the rule is a note. The constants are argued for in docs/highd.md.
+refused, below it the rule is a note. The constants are argued for in docs/how-to/highd.md.
 """
 
 from collections.abc import Iterator

@@ -1,0 +1,65 @@
+"""Hooks of mkdocs (mkdocs.yml): generated pages, list of decision records, links out of docs/."""
+
+import re
+import sys
+from pathlib import Path
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
+
+ROOT = Path(__file__).parents[2]
+for folder in (ROOT / "tests", ROOT / "src"):
+    if str(folder) not in sys.path:
+        sys.path.insert(0, str(folder))
+
+from documents.reference import PAGES  # noqa: E402
+
+_LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)]*)?\)")
+_SHIM = "https://unpkg.com/iframe-worker/shim"
+_FILE_BLOCK = re.compile(r"^```file (\S+)$", re.M)
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """List the decision records in the navigation."""
+    records = sorted(path.name for path in ROOT.joinpath("docs/adr").glob("*.md"))
+    assert config.nav is not None
+    explanation = next(entry["Explanation"] for entry in config.nav if "Explanation" in entry)
+    for entry in explanation:
+        if "Decision records" in entry:
+            entry["Decision records"] = [f"adr/{name}" for name in records]
+    return config
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages that are generated from the program."""
+    for name, write in PAGES.items():
+        files.append(File.generated(config, name, content=write()))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Name files outside docs/ instead of linking to them, and give blocks of files their titles."""
+    here = Path(config.docs_dir, page.file.src_uri).parent
+
+    def outside(link: re.Match[str]) -> str:
+        label, target = link[1], link[2]
+        if "://" in target:
+            return link[0]
+        path = (here / target).resolve()
+        if path.is_relative_to(config.docs_dir) or not path.exists():
+            return link[0]  # mkdocs resolves it, or warns
+        name = path.relative_to(ROOT).as_posix()
+        return label if name in label.replace("`", "") else f"{label} (`{name}`)"
+
+    return _LINK.sub(outside, _FILE_BLOCK.sub(r'```text title="\1"', markdown))
+
+
+def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
+    """Take the worker of the search from the site: the theme takes it from a network."""
+    return output.replace(_SHIM, "../" * page.file.dest_uri.count("/") + "assets/iframe-worker.js")
+
+
+def on_post_template(output: str, template_name: str, config: MkDocsConfig) -> str:
+    """As ``on_post_page``, for pages without a source, such as 404.html."""
+    return output.replace(_SHIM, "assets/iframe-worker.js")

@@ -1,0 +1,266 @@
+"""Reference pages that are generated from the program when the site is built."""
+
+import argparse
+import json
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from importlib import import_module
+from inspect import isclass, isfunction
+from pathlib import Path
+from typing import Any
+
+import roadproof
+from roadproof.frontends.cli.main import COMMANDS
+from roadproof.library.scenarios import number_in
+from roadproof.library.specification import Specification, bundled_library
+from roadproof.library.uses import definitions_used
+from roadproof.library.words import words_of
+from roadproof.logic.show import decimal, text
+from roadproof.logic.syntax import Definition
+from roadproof.verdict import ExitCode
+
+ROOT = Path(__file__).parents[2]
+WIDTH = 90
+
+
+def _cell(words: str) -> str:
+    """Text for a cell of a table: what Markdown would read as markup is escaped."""
+    return re.sub(r"([|<>*_\[\]])", r"\\\1", " ".join(words.split()))
+
+
+def _code(words: str) -> str:
+    return f"`{words}`".replace("|", "\\|")
+
+
+# --- commands ----------------------------------------------------------------------------------------
+
+
+def commands() -> str:
+    lines = [
+        "# Commands and options",
+        "",
+        "Each section is generated from the parser of the command. `roadproof COMMAND --help` prints the "
+        "same in a terminal. All commands share their [exit codes](exit-codes.md).",
+        "",
+        "| command | purpose |",
+        "|---|---|",
+        *(f"| [{name}](#{name}) | {_cell(summary)} |" for name, summary in COMMANDS.items()),
+    ]
+    for name, summary in COMMANDS.items():
+        lines += ["", f"## {name}", "", f"{summary[0].upper()}{summary[1:]}.", "", *_options(name, summary)]
+    return "\n".join(lines) + "\n"
+
+
+def _options(name: str, summary: str) -> Iterator[str]:
+    parser = argparse.ArgumentParser(
+        prog=f"roadproof {name}", description=summary, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    import_module(f"roadproof.frontends.cli.{name}").add_arguments(parser)
+    for group in parser._action_groups:
+        actions = [x for x in group._group_actions if x.help != argparse.SUPPRESS]
+        if not actions:
+            continue
+        title = {"positional arguments": "Arguments", "options": "Options"}.get(
+            group.title or "", group.title or ""
+        )
+        yield from (f"**{title}**", "", "| | |", "|---|---|")
+        for action in actions:
+            yield f"| {_spelling(action)} | {_cell(_help(parser, action))} |"
+        yield ""
+    if parser.epilog:
+        yield from ("```text", parser.epilog.strip(), "```")
+
+
+def _spelling(action: argparse.Action) -> str:
+    value = action.metavar or (
+        "{" + ",".join(map(str, action.choices)) + "}" if action.choices else action.dest.upper()
+    )
+    if isinstance(value, tuple):
+        value = " ".join(value)
+    if not action.option_strings:
+        return _code(value)
+    takes = "" if action.nargs == 0 else f" {value}"
+    return ", ".join(_code(f"{option}{takes}") for option in action.option_strings)
+
+
+def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
+    return parser._get_formatter()._expand_help(action) if action.help else ""
+
+
+# --- library -----------------------------------------------------------------------------------------
+
+
+def library() -> str:
+    base = bundled_library().select()
+    users = _users(base)
+    lines = [
+        "# Library",
+        "",
+        "Every scenario, definition, parameter and option of the library. `roadproof show NAME` prints an "
+        "entry with all definitions that it uses; `roadproof list` prints the names. The page is generated "
+        "from spec set `base`; [Spec sets](#spec-sets) lists the definitions that other sets replace.",
+        "",
+        "## Scenarios",
+    ]
+    definitions = base.definitions
+    for name in (x for x in definitions if number_in(x) is not None):
+        words = words_of(base, number_in(name) or 0)
+        head = f"{name}: {words.title}, {words.sector}" if words else name
+        about = words.sentence if words else base.describe(definitions[name])
+        lines += _entry(head, about, definitions[name], users[name])
+    lines += ["", "## Definitions"]
+    for name in sorted((x for x in definitions if number_in(x) is None), key=str.casefold):
+        lines += _entry(name, base.describe(definitions[name]), definitions[name], users[name])
+    return "\n".join([*lines, *_settings(base)]) + "\n"
+
+
+def _entry(head: str, about: str, definition: Definition, users: list[str]) -> list[str]:
+    used = f"Used by {', '.join(map(_code, users))}." if users else "No other definition uses it."
+    return [
+        "",
+        f"### {_cell(head)}",
+        "",
+        _cell(about[:1].upper() + about[1:]),
+        "",
+        "```text",
+        text(replace(definition, doc=""), WIDTH),
+        "```",
+        "",
+        used,
+    ]
+
+
+def _users(base: Specification) -> dict[str, list[str]]:
+    """For each definition the definitions whose text names it."""
+    found: dict[str, list[str]] = {name: [] for name in base.definitions}
+    for name, definition in base.definitions.items():
+        shown = text(definition)
+        named = set(re.findall(r"[A-Za-z_]\w*", shown))
+        for used in definitions_used(base, definition.body):
+            if used.name in named and used.name in found:
+                found[used.name].append(name)
+    return found
+
+
+def _settings(base: Specification) -> Iterator[str]:
+    library = base.library
+    yield from ("", "## Spec sets", "", "| set | extends | | replaces |", "|---|---|---|---|")
+    for block in library.sets.values():
+        parent = _code(block.parent) if block.parent else ""
+        replaced = ", ".join(_code(x.name) for x in block.definitions)
+        yield f"| `{block.name}` | {parent} | {_cell(block.doc)} | {replaced} |"
+    yield from ("", "## Options", "", "| option | choices, the first is the default | |", "|---|---|---|")
+    for option in library.options.values():
+        yield f"| `{option.name}` | {', '.join(map(_code, option.values))} | {_cell(option.doc)} |"
+    yield from ("", "## Parameters", "", "| parameter | default | bound | |", "|---|---|---|---|")
+    for declared in library.parameters.values():
+        sign = "-" if declared.value < 0 else ""
+        value = f"{sign}{decimal(abs(declared.value))} {declared.unit}".strip()
+        bound = _code(f"{declared.bound} 0") if declared.bound else ""
+        yield f"| `{declared.name}` | {value} | {bound} | {_cell(declared.doc)} |"
+
+
+# --- exit codes, Python, JSON --------------------------------------------------------------------------
+
+EXIT_CODES = {
+    ExitCode.AS_EXPECTED: "every answer is as expected",
+    ExitCode.USAGE: "the command line is wrong",
+    ExitCode.BAD_INPUT: "an input cannot be read, or the output cannot be written",
+    ExitCode.MISSING_SOLVER: "a solver or an optional library is not installed",
+    ExitCode.UNEXPECTED: "a claim is refuted, an answer is not as expected, or a set or catalogue has gaps",
+    ExitCode.UNKNOWN: "an answer is UNKNOWN, or a limit of work or time cut it off",
+    ExitCode.CROSSCHECK_FAILED: "two readers of one formula disagree: a fault of roadproof",
+    ExitCode.OUR_FAULT: "roadproof failed: set `ROADPROOF_TRACEBACK=1`, and report the command line",
+    ExitCode.INTERRUPTED: "interrupted by Ctrl-C",
+    ExitCode.READER_GONE: "the program that read the output has ended",
+    ExitCode.ENDED: "ended by SIGTERM",
+}
+
+
+def exit_codes() -> str:
+    rows = (f"| {int(code)} | `{code.name}` | {EXIT_CODES[code]} |" for code in ExitCode)
+    return "\n".join(
+        [
+            "# Exit codes",
+            "",
+            "A script can rely on the exit code alone: 0 means that every answer was decided and is as "
+            "expected. Where a run gives several answers, the gravest decides the code.",
+            "",
+            "| code | name in Python | meaning |",
+            "|---:|---|---|",
+            *rows,
+            "",
+            "[Verdicts](../explanation/meaning.md#verdicts) explains the answers behind the codes.",
+            "",
+        ]
+    )
+
+
+def python_api() -> str:
+    public = {x: getattr(roadproof, x) for x in sorted(roadproof.__all__, key=str.casefold) if x[0] != "_"}
+    functions = [name for name, value in public.items() if isfunction(value)]
+    classes = [name for name, value in public.items() if isclass(value)]
+    others = [name for name in public if name not in (*functions, *classes)]
+    lines = [
+        "# Python API",
+        "",
+        "Every public name of `import roadproof as rp`, generated from docstrings. [Python](python.md) shows "
+        "them in use.",
+    ]
+    for title, names in (("Functions", functions), ("Classes", classes)):
+        lines += ["", f"## {title}", "", *(f"::: roadproof.{name}\n" for name in names)]
+    named = ", ".join(map(_code, others))
+    lines += ["", "## Values for formulas", "", f"Vehicles, lanes and operators: {named}."]
+    return "\n".join(lines) + "\n"
+
+
+def json_fields() -> str:
+    lines = [
+        "# JSON fields",
+        "",
+        "The fields of every JSON document, generated from the schemas. [JSON of answers and evidence]"
+        "(../schema/README.md) says which command writes which document, and links to the schemas.",
+    ]
+    for path in sorted(ROOT.joinpath("docs/schema").glob("*.json")):
+        schema = json.loads(path.read_text("utf-8"))
+        lines += ["", f"## {path.stem}", "", _cell(schema.get("title", path.name)) + "."]
+        parts = {"": schema, **schema.get("$defs", {})}
+        for name, part in parts.items():
+            if part.get("properties"):
+                lines += ["", *([f"**{name}**", ""] if name else []), *_fields(part)]
+    return "\n".join(lines) + "\n"
+
+
+def _fields(part: dict[str, Any]) -> Iterator[str]:
+    yield from ("| field | type | required | |", "|---|---|---|---|")
+    for name, content in part["properties"].items():
+        field = content if isinstance(content, dict) else {}
+        required = "yes" if name in part.get("required", ()) else ""
+        yield f"| `{name}` | {_type(field)} | {required} | {_cell(field.get('description', ''))} |"
+
+
+def _type(field: dict[str, Any]) -> str:
+    if "const" in field:
+        return _code(json.dumps(field["const"]))
+    if "enum" in field:
+        return ", ".join(_code(json.dumps(x)) for x in field["enum"])
+    if "$ref" in field:
+        return str(field["$ref"].rpartition("/")[2])
+    if field.get("type") == "array":
+        return f"list of {_type(field['items']) if isinstance(field.get('items'), dict) else 'any'}"
+    for many in ("anyOf", "oneOf"):
+        if many in field:
+            return " or ".join(map(_type, field[many]))
+    kind = field.get("type", "any")
+    return " or ".join(kind) if isinstance(kind, list) else str(kind)
+
+
+PAGES: dict[str, Callable[[], str]] = {
+    "reference/commands.md": commands,
+    "reference/library.md": library,
+    "reference/exit-codes.md": exit_codes,
+    "reference/api.md": python_api,
+    "reference/json.md": json_fields,
+}
+"""The generated pages and the functions that write them."""

@@ -1,0 +1,116 @@
+"""The documentation site builds without a warning, and all its links resolve."""
+
+import os
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+from importlib.util import find_spec
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+from documents.reference import EXIT_CODES, PAGES
+from roadproof.frontends.cli.main import COMMANDS
+from roadproof.library.specification import bundled_library
+from roadproof.verdict import ExitCode
+
+ROOT = Path(__file__).parents[2]
+LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)]*)?\)")
+needs_mkdocs = pytest.mark.skipif(
+    not all(map(find_spec, ("mkdocs", "material", "mkdocstrings"))),
+    reason="mkdocs, mkdocs-material or mkdocstrings is not installed (pip install 'roadproof[docs]')",
+)
+
+
+class Document(HTMLParser):
+    """The anchors of a page, and everything that it refers to."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.anchors: set[str] = set()
+        self.targets: set[str] = set()
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        for name, value in attrs:
+            if name in ("id", "name"):
+                self.anchors.add(value or "")
+            elif name in ("href", "src") and value:
+                self.targets.add(value)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("site")
+    done = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(folder)],
+        cwd=ROOT,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1", "PYTHONPATH": str(ROOT / "src")},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "WARNING" not in done.stderr
+    return folder
+
+
+@needs_mkdocs
+def test_all_links_and_anchors_of_the_site_resolve(site: Path) -> None:
+    pages = {path: Document(path.read_text("utf-8")) for path in site.rglob("*.html")}
+    assert len(pages) > 50
+    broken = []
+    for path, page in pages.items():
+        if path.name == "404.html":  # a server's page; its links are absolute
+            continue
+        for target in page.targets:
+            parts = urlsplit(target)
+            if parts.scheme or parts.netloc:
+                continue
+            file = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            missing = not file.exists() or (
+                parts.fragment and file in pages and unquote(parts.fragment) not in pages[file].anchors
+            )
+            if missing and parts.fragment != "__skip":
+                broken.append(f"{path.relative_to(site)}: {target}")
+    assert broken == []
+
+
+@needs_mkdocs
+def test_the_site_loads_nothing_from_a_network(site: Path) -> None:
+    loads = re.compile(
+        r"<(?:script|img|iframe)\b[^>]*\bsrc=\"?(https?:[^\s\">]+)|<link\b[^>]*\bhref=\"?(https?:[^\s\">]+)"
+    )
+    found = {path.name: loads.findall(path.read_text("utf-8")) for path in site.rglob("*.html")}
+    assert {name: loaded for name, loaded in found.items() if loaded} == {}
+
+
+@needs_mkdocs
+def test_the_search_finds_the_pages(site: Path) -> None:
+    index = (site / "search" / "search_index.js").read_text("utf-8")
+    for word in ("NONE-WITHIN", "dRSS_lon", "--complete", "OpenSCENARIO", "signal"):
+        assert word in index
+
+
+def test_links_between_files_lead_to_files() -> None:
+    pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("examples/*/*.md")]
+    generated = {(ROOT / "docs" / name).resolve() for name in PAGES}
+    for page in (x for x in pages if x.name != "CHANGELOG.md"):
+        for target in LINK.findall(re.sub(r"`[^`\n]*`", "", page.read_text("utf-8"))):
+            path = (page.parent / target).resolve()
+            assert "://" in target or path.exists() or path in generated, (
+                f"{page.relative_to(ROOT)}: {target}"
+            )
+
+
+def test_the_generated_pages_hold_all_that_the_program_has() -> None:
+    pages = {name: write() for name, write in PAGES.items()}
+    assert all(f"\n## {name}\n" in pages["reference/commands.md"] for name in COMMANDS)
+    assert all(
+        f"def {name}" in pages["reference/library.md"] for name in bundled_library().select().definitions
+    )
+    assert set(EXIT_CODES) == set(ExitCode)
+    assert "::: roadproof.prove\n" in pages["reference/api.md"]
+    assert "roadproof/witness/1" in pages["reference/json.md"]
