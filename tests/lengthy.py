@@ -73,6 +73,7 @@ LENGTHY = (
     "tests/cli/test_book.py::test_page[signals-README",
     "tests/cli/test_book.py::test_page[time-to-collision-README",
     "tests/cli/test_book.py::test_page[traffic-README",
+    "tests/cli/test_book.py::test_page[tutorials-",
     "tests/cli/test_coverage.py::test_a_doubt_that_passes_for_an_answer_is_noticed",
     "tests/cli/test_coverage.py::test_an_exit_code_that_hides_a_doubt_is_noticed",
     "tests/cli/test_coverage.py::test_claims_and_needs_are_kept_too",

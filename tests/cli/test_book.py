@@ -12,11 +12,14 @@ ROOT = Path(__file__).parents[2]
 LONG = ("roadproof overlap --among 1-8", "roadproof classify --among 1-8")
 """Questions of the README that ``make findings`` asks; shorter ones of these commands are in the book."""
 EXAMPLES = sorted(ROOT.glob("examples/*/README.md"))
+TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
     *sorted(ROOT.joinpath("tests/attacks").glob("*.md")),
     *EXAMPLES,
     ROOT / "README.md",
+    ROOT / "docs/index.md",
+    *(ROOT / "docs/tutorials" / f"{name}.md" for name in TUTORIALS),
     ROOT / "docs/reference/language.md",
     ROOT / "docs/how-to/interop.md",
     ROOT / "docs/explanation/motion.md",

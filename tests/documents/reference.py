@@ -121,7 +121,7 @@ def _entry(head: str, about: str, definition: Definition, users: list[str]) -> l
         "",
         f"### {_cell(head)}",
         "",
-        _cell(about[:1].upper() + about[1:]),
+        _cell(about if re.match(r"\w\b", about) else about[:1].upper() + about[1:]),
         "",
         "```text",
         text(replace(definition, doc=""), WIDTH),
