@@ -78,7 +78,7 @@ HOLD_TOGETHER = (
         (
             Figures("Of the {} pairs of `base`", "{} pairs in "),
             Figures(
-                "of the main road exactly {} hold together on a drive; the other {} are proved impossible",
+                "of the main road exactly {} are compatible; the other {} are proved impossible",
                 r.pairs_of_a_sector,
             ),
         ),
@@ -86,12 +86,12 @@ HOLD_TOGETHER = (
     Statement(
         FINDINGS,
         ("roadproof overlap --among 1-8",),
-        (Figures("Scenario 2 meets {}, no other disturbance", r.partners_of_2),),
+        (Figures("Scenario 2 is compatible with {}, no other disturbance", r.partners_of_2),),
     ),
     Statement(
         FINDINGS,
         ("roadproof overlap --among 4,12,20",),
-        (Figures("hold together: {} are drives", "3 WITNESSED: {}\n"),),
+        (Figures("are compatible: {} have drives", "3 WITNESSED: {}\n"),),
         quick=True,
     ),
     Statement(
@@ -99,8 +99,8 @@ HOLD_TOGETHER = (
         ("roadproof overlap --lanes any",),
         (
             Figures(
-                "With a lane for each, {} pairs of disturbances still exclude each other**: {}, because one has POV "
-                "in front and the other behind; these are {} of the {} pairs, the other {} are drives",
+                "With a lane for each, {} pairs of disturbances still exclude each other**: {}. One has POV in front, "
+                "the other behind. These are {} of the {} pairs; the other {} have drives",
                 r.disturbances_apart,
             ),
         ),
@@ -109,8 +109,8 @@ HOLD_TOGETHER = (
         FINDINGS,
         ("roadproof overlap --lanes any --roles any",),
         (
-            Figures("excludes anything**: all {} pairs are drives", "{} WITNESSED\n"),
-            Figures("all {} pairs are drives", "{} pairs in "),
+            Figures("no pair excludes another**: all {} pairs have drives", "{} WITNESSED\n"),
+            Figures("all {} pairs have drives", "{} pairs in "),
         ),
     ),
     Statement(
@@ -122,13 +122,13 @@ HOLD_TOGETHER = (
     Statement(
         FINDINGS,
         ("roadproof overlap --among 1,4 --start any",),
-        (Figures("and follow one another otherwise", "1 WITNESSED: 1-4"),),
+        (Figures("and can follow one another", "1 WITNESSED: 1-4"),),
         quick=True,
     ),
     Statement(
         FINDINGS,
         ("roadproof overlap --among 1,4 --json -",),
-        (Figures("are few clashes, printed as cores", '"not sameLane(POV, SV, L)",'),),
+        (Figures("Few clashes cause the exclusions**, printed as cores", '"not sameLane(POV, SV, L)",'),),
         quick=True,
     ),
 )
@@ -140,12 +140,13 @@ CLASSIFIED = (
         (
             Figures("fall into {} classes**", r.all_witnessed),
             Figures("each of the {} has a judged drive", r.all_witnessed),
-            Figures("{} of what happens between SV and POV, and scenario 2", lambda x: r.happenings(x)[0]),
+            Figures("{} kinds of behaviour of SV and POV, and scenario 2", lambda x: r.happenings(x)[0]),
             Figures("between three vehicles, each in {} choices of road sectors", r.kinds_of_places),
             Figures(
-                "exactly the scenarios ({} claims)", lambda x: len(r.read(x, "classes/index.json")["claims"])
+                "jointly equivalent to the scenarios ({} claims)",
+                lambda x: len(r.read(x, "classes/index.json")["claims"]),
             ),
-            Figures("What happens is one of {}**: {} alone, {}. Of the choices", r.happenings),
+            Figures("The behaviour is one of {}**: {} alone, {}. Of the pairwise", r.happenings),
             Figures(
                 "names its scenarios**: {} situations", "{} situations with a scenario, each in exactly one"
             ),
@@ -164,7 +165,7 @@ CLASSIFIED = (
             (f"roadproof classify --set {name}",),
             (
                 Figures("`extA` and `ext` have the same {} classes**", r.all_witnessed),
-                Figures("What happens is one of {}**: {} alone, {}. Of the choices", r.happenings),
+                Figures("The behaviour is one of {}**: {} alone, {}. Of the pairwise", r.happenings),
                 Figures(situations, "{} situations with a scenario, each in exactly one"),
                 Figures(traces, "traces, {} ("),
             ),
@@ -179,9 +180,9 @@ CLASSIFIED = (
         ("roadproof classify --set complete",),
         (
             Figures("`complete` has {}**", r.all_witnessed),
-            Figures("**, {} of what happens between two vehicles", lambda x: r.happenings(x)[0]),
+            Figures("**, {} kinds of behaviour of two vehicles", lambda x: r.happenings(x)[0]),
             Figures("in `ext`, {} in `complete`", "{} situations with a scenario, each in exactly one"),
-            Figures("{} choices do not occur: where 6", "do not occur: {} PROVED"),
+            Figures("{} choices do not occur: if 6", "do not occur: {} PROVED"),
             Figures("75 and {}. The same four commands", "traces, {} ("),
         ),
     ),
@@ -194,7 +195,7 @@ CLASSIFIED = (
     Statement(
         FINDINGS,
         ("roadproof classify --among 1-8 --out classes",),
-        (Figures("exclude each other, {} does not occur", "do not occur: {} PROVED"),),
+        (Figures("pairwise compatible choices, {} does not occur", "do not occur: {} PROVED"),),
     ),
     Statement(
         FINDINGS,
@@ -203,7 +204,7 @@ CLASSIFIED = (
             Figures(
                 "On US-101 the same holds**: {} situations", "{} situations with a scenario, each in exactly"
             ),
-            Figures("of those of two vehicles {} % are in class 1", lambda x: r.shares(x)["1"]),
+            Figures("Of those of two vehicles {} % are in class 1", lambda x: r.shares(x)["1"]),
             Figures(
                 "in class 1, {} in a class of several scenarios",
                 lambda x: sum(share > 0 for name, share in r.shares(x).items() if "_" in name),
@@ -242,7 +243,7 @@ LEFT_OUT = (
         ("roadproof redundancy --among 2",),
         (
             Figures(
-                "All that scenario 2 asks of SV's lane is redundant for motion",
+                "All conditions of scenario 2 on SV's lane are redundant for motion",
                 "scenario 2: redundant for motion: laneKeep(SV, L) U not sameLane(SV, POV1, L) in",
             ),
         ),
@@ -252,7 +253,7 @@ LEFT_OUT = (
         (REDUNDANCY,),
         (
             Figures(
-                "decided**: of {} changes to the 24 scenarios {} are proved redundant, {} more for motion, {} are told apart "
+                "decided**: of {} changes to the 24 scenarios {} are proved redundant, {} more for motion, {} are refuted "
                 "by a judged drive, and {} by a judged trace",
                 "{} changes: {} redundant, {} more for motion, {} told apart by a drive, {} by a trace, 0 in doubt",
             ),
@@ -274,7 +275,7 @@ LEFT_OUT = (
         ("roadproof redundancy --set ext",),
         (
             Figures(
-                "In `ext`, {} of {} changes is in doubt, {} are told apart by a trace only",
+                "In `ext`, {} of {} changes is in doubt, {} are refuted by a trace only",
                 r.doubts_and_traces,
             ),
         ),
@@ -311,10 +312,10 @@ MISSED = (
                 "`ext`: of {} classes {} have a drive and {} are proved empty",
                 "of {} classes {} have a judged drive, {} are proved empty, 0 are undecided",
             ),
-            Figures("one condition of one scenario is to blame", NO_SINGLE.format("IMPOSSIBLE")),
+            Figures("one condition of one scenario is missing", NO_SINGLE.format("IMPOSSIBLE")),
             Figures("`ext` {} and `complete`", "disturbances in traffic {} are missed"),
             Figures(
-                "Of {} of the nine that `ext` misses scenario 1 would hold", r.beside_the_lane_in_traffic
+                "In {} of the nine that `ext` misses scenario 1 would hold", r.beside_the_lane_in_traffic
             ),
         ),
     ),
@@ -322,8 +323,8 @@ MISSED = (
         FINDINGS,
         (RECORDINGS, COVERAGE["complete"]),
         (
-            Figures("and `complete` {}; every one", "disturbances in traffic {} are missed"),
-            Figures("Coverage can be had", "set complete misses no danger that arises from safety"),
+            Figures("and `complete` {}. Every missed one", "disturbances in traffic {} are missed"),
+            Figures("Complete coverage is possible", "set complete misses no danger that arises from safety"),
         ),
     ),
     Statement(
@@ -362,7 +363,7 @@ IMPLIED = (
             ),
             Figures("edges are proved, {} in each road sector", r.edges_of_a_sector),
             Figures(
-                "Scenarios {} say the same in `base` and `extA`, and scenario {} in all three", r.one_formula
+                "Scenarios {} are identical in `base` and `extA`, and scenario {} in all three", r.one_formula
             ),
         ),
     ),
@@ -377,7 +378,7 @@ IMPLIED = (
     Statement(
         FINDINGS,
         ("roadproof witness 'scenario_5(SV,POV,L) and not scenario_1(SV,POV,L)'",),
-        (Figures("That scenario 5 does not imply scenario 1 takes a drive", "WITNESSED road"),),
+        (Figures("Scenario 5 does not imply scenario 1", "WITNESSED road"),),
     ),
 )
 
@@ -436,13 +437,13 @@ VALUES = (
     Statement(
         FINDINGS,
         ("roadproof explore 4 --vary POV.a_lon.min=-6:0",),
-        (Figures("drives remain where POV never decelerates", "at 11 of 11 values"),),
+        (Figures("drives remain if POV never decelerates", "at 11 of 11 values"),),
         quick=True,
     ),
     Statement(
         FINDINGS,
         ("roadproof explore 3 --vary vehicle.a_lon.max=0:3",),
-        (Figures("nobody has to accelerate for scenario 3", "at 11 of 11 values"),),
+        (Figures("No vehicle must accelerate for scenario 3", "at 11 of 11 values"),),
     ),
     Statement(
         FINDINGS,
