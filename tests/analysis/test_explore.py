@@ -394,7 +394,7 @@ def test_what_is_kept_is_not_explored_again(tmp_path: Path, monkeypatch: pytest.
             for x in (first, second)
         )
         assert mine == other
-        kept = [{**x.records[name]["exploration"], "seconds": 0} for x in (first, second)]
+        kept = [replace(x.records[name].exploration, seconds=0) for x in (first, second)]
         assert kept[0] == kept[1]
 
 

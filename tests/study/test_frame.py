@@ -5,7 +5,7 @@ import shutil
 import signal
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -16,12 +16,20 @@ from roadproof.library.specification import bundled_library
 
 
 @dataclass(frozen=True)
+class Square:
+    """A number as it is kept."""
+
+    value: int | None
+
+
+@dataclass(frozen=True)
 class Sums:
     """For each number the sum of its neighbours' squares, of which the squares are asked first.
 
     ``dying``: the number whose process dies; ``slow``: one that is in doubt at first.
     """
 
+    record_type: ClassVar[type[Square]] = Square
     numbers: tuple[int, ...]
     dying: int | None = None
     slow: int | None = None
@@ -60,10 +68,10 @@ class Sums:
     def is_sure(self, answer: int | None) -> bool:
         return answer is not None
 
-    def record(self, name: str, answer: int | None, shelf: EvidenceStore) -> dict[str, Any]:
-        return {"value": answer}
+    def record(self, name: str, answer: int | None, shelf: EvidenceStore) -> Square:
+        return Square(answer)
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, int | None]:
+    def recall(self, record: Square, shelf: EvidenceStore) -> tuple[str, int | None]:
         raise AssertionError("nothing is kept")
 
 
@@ -86,7 +94,7 @@ def test_a_piece_whose_process_dies_is_a_doubt_and_the_others_stand() -> None:
     assert found.answers["square-2"] is None
     assert found.answers["sum-1"] == 0
     assert found.answers["sum-2"] == 10
-    assert found.records["square-3"] == {"value": 9}
+    assert found.as_data(found.records["square-3"]) == {"value": 9}
 
 
 def test_progress_is_told() -> None:

@@ -16,6 +16,8 @@ from roadproof.analysis.overlap import Overlap, PairVerdict, name_of
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import UsageError
+from roadproof.evidence.answers.overlap import Record
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
 from roadproof.frontends.cli.main import main
@@ -40,7 +42,7 @@ def folder(tmp_path: Path) -> Path:
     made = tmp_path / "out"
     shelf = EvidenceStore(made, STUDY.question)
     for name, answer in answers().items():
-        shelf.keep(name, STUDY.record(name, answer, shelf), STUDY.is_sure(answer))
+        shelf.keep(name, write(STUDY.record(name, answer, shelf)), STUDY.is_sure(answer))
     return made
 
 
@@ -70,7 +72,8 @@ def test_answers_are_kept_and_checked(folder: Path) -> None:
 
 def test_what_is_kept_comes_back_as_it_was(folder: Path) -> None:
     shelf = EvidenceStore(folder, STUDY.question)
-    found = dict(STUDY.recall(record, shelf) for _, record in shelf.answers())
+    records = (read(Record, content, "a kept answer") for _, content in shelf.answers())
+    found = dict(STUDY.recall(record, shelf) for record in records)
     for name, answer in answers().items():
         assert found[name].certificate == answer.certificate
         assert found[name].query is not None
@@ -83,7 +86,7 @@ def test_nothing_that_is_kept_is_asked_again(folder: Path, monkeypatch: pytest.M
     monkeypatch.setattr(Overlap, "settle", lambda *_: pytest.fail("asked again"))
     found = conduct(STUDY, folder)
     assert [x.verdict for x in found.answers.values()] == [Verdict.IMPOSSIBLE] * 2
-    told = found.records[FIRST]["verdict"]
+    told = found.as_data(found.records[FIRST])["verdict"]
     assert told["certificate"] == str(folder / f"impossible-{FIRST}.json")
 
 

@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
 from roadproof.engines.prove.doubt import Cause, Doubt, Stop, doubt_of
@@ -14,7 +14,7 @@ from roadproof.engines.search.settle import Settlement, in_doubt, settle, settle
 from roadproof.errors import InputError
 from roadproof.evidence.answers import proofs as kept
 from roadproof.evidence.answers.proofs import SCHEMA
-from roadproof.evidence.codec import ABSENT, read, write
+from roadproof.evidence.codec import ABSENT
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.traces import read_trace
@@ -93,6 +93,7 @@ class Claims:
     and by whom drives are looked for where a claim is about drives up to a horizon, None in dense time.
     """
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     tasks: tuple[Task, ...]
     specifications: Mapping[str, Specification]
     effort: Effort = field(default_factory=Effort)
@@ -168,7 +169,7 @@ class Claims:
         """Whether there is evidence; PROVED-BOUNDED has none, and is about other limits the next time."""
         return answer.verdict in (Verdict.PROVED, Verdict.VACUOUS, Verdict.REFUTED)
 
-    def record(self, name: str, answer: ClaimResult, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: ClaimResult, shelf: EvidenceStore) -> kept.Record:
         task, settled, result = answer.task, answer.settled, answer.settled.result
         evidence = shelf.certificate(f"{task.name}.json", result.certificate)
         if settled.drive is not None and result.certificate is None:
@@ -184,12 +185,10 @@ class Claims:
             evidence=evidence,
             counterexample=ABSENT if evidence is not None else _counterexample(settled),
         )
-        record = kept.Record(claim=claim, reason=result.reason, seconds=result.seconds, asked=self._asked)
-        return write(record)
+        return kept.Record(claim=claim, reason=result.reason, seconds=result.seconds, asked=self._asked)
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, ClaimResult]:
-        found = read(kept.Record, record, "a kept answer")
-        said, verdict = found.claim, found.claim.verdict
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, ClaimResult]:
+        said, verdict = record.claim, record.claim.verdict
         name = name_of_claim(said.claim, said.set, said.assuming)
         told = (said.property, said.part, "", said.scenario, said.set, said.claim)
         task = self.named.get(name) or Task(*told, verdict, said.assuming)
@@ -200,8 +199,8 @@ class Claims:
         drive = shelf.read_drive(said.evidence) if refuted else None
         trace = read_trace(said.counterexample, name) if refuted and drive is None else None
         if refuted and name in self.named:
-            self._check_refuted(name, found.asked, drive)
-        result = Result(verdict, found.reason, found.seconds, 0.0, certificate, trace)
+            self._check_refuted(name, record.asked, drive)
+        result = Result(verdict, record.reason, record.seconds, 0.0, certificate, trace)
         return name, ClaimResult(task, Settlement(result, drive, None, refuted and self.within is not None))
 
     @property

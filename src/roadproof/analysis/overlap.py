@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
-from typing import Any
+from typing import ClassVar
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.meeting import Meeting, conjunctions
@@ -21,7 +21,6 @@ from roadproof.engines.search.impossible import explain, parts, told_parts
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both, either, negation
 from roadproof.library.elaborate import read_claim
@@ -95,6 +94,7 @@ def pairs_of(basis: Basis, numbers: Sequence[int] | None = None) -> tuple[Pair, 
 class Overlap:
     """The question which of ``pairs`` hold together, as a ``study.frame.Study``."""
 
+    record_type: ClassVar[type[kept_answers.Record]] = kept_answers.Record
     basis: Basis
     pairs: tuple[Pair, ...]
     meeting: Meeting = field(default_factory=Meeting)
@@ -145,7 +145,7 @@ class Overlap:
     def is_sure(self, answer: PairVerdict) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
-    def record(self, name: str, answer: PairVerdict, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: PairVerdict, shelf: EvidenceStore) -> kept_answers.Record:
         kept = kept_answers.Pair(
             a=answer.a.number,
             b=answer.b.number,
@@ -160,10 +160,10 @@ class Overlap:
             reason=answer.reason,
             seconds=answer.seconds,
         )
-        return write(kept_answers.Record(verdict=kept))
+        return kept_answers.Record(verdict=kept)
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, PairVerdict]:
-        kept = read(kept_answers.Record, record, "a kept answer").verdict
+    def recall(self, record: kept_answers.Record, shelf: EvidenceStore) -> tuple[str, PairVerdict]:
+        kept = record.verdict
         a, b = kept.scenarios
         cores = tuple(Core(self._read(x.formula), self._parts(x.parts)) for x in kept.cores)
         return name_of(a, b), PairVerdict(
@@ -188,12 +188,10 @@ class Overlap:
         """The answers in the order of ``pairs``."""
         return [answers[name_of(a, b)] for a, b in self.pairs]
 
-    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+    def index(self, records: Mapping[str, kept_answers.Record], seconds: float) -> kept_answers.Index:
         """The index, made of the answers as they are recorded."""
-        kept = (records[name_of(a, b)] for a, b in self.pairs)
-        verdicts = tuple(read(kept_answers.Record, x, "a kept answer").verdict for x in kept)
-        index = kept_answers.Index(**self.question.heading, seconds=round(seconds, 2), verdicts=verdicts)
-        return write(index)
+        verdicts = tuple(records[name_of(a, b)].verdict for a, b in self.pairs)
+        return kept_answers.Index(**self.question.heading, seconds=round(seconds, 2), verdicts=verdicts)
 
 
 def name_of(a: Scenario, b: Scenario) -> str:

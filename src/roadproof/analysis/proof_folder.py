@@ -6,7 +6,6 @@ asked again when somebody asks.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from roadproof.analysis.claims import Claims
 from roadproof.analysis.study.evidence_store import INDEX, write_index
@@ -52,7 +51,7 @@ def _read_alike(data: Fields, folder: Path, claims: Claims) -> bool:
     return same and there == texts and dict(library.select(options=told).options) == options
 
 
-def write_claims(folder: Path, claims: Claims, records: Mapping[str, Mapping[str, Any]]) -> None:
+def write_claims(folder: Path, claims: Claims, records: Mapping[str, Record]) -> None:
     """Write the index: former entries, each with its new answer if there is one, and then what is new.
 
     A file that only a former answer needed is removed.
@@ -60,7 +59,7 @@ def write_claims(folder: Path, claims: Claims, records: Mapping[str, Mapping[str
     former = former_claims(folder, claims)
     new = [name for name in claims.named if name in records]
     new += sorted(name for name in records if name not in claims.named)
-    entries: Entries = {**former, **{name: claim_in(records[name]) for name in new}}
+    entries: Entries = {**former, **{name: records[name].claim for name in new}}
     write_index(folder, write(Index(**claims.question.heading, claims=tuple(entries.values()))))
     for name in _files(former) - _files(entries):
         (folder / name).unlink(missing_ok=True)
@@ -68,8 +67,3 @@ def write_claims(folder: Path, claims: Claims, records: Mapping[str, Mapping[str
 
 def _files(entries: Entries) -> set[str]:
     return {Path(x.evidence).name for x in entries.values() if x.evidence}
-
-
-def claim_in(record: Mapping[str, Any]) -> Claim:
-    """The entry of an index that a kept answer has."""
-    return read(Record, record, "a kept answer").claim

@@ -8,7 +8,7 @@ and those for one scenario on the scenarios that differ from it in the road sect
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import ClassVar
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import judged_as, placed
@@ -18,7 +18,6 @@ from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
 from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel, trace_data
 from roadproof.evidence.traces import read_trace
@@ -181,6 +180,7 @@ class Redundancy:
     ``whole``: also the parts of simple predicates (``changes_of``).
     """
 
+    record_type: ClassVar[type[Record]] = Record
     basis: Basis
     numbers: tuple[int, ...]
     whole: bool = False
@@ -222,7 +222,7 @@ class Redundancy:
     def is_sure(self, answer: ChangeFindings) -> bool:
         return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
-    def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> Record:
         number = int(name.rpartition("-")[2])
         verdicts = tuple(
             Finding(
@@ -243,18 +243,17 @@ class Redundancy:
             )
             for place, x in enumerate(answer, 1)
         )
-        return write(Record(scenario=number, verdicts=verdicts))
+        return Record(scenario=number, verdicts=verdicts)
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, ChangeFindings]:
-        kept = read(Record, record, "a kept answer")
-        examining = _ExaminationJobs(self.basis, self._scenario(kept.scenario))
+    def recall(self, record: Record, shelf: EvidenceStore) -> tuple[str, ChangeFindings]:
+        examining = _ExaminationJobs(self.basis, self._scenario(record.scenario))
         changes = list(changes_of(self.basis.specification, examining.query, self.whole))
-        if len(changes) != len(kept.verdicts):
+        if len(changes) != len(record.verdicts):
             raise InputError(
-                f"{len(kept.verdicts)} findings on the {len(changes)} changes of {examining.scenario}"
+                f"{len(record.verdicts)} findings on the {len(changes)} changes of {examining.scenario}"
             )
-        findings = (self._recalled(x, y, shelf) for x, y in zip(changes, kept.verdicts, strict=True))
-        return name_of(kept.scenario), tuple(findings)
+        findings = (self._recalled(x, y, shelf) for x, y in zip(changes, record.verdicts, strict=True))
+        return name_of(record.scenario), tuple(findings)
 
     def _recalled(self, change: Change, said: Finding, shelf: EvidenceStore) -> ChangeFinding:
         specification = self.basis.specification
@@ -272,11 +271,10 @@ class Redundancy:
             said.late,
         )
 
-    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+    def index(self, records: Mapping[str, Record], seconds: float) -> Index:
         """The index, made of the answers as they are recorded."""
-        kept = (read(Record, records[name_of(number)], "a kept answer") for number in self.numbers)
-        verdicts = tuple(x for record in kept for x in record.verdicts)
-        return write(Index(**self.question.heading, seconds=round(seconds, 1), verdicts=verdicts))
+        verdicts = tuple(x for number in self.numbers for x in records[name_of(number)].verdicts)
+        return Index(**self.question.heading, seconds=round(seconds, 1), verdicts=verdicts)
 
 
 def name_of(number: int) -> str:

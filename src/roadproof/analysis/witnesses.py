@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import ClassVar
 
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
 from roadproof.engines.search import ask
@@ -13,7 +13,6 @@ from roadproof.engines.search.impossible import Impossibility
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
-from roadproof.evidence.codec import read, write
 from roadproof.library.elaborate import read_claim
 from roadproof.logic import syntax
 from roadproof.logic.show import text
@@ -28,6 +27,7 @@ class WitnessStudy:
     ``finish`` is told of each outcome under its name, in the process that found it.
     """
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     searches: tuple[Search, ...]
     finish: Callable[[str, Outcome], None] | None = None
 
@@ -65,7 +65,7 @@ class WitnessStudy:
         """Whether all drives that were asked for are there, or a proof that there is none."""
         return answer.verdict is Verdict.IMPOSSIBLE or (bool(answer.drives) and not answer.reason)
 
-    def record(self, name: str, answer: Outcome, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: Outcome, shelf: EvidenceStore) -> kept.Record:
         shown = answer.impossibility
         values = self.named[name].setting.values
         outcome = kept.OutcomeRecord(
@@ -87,13 +87,12 @@ class WitnessStudy:
             seconds={stage: round(value, 4) for stage, value in answer.seconds.items()},
             sizes=dict(answer.sizes),
         )
-        return write(kept.Record(name=name, outcome=outcome, asked=_asked(self.named[name])))
+        return kept.Record(name=name, outcome=outcome, asked=_asked(self.named[name]))
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Outcome]:
-        found = read(kept.Record, record, "a kept answer")
-        name, said = found.name, found.outcome
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, Outcome]:
+        name, said = record.name, record.outcome
         search = self.named.get(name)
-        if search is not None and found.asked != _asked(search):
+        if search is not None and record.asked != _asked(search):
             raise InputError(f"the answer '{name}' is that to another search")
         home = self.searches[0].specification.in_set(said.set)
         query = read_claim(home, said.formula) if search is None else search.query

@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import ClassVar, TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
@@ -29,9 +29,7 @@ from roadproof.engines.search.ask import Outcome, Search, answer
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
 from roadproof.evidence.answers import catalogue_index as kept
-from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import Relation
-from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both
@@ -84,6 +82,7 @@ class Meanings:
     ``drivers``: the models of which it is asked whether a test has drives on both sides.
     """
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     basis: Basis
     entries: tuple[Abstract, ...]
     asked: Questions
@@ -257,23 +256,21 @@ class Meanings:
             return self.survey is not None and self.survey.is_sure(answer.answer)
         return all(fact.relation != "open" for fact in answer)
 
-    def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         if isinstance(answer, AboutGaps):
             assert self.survey is not None
-            said = self.survey.record(name.removeprefix(GAPS), answer.answer, shelf)
-            gaps = read(coverage.Record, said, "a kept answer")
-            return write(kept.Record(name=name, facts=(), gaps=gaps))
+            gaps = self.survey.record(name.removeprefix(GAPS), answer.answer, shelf)
+            return kept.Record(name=name, facts=(), gaps=gaps)
         facts = tuple(record_of(fact, f"{name}-{k}", shelf) for k, fact in enumerate(answer))
-        return write(kept.Record(name=name, facts=facts, gaps=None))
+        return kept.Record(name=name, facts=facts, gaps=None)
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Kept]:
-        said = read(kept.Record, record, "a kept answer")
-        if said.gaps is None:
-            return said.name, tuple(read_fact(x, self.basis.specification, shelf) for x in said.facts)
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, Kept]:
+        if record.gaps is None:
+            return record.name, tuple(read_fact(x, self.basis.specification, shelf) for x in record.facts)
         kinds = self.gaps or self.asked.gaps
         if kinds is None:
             raise InputError("there are no classes of gaps here")
-        name, answer = kinds.study().recall(write(said.gaps), shelf)
+        name, answer = kinds.study().recall(record.gaps, shelf)
         return GAPS + name, AboutGaps(answer)
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_formula
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
@@ -19,7 +18,6 @@ from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import Figure
-from roadproof.evidence.codec import read, write
 from roadproof.library.bind import values_with
 
 
@@ -148,11 +146,11 @@ class Result:
         said += [f"{k} = {v} (SI)" for k, v in basis.values.items() if v != declared[k]]
         return (*said, *(() if driver is None else (str(driver),)))
 
-    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+    def index(self, records: Mapping[str, kept.Record], seconds: float) -> kept.Index:
         """The index, made of the answers as they are recorded."""
         found = self.tested
-        answers = [read(kept.Record, record, "a kept answer") for record in records.values()]
-        index = kept.Index(
+        answers = list(records.values())
+        return kept.Index(
             **self.study.question.heading,
             request=self.examination.request.kept,
             tests=tuple(map(self._test, self.catalogue.entries)),
@@ -170,7 +168,6 @@ class Result:
             notes=self.notes,
             seconds=round(seconds, 1),
         )
-        return write(index)
 
     def _gaps(self, answers: Sequence[coverage.Record]) -> kept.Gaps:
         """The classes of gaps: those that tests show, or all with what shows that they are empty or not."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import ClassVar
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import Class, Classes
@@ -16,7 +16,6 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.answers.classify import SCHEMA, Doubt
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import ProofVerdict, Verdict
@@ -73,6 +72,7 @@ class Classification:
     ``basis`` is about the set that ``text`` defines; where that is empty, the division was cut off.
     """
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     basis: Basis
     classes: Classes
     text: str
@@ -132,7 +132,7 @@ class Classification:
     def is_sure(self, answer: Example | Decision) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.PROVED, Verdict.VACUOUS)
 
-    def record(self, name: str, answer: Example | Decision, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: Example | Decision, shelf: EvidenceStore) -> kept.Record:
         match answer:
             case Example(one, verdict, reason, drive):
                 kept_class = kept.KeptClass(
@@ -147,7 +147,7 @@ class Classification:
                     reason=reason,
                     drive=shelf.drive(f"drives/{name}.json", drive),
                 )
-                return write(kept.Record(classes=(kept_class,), claims=()))
+                return kept.Record(classes=(kept_class,), claims=())
             case Decision(claim, verdict, reason, certificate, seconds):
                 kept_claim = kept.Claim(
                     name=name,
@@ -158,11 +158,10 @@ class Classification:
                     certificate=shelf.certificate(f"proofs/{name}.json", certificate),
                     seconds=seconds,
                 )
-                return write(kept.Record(classes=(), claims=(kept_claim,)))
+                return kept.Record(classes=(), claims=(kept_claim,))
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Example | Decision]:
-        said = _read(record)
-        entries: list[kept.KeptClass | kept.Claim] = [*said.classes, *said.claims]
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, Example | Decision]:
+        entries: list[kept.KeptClass | kept.Claim] = [*record.classes, *record.claims]
         if len(entries) != 1:
             raise InputError(f"{len(entries)} answers, where one was kept")
         (entry,) = entries
@@ -188,12 +187,12 @@ class Classification:
         )
 
     def index(
-        self, classified: ClassificationResult, records: Mapping[str, Mapping[str, Any]], seconds: float
-    ) -> dict[str, Any]:
+        self, classified: ClassificationResult, records: Mapping[str, kept.Record], seconds: float
+    ) -> kept.Index:
         """The index, made of the answers as they are recorded."""
         shares = classified.shares
-        every = [_read(records[name]) for name in self._named]
-        index = kept.Index(
+        every = [records[name] for name in self._named]
+        return kept.Index(
             **self.question.heading,
             text=self.text,
             classes=tuple(_counted(x, shares) for record in every for x in record.classes),
@@ -202,11 +201,6 @@ class Classification:
             doubts=classified.doubts,
             seconds=round(seconds, 1),
         )
-        return write(index)
-
-
-def _read(record: Mapping[str, Any]) -> kept.Record:
-    return read(kept.Record, record, "a kept answer")
 
 
 def _counted(one: kept.KeptClass, shares: Shares | None) -> kept.CountedClass:

@@ -7,7 +7,7 @@ else the simple drives are looked through, and gaps among them are what the clas
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeGuard
+from typing import ClassVar, TypeGuard
 
 from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
 from roadproof.analysis.coverage.claims import CoverageResult, claims_of, prove_claim
@@ -33,7 +33,6 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
-from roadproof.evidence.codec import read, write
 from roadproof.verdict import Verdict
 
 CHUNKS = 7
@@ -47,6 +46,7 @@ class Coverage:
     ``needed``: also which of its definitions it needs, where it misses none.
     """
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     survey: GapSurvey
     needed: bool = False
 
@@ -147,10 +147,7 @@ class Coverage:
             case _:
                 return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
-    def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> dict[str, Any]:
-        return write(self._record(name, answer, shelf))
-
-    def _record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
+    def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         match answer:
             case CoverageResult(claim, verdict, certificate, reason):
                 file = shelf.certificate(f"{name}.json", certificate)
@@ -171,18 +168,17 @@ class Coverage:
             case _:
                 return record_of(self.groups[name], answer, shelf)
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Kept]:
-        said = _read(record)
-        if said.claim is not None:
-            return self._recalled_claim(said.claim, shelf)
-        if said.need is not None:
-            drive = shelf.read_drive(said.need.drive)
-            need = Need(said.need.definition, said.need.extends, said.need.verdict, drive)
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, Kept]:
+        if record.claim is not None:
+            return self._recalled_claim(record.claim, shelf)
+        if record.need is not None:
+            drive = shelf.read_drive(record.need.drive)
+            need = Need(record.need.definition, record.need.extends, record.need.verdict, drive)
             return name_of(NeededDefinition(need.definition)), need
         for name, group in self.groups.items():
-            if group.title == said.group:
-                return name, answers_in(said.classes, group, self.survey.basis.specification, shelf)
-        raise InputError(f"the set has no component {said.group}")
+            if group.title == record.group:
+                return name, answers_in(record.classes, group, self.survey.basis.specification, shelf)
+        raise InputError(f"the set has no component {record.group}")
 
     def _recalled_claim(self, said: kept.Claim, shelf: EvidenceStore) -> tuple[str, Kept]:
         for claim in self.claims:
@@ -222,11 +218,11 @@ class Coverage:
         self,
         surveyed: Survey,
         answers: Mapping[str, Kept],
-        records: Mapping[str, Mapping[str, Any]],
+        records: Mapping[str, kept.Record],
         seconds: float,
-    ) -> dict[str, Any]:
+    ) -> kept.Index:
         """The index, made of the answers as they are recorded: classes name their gaps by numbers."""
-        recorded = [x for name in self._shown(answers) for x in _read(records[name]).classes]
+        recorded = [x for name in self._shown(answers) for x in records[name].classes]
         classes: list[kept.CountedClass] = []
         gaps: list[kept.NumberedGap] = []
         for answer, said in zip(surveyed.classes, recorded, strict=True):
@@ -239,9 +235,9 @@ class Coverage:
             }
             counts = {"in_traffic": answer.in_traffic, "trace": answer.trace}
             classes.append(kept.CountedClass(**{**vars(said), **told, **counts}))
-        claims = (_read(records[name_of(claim)]).claim for claim in self.claims)
-        needs = (_read(records[name_of(NeededDefinition(x.definition))]).need for x in surveyed.needs)
-        index = kept.Index(
+        claims = (records[name_of(claim)].claim for claim in self.claims)
+        needs = (records[name_of(NeededDefinition(x.definition))].need for x in surveyed.needs)
+        return kept.Index(
             **self.question.heading,
             verdict=surveyed.verdict,
             claims=tuple(x for x in claims if x is not None),
@@ -251,11 +247,6 @@ class Coverage:
             traffic=None if surveyed.traffic is None else surveyed.traffic.told,
             seconds=round(seconds, 1),
         )
-        return write(index)
-
-
-def _read(record: Mapping[str, Any]) -> kept.Record:
-    return read(kept.Record, record, "a kept answer")
 
 
 def _is_classes(answer: Kept) -> TypeGuard[tuple[ClassAnswer, ...]]:

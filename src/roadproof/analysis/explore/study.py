@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import ClassVar
 
 from roadproof.analysis.explore.answer import (
     Explorable,
@@ -28,7 +28,6 @@ from roadproof.analysis.study.pool import Say, in_order, work
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.answers.explore import SCHEMA
-from roadproof.evidence.codec import read, write
 from roadproof.evidence.drive_file import road_data
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.timing import now, since
@@ -43,6 +42,7 @@ class Exploration:
     ``say`` is told how far one is.
     """
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     asked: tuple[Explorable, ...]
     hands: Jobs = None
     say: Say = say_nothing
@@ -99,24 +99,20 @@ class Exploration:
         """A doubt that the count of work makes is the same in the next run, so it stands."""
         return not answer.late
 
-    def record(self, name: str, answer: ExplorationResult, shelf: EvidenceStore) -> dict[str, Any]:
-        return write(kept.Record(exploration=as_kept(name, self.named[name], answer, shelf)))
+    def record(self, name: str, answer: ExplorationResult, shelf: EvidenceStore) -> kept.Record:
+        return kept.Record(exploration=as_kept(name, self.named[name], answer, shelf))
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, ExplorationResult]:
-        said = _read(record)
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, ExplorationResult]:
+        said = record.exploration
         for name, asked in self.named.items():
             if (said.scenario, said.set, said.formula) == _asked_of(asked):
                 return name, explored_of(asked, said, shelf)
         raise InputError(f"an exploration of {said.formula}, which is not asked for")
 
-    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+    def index(self, records: Mapping[str, kept.Record], seconds: float) -> kept.Index:
         """The index, made of the answers as they are recorded."""
-        explored = tuple(_read(records[name]) for name in self.named)
-        return write(kept.Index(**self.question.heading, seconds=round(seconds, 1), explored=explored))
-
-
-def _read(record: Mapping[str, Any]) -> kept.Exploration:
-    return read(kept.Record, record, "a kept answer").exploration
+        explored = tuple(records[name].exploration for name in self.named)
+        return kept.Index(**self.question.heading, seconds=round(seconds, 1), explored=explored)
 
 
 def name_of(number: int, asked: Explorable) -> str:

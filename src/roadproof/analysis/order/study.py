@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import permutations
-from typing import Any
+from typing import ClassVar
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.deciding import (
@@ -20,7 +20,6 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import order as kept
 from roadproof.evidence.answers.order import SCHEMA
-from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import Scenario
@@ -62,6 +61,7 @@ class Order:
 class Ordering:
     """The question which of ``kinds`` imply which, as a ``study.frame.Study``."""
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     basis: Basis
     kinds: tuple[Kind, ...]
 
@@ -107,7 +107,7 @@ class Ordering:
     def is_sure(self, answer: Decisions) -> bool:
         return not answer.doubts
 
-    def record(self, name: str, answer: Decisions, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: Decisions, shelf: EvidenceStore) -> kept.Record:
         proved = tuple(
             kept.Edge(
                 above=str(edge.above),
@@ -130,22 +130,21 @@ class Ordering:
         doubts = tuple(
             kept.Doubt(above=str(x.above), below=str(x.below), reason=x.reason) for x in answer.doubts
         )
-        return write(kept.Record(family=name, proved=proved, drives=drives, doubts=doubts))
+        return kept.Record(family=name, proved=proved, drives=drives, doubts=doubts)
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Decisions]:
-        said = _read(record)
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, Decisions]:
         edges: list[Edge] = []
-        for edge in said.proved:
+        for edge in record.proved:
             certificate = shelf.read_certificate(edge.certificate)
             assert certificate is not None
             claim = read_claim(self.basis.specification, edge.claim)
             edges.append(Edge(_scenario(edge.above), _scenario(edge.below), claim, certificate))
         drives: list[RefutationTask] = []
-        for x in said.drives:
+        for x in record.drives:
             drive = shelf.read_drive(x.drive)
             assert drive is not None
             drives.append(RefutationTask(_scenario(x.holds), tuple(map(_scenario, x.fails)), drive))
-        name = said.family
+        name = record.family
         settled = {(x.above, x.below) for x in edges} | {(x.node, y) for x in drives for y in x.others}
         for kind in self.families.get(name, ()):
             for other in self.kinds:
@@ -189,14 +188,14 @@ class Ordering:
             if (str(above), str(below)) not in implied and (above, below) not in doubtful
         )
 
-    def index(self, order: Order, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+    def index(self, order: Order, records: Mapping[str, kept.Record], seconds: float) -> kept.Index:
         """The index, made of the answers as they are recorded."""
-        every = [_read(records[name]) for name in self.families]
+        every = [records[name] for name in self.families]
         proved = tuple(edge for record in every for edge in record.proved)
         reduced = {(str(edge.above), str(edge.below)) for edge in order.edges}
         doubts = {(str(x.above), str(x.below)) for x in order.doubts}
         drives = (x for record in every for x in record.drives)
-        index = kept.Index(
+        return kept.Index(
             **self.question.heading,
             kinds=tuple(tuple(map(str, kind.nodes)) for kind in order.kinds),
             proved=proved,
@@ -214,11 +213,6 @@ class Ordering:
             doubts=tuple(x for record in every for x in record.doubts if x.pair in doubts),
             seconds=round(seconds, 1),
         )
-        return write(index)
-
-
-def _read(record: Mapping[str, Any]) -> kept.Record:
-    return read(kept.Record, record, "a kept answer")
 
 
 def name_of(family: Sequence[Kind]) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from typing import Any, TypeAlias
+from typing import ClassVar, TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.preventable.sides import beside_boundary, far_apart, first_drive
@@ -28,7 +28,6 @@ from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.codec import read, write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, statement, value_texts
@@ -115,6 +114,7 @@ class Preventable:
     ``scenario``: the number of the one that drives should be of, where the manoeuvre was asked for by it.
     """
 
+    record_type: ClassVar[type[kept.Record]] = kept.Record
     basis: Basis
     manoeuvre: Manoeuvre
     models: tuple[Model, ...]
@@ -250,10 +250,10 @@ class Preventable:
 
     # --- answers as plain data -------------------------------------------------------------------
 
-    def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> dict[str, Any]:
+    def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> kept.Record:
         if isinstance(answer, LemmaResult):
-            return write(kept.Record(lemma=self._kept_lemma(name, answer, shelf)))
-        return write(kept.Record(plate=self._kept_plate(name, answer, shelf)))
+            return kept.Record(lemma=self._kept_lemma(name, answer, shelf))
+        return kept.Record(plate=self._kept_plate(name, answer, shelf))
 
     def _kept_lemma(self, name: str, answer: LemmaResult, shelf: EvidenceStore) -> kept.Lemma:
         return kept.Lemma(
@@ -282,16 +282,15 @@ class Preventable:
             reason=answer.reason,
         )
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Answer]:
-        said = read(kept.Record, record, "a kept answer")
-        if said.lemma is not None:
-            name = f"lemma-{said.lemma.name}"
-            if name not in self.lemmas or self.lemmas[name].claim != said.lemma.claim:
+    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, Answer]:
+        if record.lemma is not None:
+            name = f"lemma-{record.lemma.name}"
+            if name not in self.lemmas or self.lemmas[name].claim != record.lemma.claim:
                 raise InputError(f"{name} is no lemma of this question")
-            certificate = shelf.read_certificate(said.lemma.certificate)
-            known, assuming = self.lemmas[name], said.lemma.assuming
-            return name, LemmaResult(known, said.lemma.verdict, assuming, certificate, said.lemma.reason)
-        plate = said.plate
+            certificate = shelf.read_certificate(record.lemma.certificate)
+            known, assuming = self.lemmas[name], record.lemma.assuming
+            return name, LemmaResult(known, record.lemma.verdict, assuming, certificate, record.lemma.reason)
+        plate = record.plate
         if plate is None:
             raise InputError("a kept answer has neither a plate nor a lemma")
         shown = tuple(
@@ -301,17 +300,14 @@ class Preventable:
         fixed = _exact(plate.fixed)
         return plate.name, Plate(plate.name, plate.model, fixed, self.along, lines, shown, plate.reason)
 
-    def index(self, records: Mapping[str, Mapping[str, Any]], seconds: float) -> dict[str, Any]:
+    def index(self, records: Mapping[str, kept.Record], seconds: float) -> kept.Index:
         """The index, made of the answers as they are recorded."""
-        found = {name: read(kept.Record, x, "a kept answer") for name, x in records.items()}
-        return write(
-            kept.Index(
-                **self.question.heading,
-                seconds=round(seconds, 1),
-                idle=self.idle,
-                plates=tuple(x for name in self.plates if (x := found[name].plate) is not None),
-                lemmas=tuple(y for name in self.lemmas if (y := found[name].lemma) is not None),
-            )
+        return kept.Index(
+            **self.question.heading,
+            seconds=round(seconds, 1),
+            idle=self.idle,
+            plates=tuple(x for name in self.plates if (x := records[name].plate) is not None),
+            lemmas=tuple(y for name in self.lemmas if (y := records[name].lemma) is not None),
         )
 
 

@@ -148,7 +148,7 @@ class EvidenceStore:
             "--out, or remove it"
         )
 
-    def keep(self, name: str, record: dict[str, Any], sure: bool) -> dict[str, Any]:
+    def keep(self, name: str, record: dict[str, Any], sure: bool) -> None:
         """Keep an answer under its seal, whose evidence has been written before, if it is ``sure``."""
         names, self.written = self.written, []
         self.names |= set(names)
@@ -157,7 +157,6 @@ class EvidenceStore:
             sealed = {"evidence": names, **record}
             sealed["seal"] = seal_of(sealed, self.question, self.folder)
             write_json(self.folder / ANSWERS / f"{name}.json", sealed)
-        return record
 
     def with_paths(self, data: Any) -> Any:
         """``data`` with the names of evidence files as paths from here."""

@@ -14,14 +14,23 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, SharedError, UsageError
+from roadproof.evidence.codec import read, write
 from roadproof.runtime.executors import Jobs, Shard, hands_of
 
 Piece = TypeVar("Piece")
 Answer = TypeVar("Answer")
+Record = TypeVar("Record")
 
 
-class Study(Protocol[Piece, Answer]):
-    """A long question. Pieces and answers are plain data that can be sent to other processes."""
+class Study(Protocol[Piece, Answer, Record]):
+    """A long question. Pieces and answers are plain data that can be sent to other processes.
+
+    A ``Record`` is an answer as it is kept, a definition of ``evidence.answers``.
+    """
+
+    @property
+    def record_type(self) -> type[Record]:
+        """The definition of a kept answer."""
 
     @property
     def question(self) -> Question:
@@ -43,10 +52,10 @@ class Study(Protocol[Piece, Answer]):
     def is_sure(self, answer: Answer) -> bool:
         """Whether an answer stands; others are asked again by the next run into the same folder."""
 
-    def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> dict[str, Any]:
-        """An answer as plain data; its evidence goes to the shelf."""
+    def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> Record:
+        """An answer as it is kept; its evidence goes to the shelf."""
 
-    def recall(self, record: Mapping[str, Any], shelf: EvidenceStore) -> tuple[str, Answer]:
+    def recall(self, record: Record, shelf: EvidenceStore) -> tuple[str, Answer]:
         """The inverse of ``record``, with the name that is told from what it says.
 
         Raises ``InputError`` where it is no whole answer.
@@ -54,32 +63,42 @@ class Study(Protocol[Piece, Answer]):
 
 
 @dataclass(frozen=True)
-class StudyResult(Generic[Answer]):
-    """All answers by name, and the same as plain data; evidence that has a file is named by its path."""
+class StudyResult(Generic[Answer, Record]):
+    """All answers by name, and the same as they are kept; ``shelf`` has their evidence."""
 
     answers: Mapping[str, Answer]
-    records: Mapping[str, Mapping[str, Any]]
+    records: Mapping[str, Record]
+    shelf: EvidenceStore
+
+    def as_data(self, answer: object) -> dict[str, Any]:
+        """An answer made of the records as plain data; evidence that has a file is named by its path."""
+        return dict(self.shelf.with_paths(write(answer)))
 
 
-def put_away(study: Study[Piece, Answer], answers: Mapping[str, Answer], folder: Path) -> StudyResult[Answer]:
+def put_away(
+    study: Study[Piece, Answer, Record], answers: Mapping[str, Answer], folder: Path
+) -> StudyResult[Answer, Record]:
     """The same answers, kept in a folder. Raises ``UsageError`` where it holds those to another question."""
     shelf = EvidenceStore(folder, study.question)
-    records = {
-        name: shelf.keep(name, study.record(name, answer, shelf), study.is_sure(answer))
-        for name, answer in answers.items()
-    }
-    return StudyResult(answers, {name: shelf.with_paths(record) for name, record in records.items()})
+    records = {name: _keep(study, name, answer, shelf) for name, answer in answers.items()}
+    return StudyResult(answers, records, shelf)
+
+
+def _keep(study: Study[Piece, Answer, Record], name: str, answer: Answer, shelf: EvidenceStore) -> Record:
+    record = study.record(name, answer, shelf)
+    shelf.keep(name, write(record), study.is_sure(answer))
+    return record
 
 
 def conduct(
-    study: Study[Piece, Answer],
+    study: Study[Piece, Answer, Record],
     folder: Path | None = None,
     hands: Jobs = None,
     progress: Progress | None = None,
     what: str = "pieces",
     say: Callable[[str], None] | None = None,
     each: Callable[[str, Answer], None] | None = None,
-) -> StudyResult[Answer]:
+) -> StudyResult[Answer, Record]:
     """Ask all pieces that a folder does not have the answers of; ``hands``: who does the work.
 
     Of several runs that divide the question each asks its share, and takes over what others have kept in the
@@ -92,10 +111,10 @@ def conduct(
     if shard is not None and folder is None:
         raise UsageError(f"--shard {shard} needs a folder in which the runs keep their answers: name --out")
     shelf = EvidenceStore(folder, study.question)
-    records: dict[str, dict[str, Any]] = {}
+    records: dict[str, Record] = {}
     known: dict[str, Answer] = {}
 
-    def add(name: str, record: dict[str, Any], answer: Answer) -> None:
+    def add(name: str, record: Record, answer: Answer) -> None:
         records[name], known[name] = record, answer
         if each is not None:
             each(name, answer)
@@ -118,20 +137,20 @@ def conduct(
         with closing(pool.work(study.settle, ours, hands, study.doubt, progress, what)) as answered:
             for _, answers in answered:
                 for name, answer in answers.items():
-                    made = study.record(name, answer, shelf)
-                    add(name, shelf.keep(name, made, study.is_sure(answer)), answer)
-    return StudyResult(known, {name: shelf.with_paths(record) for name, record in records.items()})
+                    add(name, _keep(study, name, answer, shelf), answer)
+    return StudyResult(known, records, shelf)
 
 
 def _kept(
-    study: Study[Piece, Answer],
+    study: Study[Piece, Answer, Record],
     shelf: EvidenceStore,
     known: Container[str],
     say: Callable[[str], None] | None,
-) -> Iterator[tuple[str, dict[str, Any], Answer]]:
+) -> Iterator[tuple[str, Record, Answer]]:
     """The kept answers that count and are not ``known``, each with its name and its record."""
-    for file, record in shelf.answers(say, known):
+    for file, content in shelf.answers(say, known):
         try:
+            record = read(study.record_type, content, "a kept answer")
             name, answer = study.recall(record, shelf)
             if name != file:
                 raise InputError(f"the answer '{file}' is that of '{name}'")
@@ -139,10 +158,10 @@ def _kept(
             if say is not None:
                 say(f"asked again, since a kept answer does not count: {error}")
             continue
-        yield name, dict(record), answer
+        yield name, record, answer
 
 
-def _name(study: Study[Piece, Answer], piece: Piece) -> str:
+def _name(study: Study[Piece, Answer, Record], piece: Piece) -> str:
     """What a piece is called: as the first of its answers."""
     return min(study.doubt(piece, "it is not asked here"))
 

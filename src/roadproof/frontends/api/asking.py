@@ -39,15 +39,29 @@ class StudyAnswer(Protocol):
 A = TypeVar("A", bound=StudyAnswer)
 
 
-class Listing(Study[Any, A], Protocol[A]):
-    """A study that knows the names of all answers; each is recorded as ``{"verdict": …}``."""
+class Verdicts(Protocol):
+    """A kept answer with one entry of the index."""
+
+    @property
+    def verdict(self) -> object: ...
+
+
+R = TypeVar("R", bound=Verdicts)
+
+
+class Listing(Study[Any, A, R], Protocol[A, R]):
+    """A study that knows the names of all answers, and the definition of its index."""
+
+    @property
+    def index_type(self) -> Callable[..., object]:
+        """The definition of the index, with ``seconds`` and ``verdicts``."""
 
     @property
     def names(self) -> Sequence[str]:
         """The names in the order of the index, which is a list of what is recorded."""
 
 
-class Answers(StudyAnswers[Listing[A], A]):
+class Answers(StudyAnswers[Listing[A, R], A, R]):
     """The answers to a study, each with a verdict."""
 
     @property
@@ -68,10 +82,10 @@ class Answers(StudyAnswers[Listing[A], A]):
             {"name": name, "verdict": str(x.verdict), "reason": x.reason} for name, x in self.each.items()
         ]
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-        question, verdicts = self.study.question, [records[name]["verdict"] for name in self.study.names]
-        said = {**question.heading, "view": "dense"}
-        return {**said, "seconds": round(self.seconds, 1), "verdicts": verdicts}
+    def _index(self, records: Mapping[str, R]) -> object:
+        verdicts = tuple(records[name].verdict for name in self.study.names)
+        heading = self.study.question.heading
+        return self.study.index_type(**heading, seconds=round(self.seconds, 1), verdicts=verdicts)
 
     def __str__(self) -> str:
         lines = [f"{x.verdict:<11} {name}{x.reason and f': {x.reason}'}" for name, x in self.each.items()]
@@ -79,7 +93,7 @@ class Answers(StudyAnswers[Listing[A], A]):
 
 
 def ask(
-    about: Callable[[Basis, tuple[int, ...]], Listing[A]],
+    about: Callable[[Basis, tuple[int, ...]], Listing[A, R]],
     among: Among = None,
     using: Definitions | None = None,
     vehicles: Vehicles = None,
@@ -89,7 +103,7 @@ def ask(
     jobs: Jobs = None,
     progress: Progress | None = None,
     say: Say | None = None,
-) -> Answers[A]:
+) -> Answers[A, R]:
     """The answers to a study that ``about`` makes of definitions and of the numbers of scenarios.
 
     ``among``: scenarios such as "1,3-8" (all where None). ``effort``, a number of units, is for one drive;
@@ -101,4 +115,4 @@ def ask(
     study = about(basis_of(home, effort, timeout, vehicles), numbers)
     if not study.names:
         raise UsageError(f"--among {among} leaves nothing to ask: name other scenarios")
-    return Answers[A].asked(study, out, jobs, progress, say)
+    return Answers[A, R].asked(study, out, jobs, progress, say)

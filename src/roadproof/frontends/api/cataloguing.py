@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from roadproof.analysis.catalogue.completing import PriorResults, complete
 from roadproof.analysis.catalogue.courses import Courses, courses_of, of_drive
@@ -24,6 +24,7 @@ from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.models import MODELS
 from roadproof.engines.search.question import Objective
 from roadproof.errors import UsageError
+from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers.catalogue_index import Figure, Look
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
@@ -42,7 +43,7 @@ from roadproof.verdict import ExitCode, Verdict
 
 
 @dataclass(frozen=True, repr=False)
-class CatalogueAnswer(StudyAnswers[Meanings, Kept]):
+class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
     """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
 
     examination: Examination = field(kw_only=True)
@@ -135,7 +136,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept]):
         """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
         return self.result.in_force
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.result.index(records, self.seconds)
 
     def rows(self) -> list[Row]:

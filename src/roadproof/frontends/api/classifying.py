@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import divide
@@ -19,7 +19,9 @@ from roadproof.analysis.classify.study import (
     classification_of,
 )
 from roadproof.analysis.classify.text import claims_text
+from roadproof.analysis.study.frame import StudyResult
 from roadproof.analysis.study.pool import Progress, Say
+from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
@@ -43,7 +45,7 @@ SECONDS, SEED = 600.0, 1
 
 
 @dataclass(frozen=True, repr=False)
-class Classifications(StudyAnswers[Classification, Example | Decision]):
+class Classifications(StudyAnswers[Classification, Example | Decision, kept.Record]):
     """Classes with a drive for each, and proofs that they are a division; ``shares`` in recordings."""
 
     shares: Shares | None = None
@@ -103,7 +105,7 @@ class Classifications(StudyAnswers[Classification, Example | Decision]):
         """What the scenarios are called."""
         return called(self.study.basis.specification)
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(self.classified, records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
@@ -112,9 +114,9 @@ class Classifications(StudyAnswers[Classification, Example | Decision]):
         drawn = report.draw_classes(self.classified.examples, self.shares, title, self.words)
         yield "classes", picture(drawn)
 
-    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+    def _write_index(self, folder: Path, found: StudyResult[Example | Decision, kept.Record]) -> None:
         write_whole(folder / CLAIMS_FILE, self.files(False)[CLAIMS_FILE])
-        super()._write_index(folder, records)
+        super()._write_index(folder, found)
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """The claims, for ``prove --claims``, and the picture."""

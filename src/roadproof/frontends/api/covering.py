@@ -6,12 +6,13 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.claims import sets_between
 from roadproof.analysis.coverage.classes import GapSurvey
 from roadproof.analysis.coverage.occurring import GapTraffic
+from roadproof.analysis.coverage.pieces import Kept
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.coverage.surveyed import Survey
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
@@ -19,6 +20,7 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.restriction import check_drives
 from roadproof.errors import UsageError
+from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
@@ -43,7 +45,7 @@ CODES = {
 
 
 @dataclass(frozen=True, repr=False)
-class Coverages(StudyAnswers[Coverage, Any]):
+class Coverages(StudyAnswers[Coverage, Kept, kept.Record]):
     """What a spec set misses; ``traffic``: how often each class of gaps occurs in recordings, if asked."""
 
     traffic: GapTraffic | None = None
@@ -103,7 +105,7 @@ class Coverages(StudyAnswers[Coverage, Any]):
             for x in self.surveyed.claims
         ]
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(self.surveyed, self.found.answers, records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:

@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.frame import put_away
+from roadproof.analysis.study.frame import StudyResult, put_away
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.analysis.witnesses import WitnessStudy, evidence_files, stems
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.question import Engine, Objective, SearchOptions
 from roadproof.errors import UsageError
+from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import Answer
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
@@ -59,7 +60,7 @@ class DriveFolder:
 
 
 @dataclass(frozen=True, repr=False)
-class Witnesses(StudyAnswers[WitnessStudy, Outcome]):
+class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
     """Searches for drives, and what came out of each."""
 
     pieces: ClassVar[str] = "questions"
@@ -109,13 +110,12 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome]):
         ]
 
     def as_data(self) -> dict[str, Any]:
-        beginning = self.study.question.beginning
-        return write(Answer(**beginning, verdicts=tuple(x.kept for x in self.outcomes)))
+        return write(self._index(self.found.records))
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-        return self.as_data()
+    def _index(self, records: Mapping[str, kept.Record]) -> Answer:
+        return Answer(**self.study.question.beginning, verdicts=tuple(x.kept for x in self.outcomes))
 
-    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
+    def _write_index(self, folder: Path, found: StudyResult[Outcome, kept.Record]) -> None:
         """There is none: drive files and proofs stand for themselves."""
 
     def _write(self, folder: Path, pictures: bool) -> None:

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, say_nothing
 from roadproof.analysis.explore.asking import ask_for
@@ -13,6 +12,7 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import UsageError
+from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
@@ -28,7 +28,7 @@ from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 
-class Explorations(StudyAnswers[Exploration, ExplorationResult]):
+class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
     """What was explored, a formula after the other."""
 
     pieces = "formulas"
@@ -73,7 +73,7 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult]):
         names = dict.fromkeys(column for row in rows for column in row)
         return [{column: row.get(column) for column in names} for row in rows]
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:

@@ -22,7 +22,7 @@ from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import SCHEMA, KeptFact
-from roadproof.evidence.codec import read
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, FolderStatements
 from roadproof.evidence.strict import Fields, read_json
@@ -80,7 +80,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
         return Comparison((Finding(where, "index", Acceptance.UNDECIDED, reason),))
     known: dict[str, Kept] = {"facts": facts, **gaps}
     again = Result(made, known)
-    now = inside(again.index({}, 0.0), told.folder)
+    now = inside(write(again.index({}, 0.0)), told.folder)
     findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
     compared = ["parameters"]
     for name, content in tables(again).items():

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from roadproof.analysis.preventable.study import Answer as Found
 from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable
@@ -13,6 +12,7 @@ from roadproof.drivers.gradual import RATE, check_gradual
 from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre
 from roadproof.drivers.models import DRIVERS, manoeuvre_of, models_for, require
 from roadproof.errors import UsageError
+from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
@@ -30,7 +30,7 @@ _MOST_LINES = 2000
 _MOST_PLATES = 200
 
 
-class Plates(StudyAnswers[Preventable, Found]):
+class Plates(StudyAnswers[Preventable, Found, kept.Record]):
     """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas."""
 
     pieces = "plates and lemmas"
@@ -74,7 +74,7 @@ class Plates(StudyAnswers[Preventable, Found]):
             for a, b in line.spans
         ]
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
 from roadproof.analysis.claims import ClaimResult, Claims, name_of
-from roadproof.analysis.proof_folder import claim_in, former_claims, write_claims
+from roadproof.analysis.proof_folder import former_claims, write_claims
+from roadproof.analysis.study.frame import StudyResult
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
 from roadproof.errors import UsageError
-from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays
-from roadproof.evidence.codec import write
+from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays, Record
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
 from roadproof.evidence.kernel.accept import Ruling
@@ -42,7 +42,7 @@ _PROPERTY = re.compile(r"[A-Z]\d+")
 
 
 @dataclass(frozen=True, repr=False)
-class Proofs(StudyAnswers[Claims, ClaimResult]):
+class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
     """Claims, settled. ``kernel``: what Coq says of those that are proved, by claim, where it was asked."""
 
     kernel: kernels.KernelAnswer | None = None
@@ -132,7 +132,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult]):
         ]
 
     def as_data(self) -> dict[str, Any]:
-        files = {name: claim_in(x).evidence for name, x in self.found.records.items()}
+        files = {name: x.claim.evidence for name, x in self.found.records.items()}
         named = {name: file for name, file in files.items() if isinstance(file, str)}
         says = {} if self.kernel is None else self.kernel.rulings
         answer = Answer(
@@ -144,14 +144,14 @@ class Proofs(StudyAnswers[Claims, ClaimResult]):
             ),
             kernel=None if self.kernel is None else self.kernel.kept,
         )
-        return write(answer)
+        return self.found.as_data(answer)
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-        claims = tuple(claim_in(x) for x in records.values())
-        return write(Index(**self.study.question.heading, claims=claims))
+    def _index(self, records: Mapping[str, Record]) -> Index:
+        claims = tuple(x.claim for x in records.values())
+        return Index(**self.study.question.heading, claims=claims)
 
-    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
-        write_claims(folder, self.study, records)
+    def _write_index(self, folder: Path, found: StudyResult[ClaimResult, Record]) -> None:
+        write_claims(folder, self.study, found.records)
 
     def _write(self, folder: Path, pictures: bool) -> None:
         with hold_if_any(folder):

@@ -11,21 +11,23 @@ from roadproof.analysis.study.evidence_store import write_index
 from roadproof.analysis.study.frame import Study, StudyResult, conduct, put_away
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.restriction import restriction_of
+from roadproof.evidence.codec import write
 from roadproof.frontends.api.answer import Answer, Picture
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode, Verdict
 
-S = TypeVar("S", bound=Study[Any, Any])
+S = TypeVar("S", bound=Study[Any, Any, Any])
 A = TypeVar("A")
+R = TypeVar("R")
 
 
 @dataclass(frozen=True, repr=False)
-class StudyAnswers(Answer, Generic[S, A]):
+class StudyAnswers(Answer, Generic[S, A, R]):
     """The answers to a ``study``; ``folder`` is where they were kept as they came, if anywhere."""
 
     study: S
-    found: StudyResult[A]
+    found: StudyResult[A, R]
     seconds: float
     folder: Path | None = None
     pieces: ClassVar[str] = "pieces"
@@ -53,15 +55,15 @@ class StudyAnswers(Answer, Generic[S, A]):
         fields = more()
         made = cls(study, found, time.monotonic() - since, folder, **fields)
         if folder is not None:
-            made._write_index(folder, found.records)
+            made._write_index(folder, found)
         return made
 
     @abstractmethod
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, R]) -> object:
         """The index, made of the answers as they are recorded."""
 
-    def _write_index(self, folder: Path, records: Mapping[str, Mapping[str, Any]]) -> None:
-        write_index(folder, self._index(records))
+    def _write_index(self, folder: Path, found: StudyResult[A, R]) -> None:
+        write_index(folder, write(self._index(found.records)))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """What is written beside the evidence to be looked at, by name."""
@@ -79,11 +81,11 @@ class StudyAnswers(Answer, Generic[S, A]):
         return ExitCode.UNKNOWN if doubt else ExitCode.AS_EXPECTED
 
     def as_data(self) -> dict[str, Any]:
-        return self._index(self.found.records)
+        return self.found.as_data(self._index(self.found.records))
 
     def _write(self, folder: Path, pictures: bool) -> None:
         kept = self.found if folder == self.folder else put_away(self.study, self.found.answers, folder)
-        self._write_index(folder, kept.records)
+        self._write_index(folder, kept)
         self._add_files(folder, pictures)
 
     def add_files(self, pictures: bool) -> None:

@@ -4,9 +4,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from roadproof.analysis.meeting import Meeting
+from roadproof.analysis.order.deciding import Decisions
 from roadproof.analysis.order.kinds import kinds_of
 from roadproof.analysis.order.study import Order, Ordering
 from roadproof.analysis.overlap import Overlap, PairVerdict, pairs_of
@@ -14,6 +15,9 @@ from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.errors import UsageError
+from roadproof.evidence.answers import order as order_answers
+from roadproof.evidence.answers import overlap as overlap_answers
+from roadproof.evidence.answers import redundancy as redundancy_answers
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
@@ -33,7 +37,7 @@ from roadproof.verdict import ExitCode, Verdict, exit_code
 _Same: TypeAlias = Literal["same", "any"]
 
 
-class Overlaps(StudyAnswers[Overlap, PairVerdict]):
+class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
     """Which pairs of scenarios can hold together: a drive, or a proof that there is none, for each."""
 
     pieces = "groups of pairs"
@@ -78,7 +82,7 @@ class Overlaps(StudyAnswers[Overlap, PairVerdict]):
             for x in self.pairs
         ]
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, overlap_answers.Record]) -> overlap_answers.Index:
         return self.study.index(records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
@@ -141,7 +145,7 @@ def overlap(
     return Overlaps.asked(Overlap(basis, pairs, Meeting(lanes, roles, start)), out, jobs, progress, say)
 
 
-class Orders(StudyAnswers[Ordering, Any]):
+class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):
     """Which scenarios imply which: every implication proved, every other one refuted by a drive."""
 
     pieces = "families of scenarios"
@@ -172,7 +176,7 @@ class Orders(StudyAnswers[Ordering, Any]):
         numbers = {node.number for kind in self.order.kinds for node in kind.nodes}
         return called_in(self.study.basis.specification, self.study.basis.set_names, numbers)
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, order_answers.Record]) -> order_answers.Index:
         return self.study.index(self.order, records, self.seconds)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
@@ -206,7 +210,7 @@ def order(
     return Orders.asked(Ordering(basis, kinds), out, jobs, progress, say)
 
 
-class Redundancies(StudyAnswers[Redundancy, ChangeFindings]):
+class Redundancies(StudyAnswers[Redundancy, ChangeFindings, redundancy_answers.Record]):
     """Which parts of scenarios could be left out, and what shows the others needed."""
 
     pieces = "scenarios"
@@ -247,7 +251,7 @@ class Redundancies(StudyAnswers[Redundancy, ChangeFindings]):
             for x in each
         ]
 
-    def _index(self, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    def _index(self, records: Mapping[str, redundancy_answers.Record]) -> redundancy_answers.Index:
         return self.study.index(records, self.seconds)
 
     def __str__(self) -> str:

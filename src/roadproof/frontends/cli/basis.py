@@ -91,7 +91,7 @@ def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[
     return hear
 
 
-def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any]") -> int:
+def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]") -> int:
     """JSON, what is written to be looked at, and the text of an answer; its exit code."""
     if args.json:
         write_json(found.as_data(), args.json)
