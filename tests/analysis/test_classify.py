@@ -31,7 +31,7 @@ from roadproof.analysis.classify.text import claims_of, ranges, with_classes, wr
 from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.codec import read
+from roadproof.evidence import codec
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.journal import seal_of
 from roadproof.evidence.judged import judge_file
@@ -297,7 +297,7 @@ def test_answers_of_another_class_do_not_count(written: Path, tmp_path: Path) ->
     recalled = {}
     for name, record in shelf.answers(told.append):
         try:
-            recalled[name] = study.recall(read(study.record_type, record, name), shelf)[0]
+            recalled[name] = study.recall(codec.read(study.record_type, record, name), shelf)[0]
         except InputError as error:
             told.append(str(error))
     assert not {"class_4", "covers-scenario-04"} & {*recalled}
