@@ -15,7 +15,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.claims import in_either_role, sectors_of
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
-from roadproof.analysis.meeting import Meeting, conjunctions
+from roadproof.analysis.overlap import Meeting, conjunctions
 from roadproof.frontends.cli.main import main
 from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import bundled_library

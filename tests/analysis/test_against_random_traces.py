@@ -8,7 +8,7 @@ import pytest
 
 from asking import prove
 from monitoring.cases import random_traffic
-from roadproof.analysis.meeting import Meeting, conjunctions
+from roadproof.analysis.overlap import Meeting, conjunctions
 from roadproof.analysis.redundancy import changes_of
 from roadproof.library.bind import default_values
 from roadproof.library.compose import equivalence, implication

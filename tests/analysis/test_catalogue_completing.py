@@ -16,16 +16,16 @@ import pytest
 import roadproof as rp
 from cli.test_schemas import validator
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue import examination, far, gaps, ranges, tested
+from roadproof.analysis.catalogue import completing, examination, gaps, ranges, tested
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.completing import complete
-from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import NO_SINGLE
 from roadproof.analysis.catalogue.meaning import Meanings
 from roadproof.analysis.catalogue.ranges import Reach
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
+from roadproof.analysis.catalogue.traces import courses_of
 from roadproof.analysis.coverage import claims, found, settling, study
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.classes import near_miss
@@ -195,7 +195,7 @@ def test_drives_far_apart_with_copies_for_other_tools(tmp_path: Path) -> None:
     (one,) = completed.completions
     assert (one.name, one.target) == ("scenario_4-2", "scenario_4")
     assert one.apart is not None
-    assert one.apart >= float(far.FACTORS[-1])
+    assert one.apart >= float(completing.FACTORS[-1])
     entries = tomllib.loads((more / "catalogue.toml").read_text("utf-8"))["test"]
     copies = {"as commonroad", "as csv", "as highd", "as openscenario"}
     assert {x["id"].removeprefix("scenario_4-2").strip() for x in entries} == {"", *copies}
@@ -218,9 +218,9 @@ def test_what_is_written_before_is_kept(tmp_path: Path) -> None:
 
 def test_distance_is_that_of_the_number_that_differs_most() -> None:
     one = {"v_lon(SV)": 20.0, "s(POV) - s(SV)": 30.0, "d(POV) - d(SV)": 0.0}
-    assert far.distance(one, one) == 0
-    assert far.distance(one, {**one, "v_lon(SV)": 28.0, "s(POV) - s(SV)": 45.0}) == 2
-    query = far.far_from([one], Fraction(2), HOME.specification)
+    assert completing.distance(one, one) == 0
+    assert completing.distance(one, {**one, "v_lon(SV)": 28.0, "s(POV) - s(SV)": 45.0}) == 2
+    query = completing.far_from([one], Fraction(2), HOME.specification)
     assert query is not None
     assert query.text.startswith("v_lon(SV) - 28*1 m/s >= 0 m/s or 12*1 m/s - v_lon(SV) >= 0 m/s or ")
 

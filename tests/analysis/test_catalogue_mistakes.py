@@ -9,7 +9,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
-from roadproof.analysis.catalogue.fragments import _by_itself
+from roadproof.analysis.catalogue.listing import _by_itself
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.errors import InputError
 from roadproof.frontends.cli.main import main

@@ -12,10 +12,10 @@ import pytest
 import roadproof as rp
 from roadproof.analysis.catalogue import traces
 from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.courses import courses_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import choices, roles_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
+from roadproof.analysis.catalogue.traces import courses_of
 from roadproof.errors import InputError
 from roadproof.frontends.cli.main import main
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue import digests
-from roadproof.analysis.catalogue.digests import digest_of
+from roadproof.analysis.catalogue import traces
+from roadproof.analysis.catalogue.traces import digest_of
 from roadproof.errors import InputError
 from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 
@@ -100,5 +100,5 @@ def test_the_digest_of_samples_is_that_of_both_files(tmp_path: Path, monkeypatch
     road.write_text(road.read_text() + "\n")
     assert digest_of(str(path)) not in ("", whole)
     assert digest_of(str(tmp_path / "none.json")) == ""
-    monkeypatch.setattr(digests, "files_of", lambda place: (path, tmp_path / "none.toml"))
+    monkeypatch.setattr(traces, "files_of", lambda place: (path, tmp_path / "none.toml"))
     assert digest_of(str(path)) == ""

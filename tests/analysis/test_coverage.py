@@ -19,9 +19,9 @@ from roadproof.analysis.coverage.claims import (
     two_vehicle_numbers,
 )
 from roadproof.analysis.coverage.classes import GapClasses
+from roadproof.analysis.coverage.found import Trials
 from roadproof.analysis.coverage.needed import find_need, replaced_by
 from roadproof.analysis.coverage.simple import HORIZON, simple_drives
-from roadproof.analysis.coverage.trial import Trials
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file

@@ -11,9 +11,8 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.answers import Answers
 from roadproof.analysis.coverage.claims import in_either_role, missed, sectors_of
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap, find_among_simple
+from roadproof.analysis.coverage.found import FoundGap, Trials, find_among_simple
 from roadproof.analysis.coverage.settling import ClassGroup
-from roadproof.analysis.coverage.trial import Trials
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main

@@ -8,8 +8,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.claims import CoverageResult, claims_of
 from roadproof.analysis.coverage.classes import GapClasses
-from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic, with_counts
-from roadproof.analysis.coverage.surveyed import verdict_on
+from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic, verdict_on, with_counts
 from roadproof.errors import InputError
 from roadproof.library.specification import bundled_library
 from roadproof.verdict import Verdict

@@ -14,11 +14,10 @@ from hypothesis import strategies as st
 
 from roadproof.analysis.explore import extreme, search, study, values
 from roadproof.analysis.explore.answer import Explorable, ExplorationResult, Extreme, PointFinding
-from roadproof.analysis.explore.bracket import Bracket
+from roadproof.analysis.explore.bracket import Bracket, range_of, starting_ranges
 from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme, find_extremes
 from roadproof.analysis.explore.knobs import Variable, between
 from roadproof.analysis.explore.measure import Sense, read_measure
-from roadproof.analysis.explore.range import range_of, starting_ranges
 from roadproof.analysis.explore.search import (
     MOST_STEPS,
     DriveClaim,

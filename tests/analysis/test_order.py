@@ -13,14 +13,15 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.deciding import (
     Decisions,
     Edge,
+    Kind,
     OrderDoubt,
     _DecisionJobs,
     decide_family,
+    families_of,
+    kinds_of,
     settle_doubts,
 )
-from roadproof.analysis.order.kinds import Kind, families_of, kinds_of
-from roadproof.analysis.order.relation import reachable, transitive_reduction
-from roadproof.analysis.order.study import Order
+from roadproof.analysis.order.study import Order, reachable, transitive_reduction
 from roadproof.engines.search.ask import ask
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.order import as_dot, as_text, compose_order

@@ -11,8 +11,7 @@ from planting import plant
 from report.edges import cut_off
 from roadproof.analysis import overlap
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.meeting import Meeting, conjunctions
-from roadproof.analysis.overlap import Core, Overlap, PairVerdict, pairs_of
+from roadproof.analysis.overlap import Core, Meeting, Overlap, PairVerdict, conjunctions, pairs_of
 from roadproof.analysis.placing import placed
 from roadproof.analysis.study.frame import conduct
 from roadproof.engines.solve.smt import ask

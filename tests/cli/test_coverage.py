@@ -9,11 +9,10 @@ import pytest
 
 from planting import plant
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage import study, surveyed
+from roadproof.analysis.coverage import occurring, study
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap
+from roadproof.analysis.coverage.found import FoundGap, Trials
 from roadproof.analysis.coverage.study import Coverage
-from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import UsageError
@@ -120,7 +119,7 @@ FAULTS = [
 def test_a_doubt_that_passes_for_an_answer_is_noticed(
     name: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    plant(monkeypatch, surveyed, name, right, wrong)
+    plant(monkeypatch, occurring, name, right, wrong)
     assert neither_gap_nor_proof(monkeypatch, tmp_path / "out") != (ExitCode.UNKNOWN, "UNKNOWN")
 
 

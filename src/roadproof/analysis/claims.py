@@ -4,23 +4,33 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
+from roadproof.analysis.study.evidence_store import (
+    INDEX,
+    EvidenceStore,
+    Question,
+    specification_names,
+    write_index,
+)
 from roadproof.engines.prove.doubt import Cause, Doubt, Stop, doubt_of
 from roadproof.engines.prove.properties import Task, find_label, name_of_claim
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.settle import Settlement, in_doubt, settle, settle_bounded
-from roadproof.errors import InputError
+from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers import proofs as kept
-from roadproof.evidence.answers.proofs import SCHEMA
-from roadproof.evidence.codec import ABSENT
+from roadproof.evidence.answers.proofs import SCHEMA, Claim, Index, Record
+from roadproof.evidence.answers.read import index_fields
+from roadproof.evidence.codec import ABSENT, read, write
+from roadproof.evidence.heading import library_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import trace_data
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.traces import read_trace
 from roadproof.library.elaborate import read_claim
 from roadproof.library.query import Query
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Specification, read_specification
 from roadproof.logic.custom_names import told_freedom
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.progress import about
@@ -224,3 +234,56 @@ class Claims:
 def name_of(task: Task) -> str:
     """Under which name the answer to a claim is kept, whatever the list calls it."""
     return name_of_claim(task.claim, task.set_name, task.assuming)
+
+
+# --- the index of a folder of settled claims, which grows ------------------------------------------
+
+Entries = dict[str, Claim]
+
+
+def former_claims(folder: Path, claims: Claims) -> Entries:
+    """The entries of an index that is there already, by name.
+
+    Raises ``UsageError`` where it is of another command, or its claims were read otherwise.
+    """
+    path = folder / INDEX
+    if not path.exists():
+        return {}
+    data = index_fields(read_json(path, LARGEST_INDEX), str(path))
+    if data.text("schema") != SCHEMA:
+        raise UsageError(f"{path} is of another command: name another folder with --out")
+    if not _read_alike(data, folder, claims):
+        raise UsageError(
+            f"{folder} holds claims that were read with other options or specification files, or under "
+            "another library: name another folder with --out"
+        )
+    known = read(Index, data.content, data.where).claims
+    return {name_of_claim(x.claim, x.set, x.assuming): x for x in known}
+
+
+def _read_alike(data: Fields, folder: Path, claims: Claims) -> bool:
+    library, options = claims.library, claims.question.said["options"]
+    texts = {Path(x.name).name: x.text for x in library.files}
+    kept = data.texts("specs") if data.has("specs") else ()
+    there = {name: read_specification(folder / Path(name).name).text for name in kept}
+    told = data.named_texts("options") if data.has("options") else {}
+    same = library_of(data) in (None, library.fingerprint)
+    return same and there == texts and dict(library.select(options=told).options) == options
+
+
+def write_claims(folder: Path, claims: Claims, records: Mapping[str, Record]) -> None:
+    """Write the index: former entries, each with its new answer if there is one, and then what is new.
+
+    A file that only a former answer needed is removed.
+    """
+    former = former_claims(folder, claims)
+    new = [name for name in claims.named if name in records]
+    new += sorted(name for name in records if name not in claims.named)
+    entries: Entries = {**former, **{name: records[name].claim for name in new}}
+    write_index(folder, write(Index(**claims.question.heading, claims=tuple(entries.values()))))
+    for name in _files(former) - _files(entries):
+        (folder / name).unlink(missing_ok=True)
+
+
+def _files(entries: Entries) -> set[str]:
+    return {Path(x.evidence).name for x in entries.values() if x.evidence}

@@ -9,14 +9,13 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
-from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, kind_of
 from roadproof.analysis.catalogue.gaps import PREFIX, gap_kinds
 from roadproof.analysis.catalogue.meaning import Meanings
 from roadproof.analysis.catalogue.ranges import Reach, reaches_of
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.request import Request
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
-from roadproof.analysis.catalogue.tested import targets_of, tested
+from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, kind_of, targets_of, tested
 from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.study import pool

@@ -7,12 +7,18 @@ from functools import cached_property
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_formula
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
 from roadproof.analysis.catalogue.examination import Examination
-from roadproof.analysis.catalogue.figures import figures, figures_beside
 from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers, scenarios_shown
 from roadproof.analysis.catalogue.ranges import Span, spans_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
-from roadproof.analysis.catalogue.tested import Targets, all_facts, targets_of, tested
+from roadproof.analysis.catalogue.tested import (
+    Targets,
+    all_facts,
+    figures,
+    figures_beside,
+    targets_of,
+    tested,
+)
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.answers import catalogue_index as kept

@@ -9,7 +9,6 @@ import numpy as np
 
 from roadproof.analysis.catalogue.asked import DangerQuestion, Key, Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
-from roadproof.analysis.catalogue.digests import digest_of
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.playing import (
     cast_samples,
@@ -18,7 +17,7 @@ from roadproof.analysis.catalogue.playing import (
     play_drive,
     roles_of,
 )
-from roadproof.analysis.catalogue.traces import is_samples, traces_of
+from roadproof.analysis.catalogue.traces import digest_of, is_samples, traces_of
 from roadproof.analysis.catalogue.why import Course, signals_of, why_none
 from roadproof.drivers.restriction import restriction_of, unrestricted
 from roadproof.errors import InputError

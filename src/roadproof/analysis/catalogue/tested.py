@@ -11,8 +11,8 @@ from roadproof.analysis.catalogue.meaning import Kept, facts_in
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer, Freedom, why_not
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
-from roadproof.evidence.answers.catalogue_index import Remark, Target
-from roadproof.library.scenarios import name_of
+from roadproof.evidence.answers.catalogue_index import Figure, Kind, Remark, Target
+from roadproof.library.scenarios import name_of, number_in
 from roadproof.library.words import called
 from roadproof.verdict import Verdict
 
@@ -335,3 +335,48 @@ def _implied(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Re
 def all_facts(answers: Mapping[str, Kept]) -> tuple[Fact, ...]:
     """What is known of all abstract tests."""
     return tuple(fact for answer in answers.values() for fact in facts_in(answer))
+
+
+# --- how much tests show, in figures ---------------------------------------------------------------
+
+SCENARIOS: Kind = "scenarios"
+CLASSES: Kind = "classes"
+GAPS: Kind = "classes of gaps"
+
+
+def kind_of(target: str) -> Kind:
+    """What a target other than a class of gaps is, by its name."""
+    return CLASSES if number_in(target) is None else SCENARIOS
+
+
+def figures(set_name: str, targets: Sequence[Target], gaps: TestedGaps) -> tuple[Figure, ...]:
+    """The figures of the set that is asked about; classes of gaps where it is known which are empty."""
+    found = [*_counted(set_name, {x.name: (x.sector, bool(x.tested)) for x in targets})]
+    if gaps.asked:
+        tested = sum(bool(x.tested) for x in gaps.targets)
+        found.append(Figure(set_name, GAPS, "", tested, len(gaps.targets)))
+    return tuple(found)
+
+
+def figures_beside(
+    asked: Questions, concrete: Sequence[ConcreteAnswer], facts: Sequence[Fact]
+) -> tuple[Figure, ...]:
+    """The figures of another set: what concrete tests show there, and what abstract ones imply there."""
+    name, sectors = asked.specification.set_name, sectors_of(asked)
+    runs = {x.test for x in facts if x.relation == "runs"}
+    shown = {x for answer in concrete for x in answer.names}
+    shown |= {
+        x.other.removesuffix(f"@{name}") for x in facts if x.relation == "implies" and x.test in runs
+        and x.other.endswith(f"@{name}")
+    }  # fmt: skip
+    targets = {target: (sectors.get(target, ""), target in shown) for target in targets_of(asked)}
+    return tuple(_counted(name, targets))
+
+
+def _counted(set_name: str, targets: dict[str, tuple[str, bool]]) -> Iterator[Figure]:
+    for kind in (SCENARIOS, CLASSES):
+        those = [x for name, x in targets.items() if kind_of(name) == kind]
+        sectors = list(dict.fromkeys(sector for sector, _ in those if sector))
+        for sector in ("", *sectors) if those else ():
+            here = [tested for place, tested in those if sector in ("", place)]
+            yield Figure(set_name, kind, sector, sum(here), len(here))

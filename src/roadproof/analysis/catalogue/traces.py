@@ -1,16 +1,23 @@
 """The traces of a test that is samples, with what the test calls the vehicles."""
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
+import hashlib
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 
 from roadproof.analysis.catalogue.entries import Concrete
-from roadproof.analysis.catalogue.playing import checked, chosen_vehicles, play_samples, roles_of
+from roadproof.analysis.catalogue.playing import checked, chosen_vehicles, play_drive, play_samples, roles_of
 from roadproof.errors import InputError
-from roadproof.library.scenarios import PAIR, TRIPLE
+from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
 from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
 from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.samples import ROAD_ENDING
+from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
+from roadproof.world.motion import state_at
+from roadproof.world.road import Road
 
 MOST_VEHICLES = 8
 """In a scenario of CommonRoad of which no vehicles are named."""
@@ -70,3 +77,110 @@ def _all_of(
                 vehicles = dict(zip(names, chosen, strict=True))
                 trace = cut_trace(recording, entry.place, vehicles, (low, high))
                 yield trace, {n: ids[v] for n, v in vehicles.items()}
+
+
+# --- how the vehicles of a test move, sampled to be drawn ------------------------------------------
+
+GRAIN = Fraction(1, 10)
+"""Seconds between the points of a curve of a drive."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """Of one vehicle: where its front is along (m), and where its right and left edges are across (m)."""
+
+    along: Sequence[float]
+    right: Sequence[float]
+    left: Sequence[float]
+
+
+@dataclass(frozen=True)
+class Courses:
+    """All vehicles of a test, SV or the first one first, at the same ``times`` (s).
+
+    ``markings``: where lanes of its road end across (m).
+    """
+
+    times: Sequence[float]
+    vehicles: Mapping[str, Course]
+    markings: tuple[float, ...]
+
+
+def courses_of(entry: Concrete) -> Courses | None:
+    """How the vehicles of a test move; None where it cannot be read."""
+    if entry.fault:
+        return None
+    try:
+        if entry.place.endswith(".json") and not is_pair(entry.place):
+            file = load_drive(Path(entry.place))
+            known = {*PAIR, *TRIPLE, *entry.roles}
+            return of_drive(play_drive(file, roles_of(entry, tuple(file.drive.vehicles), known)))
+        trace = first_trace(entry)
+        return None if trace is None else _of_trace(trace)
+    except InputError:
+        return None
+
+
+def of_drive(file: DriveFile) -> Courses:
+    """How the vehicles of a drive move up to its horizon."""
+    times = [k * GRAIN for k in range(int(file.horizon / GRAIN) + 1)]
+    found = {}
+    for name, motion in file.drive.vehicles.items():
+        states = [state_at(motion, time) for time in times]
+        left = [float(x.d) for x in states]
+        right = [x - float(motion.width) for x in left]
+        found[name] = Course([float(x.s) for x in states], right, left)
+    return Courses([*map(float, times)], _in_order(found), _markings(file.road))
+
+
+def _of_trace(trace: OneTrace) -> Courses:
+    batch, count = trace.batch, int(trace.batch.lengths[0])
+    found = {}
+    for name in trace.lanes:
+        left = batch.signals["d", name][:count, 0]
+        right = left - batch.sizes["width", name][0]
+        found[name] = Course(batch.signals["s", name][:count, 0].tolist(), right.tolist(), left.tolist())
+    times = [float(k * batch.dt) for k in range(count)]
+    return Courses(times, _in_order(found), _markings(trace.road))
+
+
+def _in_order(found: Mapping[str, Course]) -> dict[str, Course]:
+    return {name: found[name] for name in sorted(found, key=lambda name: (name != SUBJECT, name))}
+
+
+def _markings(road: Road) -> tuple[float, ...]:
+    return tuple(sorted({float(end) for lanelet in road.lanelets for end in lanelet.d}))
+
+
+# --- whether the files of a test have changed ------------------------------------------------------
+
+
+def digest_of(place: str) -> str:
+    """SHA-256 of the file of a concrete test, in hexadecimal digits; empty where a file cannot be read.
+
+    Of several files, such as those of a recording or samples with their road, it is that of the digests of
+    all, one after the other.
+    """
+    digests = [_sha256(path) for path in files_of(place)]
+    if not digests or not all(digests):
+        return ""
+    return digests[0] if len(digests) == 1 else hashlib.sha256("".join(digests).encode()).hexdigest()
+
+
+def files_of(place: str) -> tuple[Path, ...]:
+    """The files that a concrete test is read from; none where there is no recording of that name."""
+    if is_pair(place):
+        try:
+            return find_source(Path(place.rpartition(":")[0])).files
+        except InputError:
+            return ()
+    path = Path(place)
+    return (path, *(beside(path, ROAD_ENDING) if path.suffix in (".csv", ".parquet") else ()))
+
+
+def _sha256(path: Path) -> str:
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return ""

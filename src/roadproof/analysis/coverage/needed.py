@@ -12,8 +12,8 @@ from roadproof.analysis.coverage.claims import (
     replaced_in,
     two_vehicle_numbers,
 )
+from roadproof.analysis.coverage.found import Trials
 from roadproof.analysis.coverage.simple import HORIZON, ZERO, simple_drives
-from roadproof.analysis.coverage.trial import Trials
 from roadproof.engines.prove.prover import prove
 from roadproof.evidence.answers.coverage import NeedVerdict
 from roadproof.evidence.drive_file import DriveFile

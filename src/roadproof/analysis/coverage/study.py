@@ -12,9 +12,9 @@ from typing import ClassVar, TypeGuard
 from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
 from roadproof.analysis.coverage.claims import CoverageResult, claims_of, prove_claim
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap, find_among_simple
+from roadproof.analysis.coverage.found import FoundGap, Trials, find_among_simple
 from roadproof.analysis.coverage.needed import Need, find_need, parent_of, replaced_by
-from roadproof.analysis.coverage.occurring import GapTraffic, with_counts
+from roadproof.analysis.coverage.occurring import GapTraffic, Survey, is_covered, with_counts
 from roadproof.analysis.coverage.parts import Part
 from roadproof.analysis.coverage.pieces import (
     Chunk,
@@ -27,8 +27,6 @@ from roadproof.analysis.coverage.pieces import (
     name_of,
 )
 from roadproof.analysis.coverage.settling import ClassGroup
-from roadproof.analysis.coverage.surveyed import Survey, is_covered
-from roadproof.analysis.coverage.trial import Trials
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept

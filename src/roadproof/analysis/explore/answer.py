@@ -5,8 +5,7 @@ from fractions import Fraction
 from itertools import product
 
 from roadproof.analysis.explore.knobs import Point, Variable, stated
-from roadproof.analysis.explore.measure import Measure
-from roadproof.analysis.explore.parts import with_parts
+from roadproof.analysis.explore.measure import Measure, with_parts
 from roadproof.engines.search.ask import Search
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive

@@ -16,12 +16,10 @@ from roadproof.analysis.explore.answer import (
     PointFinding,
     say_nothing,
 )
-from roadproof.analysis.explore.bracket import Bracket
+from roadproof.analysis.explore.bracket import Bracket, range_of, starting_ranges
 from roadproof.analysis.explore.knobs import Point, Variable, stated, with_point
-from roadproof.analysis.explore.measure import Measure
+from roadproof.analysis.explore.measure import Measure, with_parts
 from roadproof.analysis.explore.never import NEVER, never, stages_for
-from roadproof.analysis.explore.parts import with_parts
-from roadproof.analysis.explore.range import range_of, starting_ranges
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
     PLAIN_FIRST,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.analysis.explore.parts import compared
+from roadproof.analysis.explore.measure import compared
 from roadproof.engines.search.ask import Search
 from roadproof.library.compose import always
 from roadproof.library.query import Query

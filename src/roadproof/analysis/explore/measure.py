@@ -1,21 +1,34 @@
 """What is measured on a drive: a term, at the start or at a moment, and which way is better."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.analysis.explore.parts import compared
 from roadproof.engines.search.ask import Search
 from roadproof.errors import UsageError
-from roadproof.library.compose import both, eventually
+from roadproof.library.compose import both, comparison, eventually
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
 from roadproof.logic import syntax
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text as shown
-from roadproof.logic.syntax import Binding, Expression
+from roadproof.logic.syntax import BinaryOperator, Binding, Expression
 from roadproof.logic.terms import Dimension, Inverse, Term, Varying, leaves
+
+
+def with_parts(query: Query, parts: Sequence[Query]) -> Query:
+    """``query`` and all of ``parts``; as it was written where there are none."""
+    return both(query, *parts) if parts else query
+
+
+def compared(
+    search: Search, left: Expression, op: BinaryOperator, value: Fraction, dimension: Dimension
+) -> Query:
+    """``left op value`` in the names that the search has, where ``value`` is in SI units of ``dimension``."""
+    return comparison(search.specification, search.query.claim.given, left, op, value, dimension)
+
 
 Sense: TypeAlias = Literal["least", "greatest"]
 

@@ -13,7 +13,6 @@ from fractions import Fraction
 from itertools import permutations
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.order.kinds import Kind
 from roadproof.analysis.placing import judged_as, placed
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.question import usual_road
@@ -23,11 +22,53 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.query import Query
-from roadproof.library.scenarios import Scenario, applied, vehicles_of
+from roadproof.library.scenarios import Scenario, applied, numbers_of, vehicles_of, without_sectors
+from roadproof.library.specification import Specification
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Scenarios with one formula, the first of which stands for all; ``like``: equal but for the sector."""
+
+    nodes: tuple[Scenario, ...]
+    like: int
+
+    @property
+    def node(self) -> Scenario:
+        return self.nodes[0]
+
+
+def kinds_of(
+    specification: Specification, sets: Sequence[str], numbers: Sequence[int] | None = None
+) -> tuple[Kind, ...]:
+    """The scenarios of all ``sets`` in groups with one formula; ``numbers``: only these."""
+    found: dict[Formula, list[Scenario]] = {}
+    likes: dict[Formula, int] = {}
+    like_of: dict[Scenario, int] = {}
+    for set_name in sets:
+        for number in numbers_of(specification.in_set(set_name)):
+            if numbers is not None and number not in numbers:
+                continue
+            node = Scenario(number, set_name)
+            formula = applied(specification, node).formula
+            found.setdefault(without_names(formula), []).append(node)
+            like_of[node] = likes.setdefault(without_sectors(formula), len(likes))
+    return tuple(Kind(tuple(nodes), like_of[nodes[0]]) for nodes in found.values())
+
+
+def families_of(kinds: Sequence[Kind]) -> list[tuple[Kind, ...]]:
+    """The kinds in groups that differ in their road sectors only."""
+    families: dict[int, list[Kind]] = {}
+    for kind in kinds:
+        families.setdefault(kind.like, []).append(kind)
+    return [tuple(family) for family in families.values()]
+
 
 FAR = Fraction(2000)
 

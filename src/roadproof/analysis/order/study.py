@@ -1,6 +1,6 @@
 """Which scenarios imply which: every implication proved, every other one refuted by a drive."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import permutations
 from typing import ClassVar
@@ -9,13 +9,13 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.order.deciding import (
     Decisions,
     Edge,
+    Kind,
     OrderDoubt,
     RefutationTask,
     decide_family,
+    families_of,
     settle_doubts,
 )
-from roadproof.analysis.order.kinds import Kind, families_of
-from roadproof.analysis.order.relation import reachable, transitive_reduction
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import order as kept
@@ -227,3 +227,27 @@ def _file(node: Scenario) -> str:
 def _scenario(name: str) -> Scenario:
     number, _, set_name = name.partition("@")
     return Scenario(int(number), set_name)
+
+
+# --- relations -------------------------------------------------------------------------------------
+
+
+def transitive_reduction(pairs: Set[tuple[str, str]]) -> set[tuple[str, str]]:
+    """The pairs of a relation that do not follow from others by a chain."""
+    kept = set(pairs)
+    for above, below in sorted(pairs):
+        rest = kept - {(above, below)}
+        if below in reachable(above, rest):
+            kept = rest
+    return kept
+
+
+def reachable(name: str, pairs: Set[tuple[str, str]]) -> set[str]:
+    """All that a chain of pairs leads to from ``name``, and ``name``."""
+    seen, waiting = {name}, [name]
+    while waiting:
+        current = waiting.pop()
+        new = {below for above, below in pairs if above == current} - seen
+        seen |= new
+        waiting += new
+    return seen

@@ -8,17 +8,16 @@ from pathlib import Path
 from typing import ClassVar
 
 from roadproof.analysis.catalogue.completing import PriorResults, complete
-from roadproof.analysis.catalogue.courses import Courses, courses_of, of_drive
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete
 from roadproof.analysis.catalogue.examination import Examination, examine
-from roadproof.analysis.catalogue.figures import SCENARIOS, kind_of
 from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
 from roadproof.analysis.catalogue.ranges import Span
 from roadproof.analysis.catalogue.request import NEAR, Request
 from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
-from roadproof.analysis.catalogue.tested import Targets, all_facts
+from roadproof.analysis.catalogue.tested import SCENARIOS, Targets, all_facts, kind_of
+from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
 from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.models import MODELS

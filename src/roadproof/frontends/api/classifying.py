@@ -10,13 +10,13 @@ from typing import ClassVar
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import Example
-from roadproof.analysis.classify.former import make_room
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import (
     Classification,
     ClassificationResult,
     Decision,
     classification_of,
+    make_room,
 )
 from roadproof.analysis.classify.text import claims_text
 from roadproof.analysis.study.frame import StudyResult

@@ -11,10 +11,9 @@ from typing import ClassVar
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.claims import sets_between
 from roadproof.analysis.coverage.classes import GapSurvey
-from roadproof.analysis.coverage.occurring import GapTraffic
+from roadproof.analysis.coverage.occurring import GapTraffic, Survey
 from roadproof.analysis.coverage.pieces import Kept
 from roadproof.analysis.coverage.study import Coverage
-from roadproof.analysis.coverage.surveyed import Survey
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say

@@ -7,8 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, ClassVar, Literal, Self, TypeAlias
 
-from roadproof.analysis.claims import ClaimResult, Claims, name_of
-from roadproof.analysis.proof_folder import former_claims, write_claims
+from roadproof.analysis.claims import ClaimResult, Claims, former_claims, name_of, write_claims
 from roadproof.analysis.study.frame import StudyResult
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties

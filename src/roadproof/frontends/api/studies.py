@@ -6,11 +6,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from roadproof.analysis.meeting import Meeting
-from roadproof.analysis.order.deciding import Decisions
-from roadproof.analysis.order.kinds import kinds_of
+from roadproof.analysis.order.deciding import Decisions, kinds_of
 from roadproof.analysis.order.study import Order, Ordering
-from roadproof.analysis.overlap import Overlap, PairVerdict, pairs_of
+from roadproof.analysis.overlap import Meeting, Overlap, PairVerdict, pairs_of
 from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say

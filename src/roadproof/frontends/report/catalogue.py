@@ -8,11 +8,10 @@ from textwrap import indent
 from typing import Any
 from xml.etree import ElementTree as xml
 
-from roadproof.analysis.catalogue.figures import CLASSES, SCENARIOS, kind_of
 from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.ranges import Span
 from roadproof.analysis.catalogue.result import Result
-from roadproof.analysis.catalogue.tested import Targets
+from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, Targets, kind_of
 from roadproof.evidence.answers.catalogue_index import Figure, Remark, Target
 from roadproof.frontends.report import catalogue_drivers
 from roadproof.frontends.report.figures import as_bytes, count_axis, make_figure

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from roadproof.analysis.catalogue.courses import Courses
+from roadproof.analysis.catalogue.traces import Courses
 from roadproof.frontends.report.drive import COLOURS
 from roadproof.frontends.report.figures import as_bytes, make_page, shorten
 

@@ -6,8 +6,7 @@ from pathlib import Path
 
 from roadproof.analysis.coverage.answers import ClassAnswer, Gap
 from roadproof.analysis.coverage.needed import Need
-from roadproof.analysis.coverage.occurring import GapTraffic
-from roadproof.analysis.coverage.surveyed import Survey
+from roadproof.analysis.coverage.occurring import GapTraffic, Survey
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
 from roadproof.library.specification import Library

@@ -3,8 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from roadproof.analysis.order.deciding import Edge
-from roadproof.analysis.order.kinds import Kind
+from roadproof.analysis.order.deciding import Edge, Kind
 from roadproof.analysis.order.study import Order
 from roadproof.frontends.report.figures import as_bytes, make_figure
 from roadproof.library.scenarios import Scenario
