@@ -1,16 +1,18 @@
 """Reads and writes frozen dataclasses as JSON: one definition of an answer gives both, and its JSON Schema.
 
 A field is declared as ``name: Annotated[type, Doc("one sentence"), …]``. Types are ``str``, ``int``,
-``float``, ``bool``, ``Literal``, enumerations of texts, ``tuple[T, ...]``, ``Mapping[str, T]``, other
-dataclasses, unions of these or with ``None``, and ``Any`` (plain JSON). ``tuple[A, B]`` has one item of each
-type; a rule for the keys of a mapping stands at their type. A field with a default may be missing, as in
-evidence of earlier versions; it is written all the same, but where it is marked ``LEFT_OUT``.
+``float``, ``bool``, ``Fraction`` (a rational as text), ``Literal``, enumerations of texts,
+``tuple[T, ...]``, ``Mapping[str, T]``, other dataclasses, unions of these or with ``None``, and ``Any``
+(plain JSON). ``tuple[A, B]`` has one item of each type; a rule for the keys of a mapping stands at their
+type. A field with a default may be missing, as in evidence of earlier versions; it is written all the same,
+but where it is marked ``LEFT_OUT``.
 """
 
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass
 from enum import Enum, StrEnum
+from fractions import Fraction
 from functools import cache
 from types import NoneType, UnionType
 from typing import (
@@ -27,7 +29,7 @@ from typing import (
 )
 
 from roadproof.errors import InputError
-from roadproof.evidence.strict import Fields, text
+from roadproof.evidence.strict import Fields, rational, text
 
 T = TypeVar("T")
 Read: TypeAlias = Callable[[object, str], Any]
@@ -51,15 +53,23 @@ class Key:
 @dataclass(frozen=True)
 class Rule:
     """What values of a type have to be: texts match ``pattern`` and have ``least`` characters, numbers are at
-    least ``minimum``, lists have ``least`` items; with ``unique`` they have none twice. ``called``: what a
-    text that does not match is not.
+    least ``minimum``, lists have ``least`` to ``most`` items; with ``unique`` they have none twice.
+    ``called``: what a text that does not match is not.
     """
 
     pattern: str = ""
     called: str = ""
     minimum: int | None = None
     least: int = 0
+    most: int | None = None
     unique: bool = False
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """What a message says in addition, where a value of the type is refused."""
+
+    text: str
 
 
 @dataclass(frozen=True)
@@ -73,6 +83,8 @@ UNCHECKED = Mark("unchecked")
 """``check`` compares the field with nothing, and lists it."""
 LEFT_OUT = Mark("left out")
 """The field is left out where it has its default."""
+LACKING = Mark("lacking")
+"""The field is always written, and files that earlier versions shipped lack it."""
 
 
 class Absent(Enum):
@@ -141,7 +153,7 @@ def write(value: object) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, StrEnum):
+    if isinstance(value, StrEnum | Fraction):
         return str(value)
     if is_dataclass(value) and not isinstance(value, type):
         return {
@@ -171,6 +183,7 @@ def _reader(kind: Any) -> Read:
         made = _unruled(bare(kind))
         for note in notes_of(kind):
             made = _ruled(made, note) if isinstance(note, Rule) else made
+            made = _helped(made, note) if isinstance(note, Remedy) else made
         _READERS[kind] = made
     return _READERS[kind]
 
@@ -178,10 +191,23 @@ def _reader(kind: Any) -> Read:
 _READERS: dict[Any, Read] = {}
 
 
+def _helped(inner: Read, remedy: Remedy) -> Read:
+    def make(content: object, where: str) -> Any:
+        try:
+            return inner(content, where)
+        except InputError as error:
+            raise InputError(f"{error}; {remedy.text}") from None
+
+    return make
+
+
 def _ruled(inner: Read, rule: Rule) -> Read:
     pattern = re.compile(rule.pattern)
 
     def make(content: object, where: str) -> Any:
+        if rule.most is not None and isinstance(content, list | dict) and len(content) > rule.most:
+            what = where.rpartition(", ")[2]
+            raise InputError(f"{where}: {len(content)} {what}, at most {rule.most} are read")
         found = inner(content, where)
         if isinstance(found, str) and len(found) < rule.least:
             raise InputError(f"{where}: the text is empty")
@@ -342,6 +368,7 @@ _SIMPLE: Mapping[Any, Read] = {
     int: _whole,
     float: _number,
     bool: _flag,
+    Fraction: rational,
     Any: lambda content, where: content,
 }
 

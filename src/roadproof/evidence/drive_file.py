@@ -6,27 +6,24 @@ without bound. Reading checks every field; whether the formula
 holds on the drive is for ``judged``.
 """
 
-from collections.abc import Mapping, Sized
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any
 
 from roadproof.errors import InputError
-from roadproof.evidence.strict import Fields, is_rational, rational, read_json, text
+from roadproof.evidence.answers import drive as kept
+from roadproof.evidence.codec import read, write
+from roadproof.evidence.strict import Fields, is_rational, rational, read_json
 from roadproof.library.scenarios import LANE
 from roadproof.world.drive import Course, Drive, Motion, Piece
-from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
-from roadproof.world.signals import KINDS, SIZES, STARTING
+from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.signals import SIZES, STARTING
 
 SCHEMA = "roadproof/drive/1"
 JERK_SCHEMA = "roadproof/drive/2"
 SCHEMAS_READ = (SCHEMA, JERK_SCHEMA)
-MOST = {"lanelets": 1000, "adjacent": 1000, "vehicles": 20, "pieces": 2000, "signals": 100, "values": 2000}
-_FIELDS = (
-    *("schema", "scenario", "set", "formula", "horizon", "lane", "lanes", "overlaps_allowed"),
-    *("parameters", "road", "vehicles", "signals", "verdict"),
-)
 _NUMBERS = (*SIZES, *STARTING)
 
 
@@ -49,64 +46,54 @@ class DriveFile:
     overlaps_allowed: bool = False
 
 
-def drive_data(file: DriveFile, verdict: Mapping[str, Any]) -> dict[str, Any]:
-    """The file as plain data, in the order in which a reader wants it."""
-    with_jerk = any(motion.has_jerk for motion in file.drive.vehicles.values())
-    schema = JERK_SCHEMA if with_jerk else SCHEMA
-    data: dict[str, Any] = {"schema": schema, "scenario": file.scenario, "set": file.set_name}
-    data |= {"formula": file.formula, "horizon": str(file.horizon), "lane": file.lanes.get(LANE)}
-    if set(file.lanes) - {LANE}:
-        data["lanes"] = dict(file.lanes)
-    if file.overlaps_allowed:
-        data["overlaps_allowed"] = True
+def drive_data(file: DriveFile, said: object) -> dict[str, Any]:
+    """The file as plain data, in the order in which a reader wants it; ``said``: what the judge said."""
+    has_jerk = any(motion.has_jerk for motion in file.drive.vehicles.values())
     values = {name: str(value) for name, value in file.values.items()}
-    data["parameters"] = values | dict(file.options)
-    data["road"] = road_data(file.road)
-    data["vehicles"] = {name: _motion_json(motion, with_jerk) for name, motion in file.drive.vehicles.items()}
-    if file.drive.own:
-        data["signals"] = [_course_json(*key, course) for key, course in file.drive.own.items()]
-    return data | {"verdict": dict(verdict)}
+    return write(
+        (kept.JerkDrive if has_jerk else kept.Drive)(
+            scenario=file.scenario,
+            set=file.set_name,
+            formula=file.formula,
+            horizon=file.horizon,
+            lane=file.lanes.get(LANE),
+            lanes=file.lanes if set(file.lanes) - {LANE} else None,
+            overlaps_allowed=file.overlaps_allowed,
+            parameters=values | dict(file.options),
+            road=road_said(file.road),
+            vehicles={name: _motion_said(x, has_jerk) for name, x in file.drive.vehicles.items()},
+            signals=tuple(_signal_said(*key, course) for key, course in file.drive.own.items()),
+            verdict=said,
+        )
+    )
 
 
-def road_data(road: Road) -> dict[str, Any]:
-    """A road as plain data, as drive files hold it."""
-    return {
-        "name": road.name,
-        "lanelets": [_lanelet_json(x) for x in road.lanelets],
-        "adjacent": sorted(sorted(pair) for pair in road.adjacent),
-    }
+def road_said(road: Road) -> kept.Road:
+    """A road as files hold it."""
+    lanelets = tuple(
+        kept.Lanelet(id=x.id, lane=x.lane, zone=x.zone, attribute=x.attribute, s=x.s, d=x.d)
+        for x in road.lanelets
+    )
+    beside = sorted(tuple(sorted(pair)) for pair in road.adjacent)
+    return kept.Road(name=road.name, lanelets=lanelets, adjacent=tuple((x, y) for x, y in beside))
 
 
-def _lanelet_json(lanelet: Lanelet) -> dict[str, Any]:
-    s = [None if bound is None else str(bound) for bound in lanelet.s]
-    return {
-        "id": lanelet.id,
-        "lane": lanelet.lane,
-        "zone": lanelet.zone,
-        "attribute": lanelet.attribute,
-        "s": s,
-        "d": [str(bound) for bound in lanelet.d],
-    }
+def _motion_said(motion: Motion, has_jerk: bool) -> Any:
+    starts = {name: getattr(motion, name) for name in _NUMBERS}
+    if has_jerk:
+        jerking = tuple(
+            kept.JerkPiece(duration=p.duration, a_lon=p.a_lon, a_lat=p.a_lat, j_lon=p.j_lon)
+            for p in motion.pieces
+        )
+        return kept.JerkMotion(kind=motion.kind, **starts, pieces=jerking)
+    pieces = tuple(kept.Piece(duration=p.duration, a_lon=p.a_lon, a_lat=p.a_lat) for p in motion.pieces)
+    return kept.Motion(kind=motion.kind, **starts, pieces=pieces)
 
 
-def _motion_json(motion: Motion, with_jerk: bool) -> dict[str, Any]:
-    pieces = [
-        {
-            "duration": None if p.duration is None else str(p.duration),
-            "a_lon": str(p.a_lon),
-            "a_lat": str(p.a_lat),
-            **({"j_lon": str(p.j_lon)} if with_jerk else {}),
-        }
-        for p in motion.pieces
-    ]
-    kind = {} if motion.kind is None else {"kind": motion.kind}
-    return kind | {str(name): str(getattr(motion, name)) for name in _NUMBERS} | {"pieces": pieces}
-
-
-def _course_json(name: str, vehicle: str, course: Course) -> dict[str, Any]:
-    """An own signal in SI units, 0 and 1 for false and true; ``vehicle`` null where it is of none."""
-    values = [{"from": str(start), "value": str(value)} for start, value in course]
-    return {"signal": name, "vehicle": vehicle or None, "values": values}
+def _signal_said(name: str, vehicle: str, course: Course) -> kept.Signal:
+    """An own signal in SI units, 0 and 1 for false and true."""
+    values = tuple(kept.CourseValue(start=start, value=value) for start, value in course)
+    return kept.Signal(signal=name, vehicle=vehicle or None, values=values)
 
 
 def load_drive(path: Path) -> DriveFile:
@@ -116,51 +103,37 @@ def load_drive(path: Path) -> DriveFile:
 
 def read_drive(content: object, where: str) -> DriveFile:
     """The inverse of ``drive_data``. Raises ``InputError``."""
-    data = Fields(content, where, _FIELDS)
-    schema = data.text("schema")
+    schema = Fields(content, where).text("schema")
     if schema not in SCHEMAS_READ:
         known = " or ".join(map(repr, SCHEMAS_READ))
         raise InputError(f"{where}: schema={schema!r}, but a drive file has {known}")
-    horizon = data.rational("horizon")
-    if horizon < 0:
-        raise InputError(f"{where}: horizon={horizon} is negative")
-    values: dict[str, Fraction] = {}
-    options: dict[str, str] = {}
-    for name, value in data.mapping("parameters").items():
-        if is_rational(value):
-            values[name] = rational(value, f"{where}, parameters.{name}")
-        else:
-            options[name] = text(value, f"{where}, parameters.{name}")
-    _few(data.mapping("vehicles"), "vehicles", where)
+    said: kept.AnyDrive = read(kept.JerkDrive if schema == JERK_SCHEMA else kept.Drive, content, where)
+    if said.horizon < 0:
+        raise InputError(f"{where}: horizon={said.horizon} is negative")
+    written = said.parameters
+    numbers = {n: rational(x, f"{where}, parameters.{n}") for n, x in written.items() if is_rational(x)}
     return DriveFile(
-        data.whole("scenario") if data.has("scenario") else None,
-        data.text("set"),
-        data.text("formula"),
-        horizon,
-        _lanes(data),
-        values,
-        options,
-        read_road(data.content.get("road"), f"{where}, road"),
-        _drive(data, where, schema == JERK_SCHEMA),
-        data.flag("overlaps_allowed") if "overlaps_allowed" in data.content else False,
+        said.scenario,
+        said.set,
+        said.formula,
+        said.horizon,
+        _lanes(said, where),
+        numbers,
+        {name: x for name, x in written.items() if name not in numbers},
+        road_of(said.road, f"{where}, road"),
+        _drive(said, where),
+        said.overlaps_allowed,
     )
 
 
-def _drive(data: Fields, where: str, with_jerk: bool) -> Drive:
-    vehicles = {
-        k: _motion(v, f"{where}, vehicle {k}", with_jerk) for k, v in data.mapping("vehicles").items()
-    }
+def _drive(said: kept.AnyDrive, where: str) -> Drive:
+    vehicles = {name: _motion(x, f"{where}, vehicle {name}") for name, x in said.vehicles.items()}
     own: dict[tuple[str, str], Course] = {}
-    entries = data.items("signals") if "signals" in data.content else []
-    _few(entries, "signals", where)
-    for k, entry in enumerate(entries):
-        course = Fields(entry, f"{where}, signal {k + 1}", ("signal", "vehicle", "values"))
-        key = course.text("signal"), course.text("vehicle") if course.has("vehicle") else ""
+    for k, course in enumerate(said.signals, 1):
+        key = course.signal, course.vehicle or ""
         if key in own:
-            raise InputError(f"{course.where}: {' of '.join(filter(None, key))} is given twice")
-        _few(course.items("values"), "values", course.where)
-        values = (Fields(v, f"{course.where}, value", ("from", "value")) for v in course.items("values"))
-        own[key] = tuple((v.rational("from"), v.rational("value")) for v in values)
+            raise InputError(f"{where}, signal {k}: {' of '.join(filter(None, key))} is given twice")
+        own[key] = tuple((x.start, x.value) for x in course.values)
     try:
         return Drive(vehicles, own)
     except ValueError as error:
@@ -177,37 +150,25 @@ def natural_of(content: object, where: str) -> bool | None:
     return said.flag("natural") if said.has("natural") else None
 
 
-def _few(items: Sized, what: str, where: str) -> None:
-    if len(items) > MOST[what]:
-        raise InputError(f"{where}: {len(items)} {what}, at most {MOST[what]} are read")
-
-
-def _lanes(data: Fields) -> dict[str, str]:
+def _lanes(said: kept.AnyDrive, where: str) -> dict[str, str]:
     """``lane`` is what L stands for; ``lanes`` is there where there are others, and says the same of L."""
-    lane = {LANE: data.text("lane")} if data.has("lane") else {}
-    if "lanes" not in data.content:
-        return lane
-    lanes = data.named_texts("lanes")
-    if lane.get(LANE) != lanes.get(LANE):
-        raise InputError(f"{data.where}: lane={lane.get(LANE)}, but lanes.{LANE}={lanes.get(LANE)}")
-    return lanes
+    if said.lanes is None:
+        return {} if said.lane is None else {LANE: said.lane}
+    if said.lane != said.lanes.get(LANE):
+        raise InputError(f"{where}: lane={said.lane}, but lanes.{LANE}={said.lanes.get(LANE)}")
+    return dict(said.lanes)
 
 
-def read_road(content: object, where: str) -> Road:
-    data = Fields(content, where, ("name", "lanelets", "adjacent"))
-    _few(data.items("lanelets"), "lanelets", where)
-    _few(data.items("adjacent"), "adjacent", where)
-    lanelets = tuple(_lanelet(x, f"{where}, lanelet {k + 1}") for k, x in enumerate(data.items("lanelets")))
+def road_of(said: kept.Road, where: str) -> Road:
+    """The inverse of ``road_said``. Raises ``InputError``."""
+    lanelets = tuple(_lanelet(x, f"{where}, lanelet {k}") for k, x in enumerate(said.lanelets, 1))
     ids = [lanelet.id for lanelet in lanelets]
     twice = next((name for k, name in enumerate(ids) if name in ids[:k]), None)
     if twice is not None:
         raise InputError(f"{where}: two lanelets are called '{twice}'")
     lanes = {lanelet.lane for lanelet in lanelets}
     adjacent: list[tuple[str, str]] = []
-    for pair in data.items("adjacent"):
-        if not isinstance(pair, list) or len(pair) != 2:
-            raise InputError(f"{where}: adjacent={str(pair)[:60]!r} is no pair of lanes")
-        one, other = (text(lane, f"{where}, adjacent") for lane in pair)
+    for one, other in said.adjacent:
         if one == other:
             raise InputError(f"{where}: adjacent=['{one}', '{other}']: no lane is beside itself")
         for lane in (one, other):
@@ -216,48 +177,23 @@ def read_road(content: object, where: str) -> Road:
         if (one, other) in adjacent or (other, one) in adjacent:
             raise InputError(f"{where}: adjacent=['{one}', '{other}'] is given twice")
         adjacent.append((one, other))
-    return Road(data.text("name"), lanelets, pairs(adjacent))
+    return Road(said.name, lanelets, pairs(adjacent))
 
 
-def _lanelet(content: object, where: str) -> Lanelet:
-    data = Fields(content, where, ("id", "lane", "zone", "attribute", "s", "d"))
-    zone, attribute = data.text("zone"), data.text("attribute")
-    if zone not in get_args(Zone) or attribute not in get_args(Attribute):
-        raise InputError(
-            f"{where}: zone={zone!r}, attribute={attribute!r} are none of docs/explanation/semantics.md §4"
-        )
-    s, d = data.items("s"), data.items("d")
-    if len(s) != 2 or len(d) != 2:
-        raise InputError(f"{where}: s and d are pairs")
-    bounds = tuple(None if bound is None else rational(bound, f"{where}, s") for bound in s)
-    right, left = (rational(bound, f"{where}, d") for bound in d)
-    if right >= left or (bounds[0] is not None and bounds[1] is not None and bounds[0] >= bounds[1]):
+def _lanelet(said: kept.Lanelet, where: str) -> Lanelet:
+    (begin, end), (right, left) = said.s, said.d
+    if right >= left or (begin is not None and end is not None and begin >= end):
         raise InputError(f"{where}: an empty lanelet")
-    return Lanelet(
-        data.text("id"),
-        data.text("lane"),
-        cast(Zone, zone),
-        cast(Attribute, attribute),
-        (bounds[0], bounds[1]),
-        (right, left),
-    )
+    return Lanelet(said.id, said.lane, said.zone, said.attribute, said.s, said.d)
 
 
-def _motion(content: object, where: str, with_jerk: bool) -> Motion:
-    data = Fields(content, where, (*_NUMBERS, "kind", "pieces"))
-    kind = next((x for x in KINDS if data.has("kind") and x == data.text("kind")), None)
-    if data.has("kind") and kind is None:
-        raise InputError(f"{where}: kind={data.text('kind')!r}, but kinds are {', '.join(KINDS)}")
-    _few(data.items("pieces"), "pieces", where)
-    fields = ("duration", "a_lon", "a_lat", *(("j_lon",) if with_jerk else ()))
-    pieces = []
-    for k, entry in enumerate(data.items("pieces")):
-        piece = Fields(entry, f"{where}, piece {k + 1}", fields)
-        duration = None if piece.get("duration") is None else piece.rational("duration")
-        jerk = piece.rational("j_lon") if with_jerk else Fraction(0)
-        pieces.append(Piece(duration, piece.rational("a_lon"), piece.rational("a_lat"), jerk))
-    numbers = {str(name): data.rational(name) for name in _NUMBERS}
+def _motion(said: kept.Motion, where: str) -> Motion:
+    pieces = [
+        Piece(x.duration, x.a_lon, x.a_lat, x.j_lon if isinstance(x, kept.JerkPiece) else Fraction(0))
+        for x in said.pieces
+    ]
+    numbers = {str(name): getattr(said, name) for name in _NUMBERS}
     try:
-        return Motion(**numbers, pieces=tuple(pieces), kind=kind)
+        return Motion(**numbers, pieces=tuple(pieces), kind=said.kind)
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None

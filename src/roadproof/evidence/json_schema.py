@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, is_dataclass
 from enum import StrEnum
+from fractions import Fraction
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
-from roadproof.evidence.codec import ABSENT, Doc, Field, Rule, bare, fields_of, notes_of
+from roadproof.evidence.codec import ABSENT, LACKING, Doc, Field, Rule, bare, fields_of, notes_of
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 COMMON = "common.json"
@@ -15,13 +16,16 @@ _NAMES: Mapping[Any, str] = {str: "string", int: "integer", float: "number", boo
 
 @dataclass(frozen=True)
 class Shared:
-    """The last note of a type that several answers share: its name among the definitions of common.json.
-
-    ``by_hand``: whether the definition there is written by hand.
-    """
+    """The last note of a type that several answers share: its name among the definitions of common.json."""
 
     name: str
-    by_hand: bool = False
+
+
+@dataclass(frozen=True)
+class Plain:
+    """A value that Python holds as plain JSON: the type that describes it."""
+
+    kind: Any
 
 
 @dataclass(frozen=True)
@@ -53,13 +57,36 @@ def schema_of(kind: type, record: type, name: str, title: str) -> dict[str, Any]
     return made
 
 
+def tagged_schema(kinds: tuple[type, ...], name: str, title: str) -> dict[str, Any]:
+    """The schema of a file of one of several kinds, of which ``schema`` says which."""
+    below = {_called(x.__name__): x for kind in kinds for x in _definitions(kind, set())}
+    words = [word for kind in kinds for word in get_args(fields_of(kind)[0].type)]
+    return {
+        "$schema": DRAFT,
+        "$id": name,
+        "title": title,
+        "properties": {"schema": {"enum": words}},
+        "oneOf": [_plain(kind) for kind in kinds],
+        "$defs": {called: _object(below[called]) for called in sorted(below)},
+    }
+
+
 def shared_schemas(kinds: Mapping[str, Any]) -> dict[str, Any]:
-    """The definitions of common.json, of types by name."""
-    return {name: _shared_schema(kind) for name, kind in sorted(kinds.items())}
+    """The definitions of common.json, of types by name, and those that they are made of."""
+    every = [x for kind in kinds.values() for x in _definitions(kind, set())]
+    shared = {_shape(kind) for kind in kinds.values() if is_dataclass(_shape(kind))}
+    below = {_called(x.__name__): _object(x) for x in every if x not in shared}
+    made = below | {name: _shared_schema(kind) for name, kind in kinds.items()}
+    return dict(sorted(made.items()))
+
+
+def _shape(kind: Any) -> Any:
+    """The type that describes a value, without its annotation."""
+    return next((bare(x.kind) for x in notes_of(kind) if isinstance(x, Plain)), bare(kind))
 
 
 def _shared_schema(kind: Any) -> dict[str, Any]:
-    inner = bare(kind)
+    inner = _shape(kind)
     if not (is_dataclass(inner) and isinstance(inner, type)):
         return _inline(kind, {})
     told = [x.text for x in notes_of(kind) if isinstance(x, Doc)]
@@ -68,7 +95,7 @@ def _shared_schema(kind: Any) -> dict[str, Any]:
 
 def _definitions(kind: Any, seen: set[Any]) -> Iterator[type]:
     """A definition and those below it, each once; shared ones are left out."""
-    inner = bare(kind)
+    inner = _shape(kind)
     if is_dataclass(inner) and isinstance(inner, type):
         if inner in seen:
             return
@@ -88,7 +115,7 @@ def _object(kind: type) -> dict[str, Any]:
     return {
         "type": "object",
         **_told(kind.__doc__ or ""),
-        "required": [x.key for x in every if x.is_written],
+        "required": [x.key for x in every if x.is_written and not x.has(LACKING)],
         "additionalProperties": False,
         "properties": {x.key: _of_field(x) for x in every},
     }
@@ -122,7 +149,7 @@ def _shared(notes: tuple[object, ...]) -> Shared | None:
 
 
 def _inline(kind: Any, made: dict[str, Any]) -> dict[str, Any]:
-    made |= _plain(bare(kind))
+    made |= _plain(_shape(kind))
     for note in notes_of(kind):
         match note:
             case Doc(text):
@@ -143,6 +170,7 @@ def _facets(rule: Rule, kind: object) -> dict[str, Any]:
     least = {"array": "minItems", "object": "minProperties"}.get(str(kind), "minLength")
     found: dict[str, Any] = {"pattern": rule.pattern} if rule.pattern else {}
     found |= {"minimum": rule.minimum} if rule.minimum is not None else {}
+    found |= {} if rule.most is None else {least.replace("min", "max"): rule.most}
     found |= {"uniqueItems": True} if rule.unique else {}
     return found | ({least: rule.least} if rule.least else {})
 
@@ -150,6 +178,8 @@ def _facets(rule: Rule, kind: object) -> dict[str, Any]:
 def _plain(kind: Any) -> dict[str, Any]:
     if kind in _NAMES:
         return {"type": _NAMES[kind]}
+    if kind is Fraction:
+        return {"$ref": f"{COMMON}#/$defs/rational"}
     if kind is Any:
         return {}
     if is_dataclass(kind) and isinstance(kind, type):

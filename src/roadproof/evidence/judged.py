@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers.drive import DriveSays, TrueTimes
+from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
@@ -13,7 +15,6 @@ from roadproof.library.query import Query
 from roadproof.library.specification import Library, Specification
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.replay import first_overlap
-from roadproof.verdict import Verdict
 
 _READ = "read of a file"
 
@@ -99,15 +100,17 @@ class JudgedDrive:
 
     def as_data(self) -> dict[str, Any]:
         """The drive file as plain data, with the verdict and with what is true when."""
-        verdict: dict[str, Any] = {"verdict": str(Verdict.WITNESSED), "view": "dense"}
-        if self.natural is not None:
-            verdict["natural"] = self.natural
-        return drive_data(self.file, verdict | {"times": times_data(self.judgement)})
+        return drive_data(self.file, DriveSays(natural=self.natural, times=times_said(self.judgement)))
 
 
-def times_data(judgement: Judgement) -> list[dict[str, str]]:
+def times_data(judgement: Judgement) -> list[dict[str, Any]]:
+    """As ``times_said``, as plain data."""
+    return [write(x) for x in times_said(judgement)]
+
+
+def times_said(judgement: Judgement) -> tuple[TrueTimes, ...]:
     """When each definition in the formula is true, as files tell it."""
-    return [
-        {"formula": f"{part.name}({', '.join(part.arguments)})", "true": str(truth)}
+    return tuple(
+        TrueTimes(formula=f"{part.name}({', '.join(part.arguments)})", true=str(truth))
         for part, truth in judgement.named()
-    ]
+    )

@@ -11,7 +11,9 @@ from functools import lru_cache
 from typing import Any, Literal, assert_never
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence.drive_file import road_data
+from roadproof.evidence.answers import trace as kept
+from roadproof.evidence.codec import write
+from roadproof.evidence.drive_file import road_said
 from roadproof.evidence.periodic import Loop, judge_periodic
 from roadproof.library.bind import bind
 from roadproof.logic import formula as f
@@ -27,6 +29,10 @@ from roadproof.world.road import Road
 from roadproof.world.signals import FIXED
 
 Held = Literal["before", "after"]
+_BETWEEN: Mapping[Held, kept.Between] = {
+    "before": "the state of the instant before",
+    "after": "the state of the instant after",
+}
 NOWHERE = Road("no road", (), frozenset())
 
 
@@ -210,25 +216,25 @@ def _sizes(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
 
 def trace_data(countermodel: Countermodel) -> dict[str, Any]:
     """A countermodel: its road, and what holds at each instant; how it repeats itself, where it does."""
-    loop = countermodel.loop
-    repeats = {} if loop is None else {"repeats": {"from": str(loop.start), "period": str(loop.period)}}
-    return {
-        "kind": "trace",
-        "between": f"the state of the instant {countermodel.held}",
-        "parameters": {name: str(value) for name, value in sorted(countermodel.parameters.items())},
-        "road": None if countermodel.road is None else road_data(countermodel.road),
-        **repeats,
-        "instants": [
-            {
-                "time": str(instant.time),
-                "true": sorted(name for name, true in instant.atoms.items() if true),
-                "values": _texts(instant.values),
-                **({} if instant.after is None else {"after": _texts(instant.after)}),
-            }
-            for instant in countermodel.instants
-        ],
-    }
+    road, loop = countermodel.road, countermodel.loop
+    return write(
+        kept.Trace(
+            between=_BETWEEN[countermodel.held],
+            parameters=_sorted(countermodel.parameters),
+            road=None if road is None else road_said(road),
+            repeats=None if loop is None else kept.Repeats(start=loop.start, period=loop.period),
+            instants=tuple(
+                kept.Instant(
+                    time=x.time,
+                    true=tuple(sorted(name for name, true in x.atoms.items() if true)),
+                    values=_sorted(x.values),
+                    after=None if x.after is None else _sorted(x.after),
+                )
+                for x in countermodel.instants
+            ),
+        )
+    )
 
 
-def _texts(values: Mapping[str, Fraction]) -> dict[str, str]:
-    return {name: str(value) for name, value in sorted(values.items())}
+def _sorted(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    return dict(sorted(values.items()))

@@ -12,6 +12,7 @@ from roadproof.evidence.answers import (
     classify,
     compare,
     coverage,
+    drive,
     drives,
     explore,
     library,
@@ -23,10 +24,11 @@ from roadproof.evidence.answers import (
     redundancy,
     shared,
     show,
+    trace,
     traffic,
 )
 from roadproof.evidence.codec import fields_of, notes_of
-from roadproof.evidence.json_schema import COMMON, Shared, schema_of, shared_schemas
+from roadproof.evidence.json_schema import COMMON, DRAFT, Shared, schema_of, shared_schemas, tagged_schema
 
 TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
@@ -63,6 +65,7 @@ TITLES: Mapping[type, str] = {
         "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
     ),
 }
+DRIVES = (drive.Drive, drive.JerkDrive)
 RECORDS: Mapping[type, type] = {
     catalogue_index.Index: catalogue_index.Record,
     classify.Index: classify.Record,
@@ -76,25 +79,33 @@ RECORDS: Mapping[type, type] = {
 
 def shared_types() -> dict[str, Any]:
     """The types that several answers share, by their name among the definitions of common.json."""
-    kinds = (x for module in (shared, overlap) for x in vars(module).values())
-    return {
-        note.name: x for x in kinds for note in notes_of(x) if isinstance(note, Shared) and not note.by_hand
-    }
+    kinds = (x for module in (shared, overlap, drive, trace) for x in vars(module).values())
+    return {note.name: x for x in kinds for note in notes_of(x) if isinstance(note, Shared)}
 
 
-def schemas(common: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The name and the content of each schema; ``common``: that of shared types, as it stands."""
+def schemas() -> Iterator[tuple[str, dict[str, Any]]]:
+    """The name and the content of each schema."""
     for kind, title in TITLES.items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
         name = f"{schema.split('/')[1]}.json"
         yield name, schema_of(kind, RECORDS.get(kind, kind), name, title)
-    definitions = {**common["$defs"], **shared_schemas(shared_types())}
-    yield COMMON, {**common, "$defs": definitions}
+    yield (
+        "drive.json",
+        tagged_schema(DRIVES, "drive.json", "A judged drive, with all that is needed to judge it again"),
+    )
+    yield (
+        COMMON,
+        {
+            "$schema": DRAFT,
+            "$id": COMMON,
+            "title": "What several kinds of answers share",
+            "$defs": shared_schemas(shared_types()),
+        },
+    )
 
 
 def main(folder: Path) -> None:
-    common = json.loads((folder / COMMON).read_text("utf-8"))
-    for name, content in schemas(common):
+    for name, content in schemas():
         (folder / name).write_text(as_text(content), "utf-8")
 
 

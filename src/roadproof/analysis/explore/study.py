@@ -28,7 +28,8 @@ from roadproof.analysis.study.pool import Say, in_order, work
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.answers.explore import SCHEMA
-from roadproof.evidence.drive_file import road_data
+from roadproof.evidence.codec import write
+from roadproof.evidence.drive_file import road_said
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
@@ -136,7 +137,7 @@ def _more(named: Mapping[str, Explorable], first: Explorable) -> dict[str, str]:
         "measures": [(x.sense, x.text, x.when) for x in first.measures],
         "steps": first.steps,
         "precision": str(first.precision),
-        "road": None if setting.road is None else road_data(setting.road),
+        "road": None if setting.road is None else write(road_said(setting.road)),
         "lanes": dict(setting.lanes),
         "vehicles": {name: repr(vehicle) for name, vehicle in setting.vehicles.items()},
         "grid": [str(x) for x in (setting.horizon, setting.dt, setting.reach)],

@@ -9,6 +9,8 @@ from fractions import Fraction
 from typing import Any
 
 from roadproof.engines.encode.unroll import Grid
+from roadproof.evidence.answers import shared
+from roadproof.evidence.codec import write
 from roadproof.world.vehicle import Range
 
 # Options of ``roadproof witness`` and others that search, and of ``roadproof prove``, that widen limits.
@@ -68,22 +70,23 @@ class Limits:
 
     def as_json(self) -> dict[str, Any]:
         """The limits as plain data; rationals as text."""
-        return {
-            "road": self.road,
-            "dt": str(self.grid.dt),
-            "horizon": str(self.grid.horizon),
-            "read": "at samples, the last for all later time",
-            "accelerations": "constant between samples, none after the last"
-            + (", no jerk" if self.jerk else ""),
-            "boxes": "on the road at samples" + ("" if self.collisions else ", apart at samples"),
-            "vehicles": dict(self.vehicles),
-            "lanes": dict(self.lanes),
-            "parameters": {name: str(value) for name, value in self.values.items()},
-            "reach": str(self.reach),
-            "starts": None if self.starts is None else [str(end) for end in self.starts],
-            "shown": list(self.shown),
-            **({"signals": dict(self.own)} if self.own else {}),
-        }
+        return write(
+            shared.Limits(
+                road=self.road,
+                dt=self.grid.dt,
+                horizon=self.grid.horizon,
+                read="at samples, the last for all later time",
+                accelerations=f"constant between samples, none after the last{', no jerk' * self.jerk}",
+                boxes="on the road at samples" + ("" if self.collisions else ", apart at samples"),
+                vehicles=self.vehicles,
+                lanes=self.lanes,
+                parameters=self.values,
+                reach=self.reach,
+                starts=self.starts,
+                shown=self.shown,
+                signals=self.own or None,
+            )
+        )
 
 
 def _listed(entries: Mapping[str, str]) -> str:

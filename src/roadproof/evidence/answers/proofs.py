@@ -12,7 +12,6 @@ from roadproof.evidence.answers.shared import (
     Heading,
     KeptKernel,
     KeptLimits,
-    KeptTrace,
     KernelWord,
     OneScenario,
     Options,
@@ -22,8 +21,9 @@ from roadproof.evidence.answers.shared import (
     Specifications,
 )
 from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.answers.trace import KeptCounterexample, KeptTrace
 from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule, read
-from roadproof.evidence.json_schema import File, Shared
+from roadproof.evidence.json_schema import File
 from roadproof.evidence.strict import Fields
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, under_limits
@@ -241,11 +241,7 @@ class ClaimAnswer:
     certificate: Annotated[
         str | None, Doc("File with the certificate; null without --out, and where there is none.")
     ]
-    counterexample: Annotated[
-        Any,
-        Doc("What refutes the claim, judged: a drive, or else a trace; null where nothing does."),
-        Shared("counterexample", by_hand=True),
-    ]
+    counterexample: KeptCounterexample
     kernel: Annotated[KernelSays | None, LEFT_OUT] = None
 
 

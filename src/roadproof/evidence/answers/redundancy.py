@@ -12,7 +12,6 @@ from roadproof.evidence.answers.shared import (
     Heading,
     KeptCertificate,
     KeptDrive,
-    KeptTrace,
     Number,
     Options,
     Parameters,
@@ -22,6 +21,7 @@ from roadproof.evidence.answers.shared import (
     Specifications,
 )
 from roadproof.evidence.answers.shared import Formula as FormulaText
+from roadproof.evidence.answers.trace import KeptTrace
 from roadproof.evidence.codec import UNCHECKED, Doc, Key, read
 from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, equivalence, implication, negation

@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Annotated, Any, Literal, TypeAlias
 
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
-from roadproof.evidence.json_schema import Other, Shared
+from roadproof.evidence.json_schema import Other, Plain, Shared
 from roadproof.library.words import Words
 
 Formula: TypeAlias = Annotated[
@@ -14,8 +15,19 @@ Formula: TypeAlias = Annotated[
 Number: TypeAlias = Annotated[int, Rule(minimum=0), Doc("Number of a scenario."), Shared("number")]
 Count: TypeAlias = Annotated[int, Rule(minimum=0)]
 SetName: TypeAlias = Annotated[str, Rule(least=1), Doc("Name of a spec set."), Shared("set")]
-KeptFile: TypeAlias = Annotated[Any, Shared("file", by_hand=True)]
-OneScenario: TypeAlias = Annotated[int | None, Shared("scenario", by_hand=True)]
+KeptFile: TypeAlias = Annotated[
+    Any,
+    Plain(str),
+    Rule(least=1),
+    Doc("Path of a file of evidence; in an index as it is from the index's folder."),
+    Shared("file"),
+]
+OneScenario: TypeAlias = Annotated[
+    int | None,
+    Rule(minimum=0),
+    Doc("Number of the scenario; null where the question is no scenario."),
+    Shared("scenario"),
+]
 Assuming: TypeAlias = Annotated[
     tuple[Formula, ...],
     Rule(least=1),
@@ -25,9 +37,7 @@ Assuming: TypeAlias = Annotated[
     ),
     Shared("assuming"),
 ]
-KeptLimits: TypeAlias = Annotated[Any, Shared("limits", by_hand=True)]
-
-KeptWords: TypeAlias = Annotated[Words, Shared("words", by_hand=True)]
+KeptWords: TypeAlias = Annotated[Words, Shared("words")]
 KernelWord: TypeAlias = Annotated[
     str, Rule(pattern=r"^(accepted|refused|unknown( \(lemma [0-9]+\))?)$"), Shared("kernel_word")
 ]
@@ -102,7 +112,40 @@ KeptDrive: TypeAlias = Annotated[
     Doc("A judged drive: its file where evidence goes to a folder, else itself; null where there is none."),
     Shared("kept_drive"),
 ]
-KeptTrace: TypeAlias = Annotated[Any, Shared("trace", by_hand=True)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """Within what a NONE-WITHIN or PROVED-BOUNDED says that there is no drive."""
+
+    road: Annotated[str, Doc("Name of the road.")]
+    dt: Annotated[Fraction, Doc("Time between samples, in s.")]
+    horizon: Annotated[Fraction, Doc("Time of the last sample, in s.")]
+    read: Annotated[str, Doc("Where the formula is read, in words.")]
+    accelerations: Annotated[str, Doc("How vehicles accelerate, in words.")]
+    boxes: Annotated[str, Doc("Where boxes of vehicles are, in words.")]
+    vehicles: Annotated[Mapping[str, str], Doc("Model by vehicle.")]
+    lanes: Annotated[Mapping[str, str], Doc("Free lanes that stand for one lane only.")]
+    parameters: Annotated[
+        Mapping[str, Fraction], Doc("Values of parameters by name, in SI units (s, m, m/s, m/s^2).")
+    ]
+    reach: Annotated[Fraction, Doc("How far apart vehicles start at most, in m.")]
+    starts: Annotated[
+        tuple[Fraction, Fraction] | None,
+        Doc("Between which places the first vehicle starts, in m; null where it makes no difference."),
+    ]
+    shown: Annotated[tuple[str, ...], Doc("Who says so of which part, in words.")]
+    signals: Annotated[
+        Mapping[str, str] | None,
+        LEFT_OUT,
+        Doc(
+            "Between which values own signals are looked for, constant between samples; left out where "
+            "there are none."
+        ),
+    ] = None
+
+
+KeptLimits: TypeAlias = Annotated[Any, Plain(Limits), Shared("limits")]
 Version: TypeAlias = Annotated[
     str,
     Rule(pattern=r"^[0-9]+\.[0-9]+"),
