@@ -462,7 +462,7 @@ VALUES = (
         ),
         (
             Figures("Danger in scenario 4 lasts up to {} m", "when danger(SV,POV): {} m on a judged drive"),
-            Figures("judged drive; at {} m there is none within 6 s", "{} m NONE-WITHIN ["),
+            Figures("judged drive; at {} m no drive exists within 6 s", "{} m NONE-WITHIN ["),
         ),
     ),
     Statement(
@@ -473,7 +473,7 @@ VALUES = (
     Statement(
         FINDINGS,
         ("roadproof explore 4 --vary rho=0:3 --reach 200",),
-        (Figures("within 200 m there are drives at all {} values up to 3 s", "at {} of 11 values\n"),),
+        (Figures("Within 200 m there are drives at all {} values up to 3 s", "at {} of 11 values\n"),),
     ),
 )
 
@@ -524,7 +524,7 @@ MEASURED = (
                 lambda x: tuple(r.us101_counts(x)["detectors"].values()),
             ),
             Figures(
-                "Of {} answers {} depend on what comes",
+                "Of {} answers {} depend on the continuation",
                 lambda x: (r.us101_counts(x)["asked"], r.us101_counts(x)["undecided"]),
             ),
             Figures(
