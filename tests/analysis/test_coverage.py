@@ -10,9 +10,9 @@ from asking import prove
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage import needed
 from roadproof.analysis.coverage.claims import (
+    PROOF,
     claims_of,
     missed,
-    prove_claim,
     replaced_in,
     sectors_of,
     sets_between,
@@ -91,7 +91,7 @@ def test_the_proof_fails_without_a_definition(name: str) -> None:
 def test_coverage_of_the_main_road_is_proved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main_road, *_, sectors = claims_of(COMPLETE)
     for number, claim in enumerate((main_road, sectors)):
-        covered = prove_claim(of_set("complete"), claim)
+        covered = of_set("complete").settle(claim, claim, PROOF, "coverage")
         assert covered.verdict is Verdict.PROVED
         assert covered.certificate is not None
         (tmp_path / f"{number}.json").write_text(to_json(covered.certificate), "utf-8")
@@ -153,7 +153,7 @@ def test_a_definition_is_shown_needed() -> None:
 
 def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = replace(of_set("complete"), effort=Effort(1.0, timeout=0.0001))
-    covered = prove_claim(basis, claims_of(COMPLETE)[0])
+    covered = basis.settle(claims_of(COMPLETE)[0], claims_of(COMPLETE)[0], PROOF, "coverage")
     assert covered.verdict is Verdict.UNKNOWN
     assert "cut off by the clock" in covered.reason
     monkeypatch.setattr(needed, "simple_drives", lambda *_: ())

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.basis import Basis
+from roadproof.analysis.basis import Basis, ProofResult
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.coverage.claims import CoverageResult, claims_of
+from roadproof.analysis.coverage.claims import claims_of
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic, verdict_on, with_counts
 from roadproof.errors import InputError
@@ -35,7 +35,7 @@ def test_what_is_proved_not_to_be_and_occurs_is_our_fault() -> None:
     broken = with_counts(ClassAnswer(FIRST, Verdict.IMPOSSIBLE), TRAFFIC)
     assert broken.verdict is Verdict.CROSSCHECK_FAILED
     assert verdict_on([], [broken], TRAFFIC) is Verdict.CROSSCHECK_FAILED
-    proved = [CoverageResult(claim, Verdict.PROVED, None, "") for claim in claims_of(BASIS.specification)]
+    proved = [ProofResult(claim, Verdict.PROVED) for claim in claims_of(BASIS.specification)]
     assert verdict_on(proved, [], None) is Verdict.COVERED
     assert verdict_on(proved, [], TRAFFIC) is Verdict.CROSSCHECK_FAILED
 

@@ -3,19 +3,39 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.engines.prove.driver_claims import prove_of_scenarios
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Objective, SearchOptions, Setting
+from roadproof.evidence.certificate import Certificate
 from roadproof.library.bind import values_with
 from roadproof.library.query import Query
 from roadproof.library.specification import Library, Specification
-from roadproof.runtime.budget import Effort
+from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
+
+Claim = TypeVar("Claim")
+
+
+@dataclass(frozen=True)
+class ProofResult(Generic[Claim]):
+    """The verdict on a claim: a certificate where it is proved, else a reason."""
+
+    claim: Claim
+    verdict: ProofVerdict
+    reason: str = ""
+    certificate: Certificate | None = None
+    seconds: float = 0.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether the claim is proved, be it because its premise never holds."""
+        return self.verdict in (Verdict.PROVED, Verdict.VACUOUS)
 
 
 @dataclass(frozen=True)
@@ -77,3 +97,12 @@ class Basis:
         """The verdict on a claim with ``units`` of work (None: ``proof``). Raises ``BudgetExceeded``."""
         effort = self.effort.of(self.proof if units is None else units)
         return prove_of_scenarios(self.specification, query, effort, label)
+
+    def settle(self, claim: Claim, query: Query, units: float, label: str) -> ProofResult[Claim]:
+        """The verdict on ``claim``, which ``query`` says; in doubt where the clock cuts the proof off."""
+        try:
+            result = self.proof_of(query, units, label)
+        except BudgetExceeded as late:
+            return ProofResult(claim, Verdict.UNKNOWN, str(late), seconds=late.seconds)
+        assert result.verdict is not Verdict.PROVED_BOUNDED
+        return ProofResult(claim, result.verdict, result.reason, result.certificate, result.seconds)

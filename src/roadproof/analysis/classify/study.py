@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
-from roadproof.analysis.basis import Basis
+from roadproof.analysis.basis import Basis, ProofResult
 from roadproof.analysis.classify.classes import Class, Classes
 from roadproof.analysis.classify.divide import Division
 from roadproof.analysis.classify.drives import Example, find_examples
@@ -16,31 +16,13 @@ from roadproof.analysis.study.evidence_store import INDEX, EvidenceStore, Questi
 from roadproof.errors import InputError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.answers.classify import SCHEMA, Doubt
-from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, head_of, read_kept
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import LARGEST_INDEX, read_json
-from roadproof.runtime.budget import BudgetExceeded
-from roadproof.verdict import ProofVerdict, Verdict
+from roadproof.verdict import Verdict
 
 CLAIMS_IN_A_PIECE = 8
 CLAIM = 4.0  # how much more work a claim is given than a drive
-
-
-@dataclass(frozen=True)
-class Decision:
-    """The verdict on a claim; a certificate where it is proved, else a reason."""
-
-    claim: ClassClaim
-    verdict: ProofVerdict
-    reason: str
-    certificate: Certificate | None = None
-    seconds: float = 0.0
-
-    @property
-    def holds(self) -> bool:
-        """Whether the claim is proved, be it because its premise never holds."""
-        return self.verdict in (Verdict.PROVED, Verdict.VACUOUS)
 
 
 @dataclass(frozen=True)
@@ -63,7 +45,7 @@ class ClassificationResult:
     """All answers together; ``doubts`` are about the division, ``shares`` None where none were counted."""
 
     examples: tuple[Example, ...]
-    decisions: tuple[Decision, ...]
+    decisions: tuple[ProofResult[ClassClaim], ...]
     doubts: tuple[Doubt, ...] = ()
     shares: Shares | None = None
 
@@ -97,7 +79,7 @@ class Classification:
         named: list[Class | ClassClaim] = [*self.classes.all(), *self.claims]
         return {x.name: x for x in named}
 
-    def pieces(self, known: Mapping[str, Example | Decision]) -> Sequence[Alike | ProofClaims]:
+    def pieces(self, known: Mapping[str, Example | ProofResult[ClassClaim]]) -> Sequence[Alike | ProofClaims]:
         """Classes in which the same happens are one piece: a drive of one may do for another."""
         pieces: list[Alike | ProofClaims] = []
         for alike in self.classes.alike():
@@ -110,32 +92,27 @@ class Classification:
             pieces.append(ProofClaims(tuple(claims[first : first + CLAIMS_IN_A_PIECE])))
         return pieces
 
-    def settle(self, piece: Alike | ProofClaims) -> dict[str, Example | Decision]:
+    def settle(self, piece: Alike | ProofClaims) -> dict[str, Example | ProofResult[ClassClaim]]:
         match piece:
             case Alike(classes, known):
                 return {x.one.name: x for x in find_examples(self.basis, classes, known)}
             case ProofClaims(claims):
-                return {claim.name: self._decide(claim) for claim in claims}
+                units = CLAIM * self.basis.effort.units
+                return {x.name: self.basis.settle(x, x.query, units, x.name) for x in claims}
 
-    def _decide(self, claim: ClassClaim) -> Decision:
-        try:
-            result = self.basis.proof_of(claim.query, CLAIM * self.basis.effort.units, claim.name)
-        except BudgetExceeded as late:
-            return Decision(claim, Verdict.UNKNOWN, str(late), seconds=late.seconds)
-        assert result.verdict is not Verdict.PROVED_BOUNDED
-        return Decision(claim, result.verdict, result.reason, result.certificate, result.seconds)
-
-    def doubt(self, piece: Alike | ProofClaims, reason: str) -> dict[str, Example | Decision]:
+    def doubt(self, piece: Alike | ProofClaims, reason: str) -> dict[str, Example | ProofResult[ClassClaim]]:
         match piece:
             case Alike(classes):
                 return {one.name: Example(one, Verdict.UNKNOWN, reason) for one in classes}
             case ProofClaims(claims):
-                return {claim.name: Decision(claim, Verdict.UNKNOWN, reason) for claim in claims}
+                return {claim.name: ProofResult(claim, Verdict.UNKNOWN, reason) for claim in claims}
 
-    def is_sure(self, answer: Example | Decision) -> bool:
+    def is_sure(self, answer: Example | ProofResult[ClassClaim]) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.PROVED, Verdict.VACUOUS)
 
-    def record(self, name: str, answer: Example | Decision, shelf: EvidenceStore) -> kept.Record:
+    def record(
+        self, name: str, answer: Example | ProofResult[ClassClaim], shelf: EvidenceStore
+    ) -> kept.Record:
         match answer:
             case Example(one, verdict, reason, drive):
                 kept_class = kept.KeptClass(
@@ -151,7 +128,7 @@ class Classification:
                     drive=shelf.drive(f"drives/{name}.json", drive),
                 )
                 return kept.Record(classes=(kept_class,), claims=())
-            case Decision(claim, verdict, reason, certificate, seconds):
+            case ProofResult(claim, verdict, reason, certificate, seconds):
                 kept_claim = kept.Claim(
                     name=name,
                     kind=claim.kind,
@@ -163,7 +140,9 @@ class Classification:
                 )
                 return kept.Record(classes=(), claims=(kept_claim,))
 
-    def recall(self, record: kept.Record, shelf: EvidenceStore) -> tuple[str, Example | Decision]:
+    def recall(
+        self, record: kept.Record, shelf: EvidenceStore
+    ) -> tuple[str, Example | ProofResult[ClassClaim]]:
         entries: list[kept.KeptClass | kept.Claim] = [*record.classes, *record.claims]
         if len(entries) != 1:
             raise InputError(f"{len(entries)} answers, where one was kept")
@@ -173,18 +152,18 @@ class Classification:
                 return entry.name, Example(one, entry.verdict, entry.reason, shelf.read_drive(entry.drive))
             case kept.Claim(), ClassClaim() as claim if entry.claim == claim.query.text:
                 certificate = shelf.read_certificate(entry.certificate)
-                return entry.name, Decision(claim, entry.verdict, entry.reason, certificate, entry.seconds)
+                return entry.name, ProofResult(claim, entry.verdict, entry.reason, certificate, entry.seconds)
             case _:
                 raise InputError(f"there is no class and no claim like this '{entry.name}'")
 
     def classified(
-        self, answers: Mapping[str, Example | Decision], shares: Shares | None = None
+        self, answers: Mapping[str, Example | ProofResult[ClassClaim]], shares: Shares | None = None
     ) -> ClassificationResult:
         """The answers in the order of the classes and of the claims."""
         found = [answers[name] for name in self._named]
         return ClassificationResult(
             tuple(x for x in found if isinstance(x, Example)),
-            tuple(x for x in found if isinstance(x, Decision)),
+            tuple(x for x in found if isinstance(x, ProofResult)),
             self.doubts,
             shares,
         )

@@ -5,11 +5,8 @@ scenario of the set holds at the start, for any lane and with the two vehicles i
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
-from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import zones_of
-from roadproof.evidence.certificate import Certificate
 from roadproof.library.compose import both, either, eventually, implication, in_some_lane, negation
 from roadproof.library.query import Query
 from roadproof.library.scenarios import (
@@ -30,21 +27,9 @@ from roadproof.library.scenarios import (
 from roadproof.library.specification import Library, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
-from roadproof.runtime.budget import BudgetExceeded
-from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
 
 PROOF = 60.0  # units of work for a claim of coverage
-
-
-@dataclass(frozen=True)
-class CoverageResult:
-    """The answer to one claim of coverage, with a certificate where it is proved."""
-
-    claim: Query
-    verdict: ProofVerdict
-    certificate: Certificate | None
-    reason: str
 
 
 def two_vehicle_numbers(specification: Specification) -> tuple[int, ...]:
@@ -89,16 +74,6 @@ def claims_of(specification: Specification) -> tuple[Query, ...]:
     somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in PAIR))
     some_sector = either(*(sector(specification, numbers[0], PAIR) for numbers in sectors))
     return (*claims, implication(somewhere, some_sector))
-
-
-def prove_claim(basis: Basis, claim: Query) -> CoverageResult:
-    """Try to prove one claim; in doubt where the clock cuts it off."""
-    try:
-        result = basis.proof_of(claim, PROOF, "coverage")
-    except BudgetExceeded as late:
-        return CoverageResult(claim, Verdict.UNKNOWN, None, str(late))
-    assert result.verdict is not Verdict.PROVED_BOUNDED
-    return CoverageResult(claim, result.verdict, result.certificate, result.reason)
 
 
 def starts(specification: Specification) -> tuple[Query, ...]:

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.coverage.needed import Need
 from roadproof.evidence.answers.coverage import MissedTrace, SetVerdict, Traffic
+from roadproof.library.query import Query
 from roadproof.verdict import Verdict
 
 
@@ -77,7 +78,7 @@ def with_counts(answer: ClassAnswer, traffic: GapTraffic) -> ClassAnswer:
 class Survey:
     """All answers together: claims that there is no gap, the classes of gaps, definitions that are needed."""
 
-    claims: tuple[CoverageResult, ...]
+    claims: tuple[ProofResult[Query], ...]
     classes: tuple[ClassAnswer, ...]
     needs: tuple[Need, ...]
     traffic: GapTraffic | None = None
@@ -87,13 +88,13 @@ class Survey:
         return verdict_on(self.claims, self.classes, self.traffic)
 
 
-def is_covered(claims: Sequence[CoverageResult]) -> bool:
+def is_covered(claims: Sequence[ProofResult[Query]]) -> bool:
     """Whether the set is proved to have no gap."""
     return all(claim.verdict is Verdict.PROVED for claim in claims)
 
 
 def verdict_on(
-    claims: Sequence[CoverageResult], classes: Sequence[ClassAnswer], traffic: GapTraffic | None
+    claims: Sequence[ProofResult[Query]], classes: Sequence[ClassAnswer], traffic: GapTraffic | None
 ) -> SetVerdict:
     """The verdict on a set: CROSSCHECK-FAILED where traffic shows what is proved not to be."""
     proved = is_covered(claims)

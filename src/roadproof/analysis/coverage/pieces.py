@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.coverage.answers import Answers
-from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.coverage.found import FoundGap
 from roadproof.analysis.coverage.needed import Need
 from roadproof.library.query import Query
@@ -47,7 +47,7 @@ class GapScan:
 
 
 Piece: TypeAlias = CoverageClaim | NeededDefinition | Chunk | Component
-Kept: TypeAlias = CoverageResult | Need | GapScan | Answers
+Kept: TypeAlias = ProofResult[Query] | Need | GapScan | Answers
 
 
 def name_of(piece: Piece) -> str:

@@ -100,12 +100,11 @@ class ClassGroup:
     def _is_redundant(self, part: Part) -> list[Query]:
         """That the scenario holds without the part only where it holds, a claim for each road sector."""
         return [
-            implication(x.without, applied(self.specification, self._scenario(x.scenario)))
+            implication(
+                x.without, applied(self.specification, Scenario(x.scenario, self.specification.set_name))
+            )
             for x, _ in self.classes.counterparts(part)
         ]
-
-    def _scenario(self, number: int) -> Scenario:
-        return Scenario(number, self.specification.set_name)
 
     def _no_gaps(self, part: Part) -> list[Query]:
         """That near misses of ``part`` are no gaps, in either role: claims for each road sector.

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, TypeGuard
 
+from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
-from roadproof.analysis.coverage.claims import CoverageResult, claims_of, prove_claim
+from roadproof.analysis.coverage.claims import PROOF, claims_of
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap, Trials, find_among_simple
 from roadproof.analysis.coverage.needed import Need, find_need, parent_of, replaced_by
@@ -31,6 +32,7 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
+from roadproof.library.query import Query
 from roadproof.verdict import Verdict
 
 CHUNKS = 7
@@ -93,9 +95,9 @@ class Coverage:
         lost = tuple(each.lost for each in looked if each.lost)
         return [Component(name, _concerning(self.groups[name], found), lost) for name in groups]
 
-    def _proved(self, known: Mapping[str, Kept]) -> tuple[CoverageResult, ...]:
+    def _proved(self, known: Mapping[str, Kept]) -> tuple[ProofResult[Query], ...]:
         answers = (known[name_of(claim)] for claim in self.claims)
-        return tuple(answer for answer in answers if isinstance(answer, CoverageResult))
+        return tuple(answer for answer in answers if isinstance(answer, ProofResult))
 
     def _replaced(self) -> tuple[str, ...]:
         return replaced_by(self.survey.basis.specification) if self.needed else ()
@@ -105,7 +107,7 @@ class Coverage:
         answer: Kept
         match piece:
             case CoverageClaim(_, query):
-                answer = prove_claim(basis, query)
+                answer = basis.settle(query, query, PROOF, "coverage")
             case NeededDefinition(name):
                 answer = find_need(basis, name)
             case Chunk(road, number):
@@ -121,7 +123,7 @@ class Coverage:
         answer: Kept
         match piece:
             case CoverageClaim(_, query):
-                answer = CoverageResult(query, Verdict.UNKNOWN, None, reason)
+                answer = ProofResult(query, Verdict.UNKNOWN, reason)
             case NeededDefinition(name):
                 answer = Need(name, parent_of(self.survey.basis.specification), Verdict.UNKNOWN)
             case Chunk():
@@ -136,7 +138,7 @@ class Coverage:
     def is_sure(self, answer: Kept) -> bool:
         """Gaps among the simple drives are no answer, and what has no evidence is quickly asked again."""
         match answer:
-            case CoverageResult():
+            case ProofResult():
                 return answer.certificate is not None
             case Need():
                 return answer.drive is not None
@@ -147,7 +149,7 @@ class Coverage:
 
     def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         match answer:
-            case CoverageResult(claim, verdict, certificate, reason):
+            case ProofResult(claim, verdict, reason, certificate):
                 file = shelf.certificate(f"{name}.json", certificate)
                 said = kept.Claim(claim=claim.text, verdict=verdict, certificate=file, reason=reason)
                 return kept.Record(claim=said)
@@ -182,7 +184,7 @@ class Coverage:
         for claim in self.claims:
             if claim.query.text == said.claim:
                 certificate = shelf.read_certificate(said.certificate)
-                return name_of(claim), CoverageResult(claim.query, said.verdict, certificate, said.reason)
+                return name_of(claim), ProofResult(claim.query, said.verdict, said.reason, certificate)
         raise InputError(f"coverage does not rest on this claim: {said.claim[:120]}")
 
     # --- all together ----------------------------------------------------------------------------

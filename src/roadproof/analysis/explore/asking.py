@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 from roadproof.analysis.explore.answer import Explorable
 from roadproof.analysis.explore.knobs import Variable
-from roadproof.analysis.explore.measure import Measure, Sense, read_measure
+from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Setting
 from roadproof.errors import UsageError
@@ -54,12 +54,8 @@ def ask_for(
         tuple(knobs),
         read_steps(steps, len(knobs)),
         read_precision(precision),
-        tuple(_measure(search, sense, term, when) for sense, term in measures),
+        tuple(read_measure(specification, sense, term, when, query.claim.given) for sense, term in measures),
     )
-
-
-def _measure(search: Search, sense: Sense, term: str, when: str) -> Measure:
-    return read_measure(search.specification, sense, term, when, search.query.claim.given)
 
 
 def read_knobs(vary: Sequence[Varied], setting: Setting, query: Query, library: Library) -> list[Variable]:

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
+from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.catalogue.completing import PriorResults, complete
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete
@@ -18,7 +19,6 @@ from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.tested import SCENARIOS, Targets, all_facts, kind_of
 from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
-from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.models import MODELS
 from roadproof.engines.search.question import Objective
@@ -116,7 +116,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
     def evidence(self) -> tuple[Evidence, ...]:
         found = [y for x in all_facts(self.found.answers) for y in (x.certificate, x.drive)]
         claims = gap_answers(self.found.answers).values() if self.tested.gaps.asked else ()
-        found += [x.certificate for x in claims if isinstance(x, CoverageResult)]
+        found += [x.certificate for x in claims if isinstance(x, ProofResult)]
         for answer in self.result.gap_answers.values():
             found += [] if answer is None else [answer.certificate, *(gap.drive for gap in answer.gaps)]
         return tuple(x for x in found if x is not None)

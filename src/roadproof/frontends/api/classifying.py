@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
+from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import Example
@@ -14,11 +15,10 @@ from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import (
     Classification,
     ClassificationResult,
-    Decision,
     classification_of,
     make_room,
 )
-from roadproof.analysis.classify.text import claims_text
+from roadproof.analysis.classify.text import ClassClaim, claims_text
 from roadproof.analysis.study.frame import StudyResult
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.evidence.answers import classify as kept
@@ -45,7 +45,7 @@ SECONDS, SEED = 600.0, 1
 
 
 @dataclass(frozen=True, repr=False)
-class Classifications(StudyAnswers[Classification, Example | Decision, kept.Record]):
+class Classifications(StudyAnswers[Classification, Example | ProofResult[ClassClaim], kept.Record]):
     """Classes with a drive for each, and proofs that they are a division; ``shares`` in recordings."""
 
     shares: Shares | None = None
@@ -114,7 +114,9 @@ class Classifications(StudyAnswers[Classification, Example | Decision, kept.Reco
         drawn = report.draw_classes(self.classified.examples, self.shares, title, self.words)
         yield "classes", picture(drawn)
 
-    def _write_index(self, folder: Path, found: StudyResult[Example | Decision, kept.Record]) -> None:
+    def _write_index(
+        self, folder: Path, found: StudyResult[Example | ProofResult[ClassClaim], kept.Record]
+    ) -> None:
         write_whole(folder / CLAIMS_FILE, self.files(False)[CLAIMS_FILE])
         super()._write_index(folder, found)
 

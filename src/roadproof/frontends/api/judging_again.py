@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, get_args
 
+from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.examination import Examination, examine
 from roadproof.analysis.catalogue.fact import Fact, read_fact
@@ -14,7 +15,6 @@ from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import Freedom, all_shown_by
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.coverage.answers import ClassAnswer, names_of
-from roadproof.analysis.coverage.claims import CoverageResult
 from roadproof.analysis.coverage.pieces import name_of
 from roadproof.analysis.explore.measure import Sense
 from roadproof.analysis.study.evidence_store import EvidenceStore, inside
@@ -124,7 +124,7 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
         if said.claim not in claims:
             raise InputError(f"{where}: coverage does not rest on this claim")
         claim = claims[said.claim]
-        answer = CoverageResult(claim.query, said.verdict, None, said.reason)
+        answer = ProofResult(claim.query, said.verdict, said.reason)
         yield GAPS + name_of(claim), AboutGaps(answer)
     parts = (
         {}
