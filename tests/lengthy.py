@@ -65,7 +65,7 @@ LENGTHY = (
     "tests/cli/test_book.py::test_page[book-proving",
     "tests/cli/test_book.py::test_page[book-recordings",
     "tests/cli/test_book.py::test_page[catalogue-README",
-    "tests/cli/test_book.py::test_page[how-to-interop",
+    "tests/cli/test_book.py::test_page[how-to-",
     "tests/cli/test_book.py::test_page[reference-language",
     "tests/cli/test_book.py::test_page[motion-README",
     "tests/cli/test_book.py::test_page[preventable-README]",

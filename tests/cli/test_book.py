@@ -13,6 +13,7 @@ LONG = ("roadproof overlap --among 1-8", "roadproof classify --among 1-8")
 """Questions of the README that ``make findings`` asks; shorter ones of these commands are in the book."""
 EXAMPLES = sorted(ROOT.glob("examples/*/README.md"))
 TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
+GUIDES = ("interop", "signals", "rss", "roads", "solvers")
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
     *sorted(ROOT.joinpath("tests/attacks").glob("*.md")),
@@ -21,7 +22,7 @@ PAGES = [
     ROOT / "docs/index.md",
     *(ROOT / "docs/tutorials" / f"{name}.md" for name in TUTORIALS),
     ROOT / "docs/reference/language.md",
-    ROOT / "docs/how-to/interop.md",
+    *(ROOT / "docs/how-to" / f"{name}.md" for name in GUIDES),
     ROOT / "docs/explanation/motion.md",
 ]
 

@@ -41,6 +41,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Name files outside docs/ instead of linking to them, and give blocks of files their titles."""
     here = Path(config.docs_dir, page.file.src_uri).parent
+    if here.name == "adr":
+        page.meta["search"] = {"boost": 0.2}  # guides come before decision records
 
     def outside(link: re.Match[str]) -> str:
         label, target = link[1], link[2]
