@@ -1,0 +1,206 @@
+"""Options that several questions share, in groups which they inherit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from roadproof.frontends.settings.option import Settings, option
+from roadproof.frontends.settings.readers import decimal, named, seconds, whole
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from roadproof.analysis.study.pool import Progress, Say
+    from roadproof.engines.search.question import Engine
+    from roadproof.frontends.settings.value_types import RoadLike, Vehicles
+    from roadproof.library.values import Number
+    from roadproof.runtime.executors import Jobs
+
+def effort_for(what: str, units: float) -> Any:
+    """``effort`` of a question that gives so many units of work to each ``what``."""
+    text = f"units of work for {what}, each about a second of a solver; counted, so the answer is the same "
+    text += f"on every machine (default: {units:g})"
+    return option(units, "--effort", "N", help=text, group="effort", read=decimal("--effort"))
+
+
+def folder_for(what: str) -> Any:
+    """``out`` of a question that writes ``what``."""
+    return option(None, "--out", "DIR", help=f"write {what}", group="output", read=Path)
+
+
+def pictures_of(what: str = "pictures") -> Any:
+    """``pictures`` of a question that draws ``what``."""
+    return option(True, "--no-pictures", help=f"with --out: no {what}", group="output")
+
+
+def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
+    """A driver model that restricts ``what`` to those whose first collision it prevents, or cannot."""
+    text = f"only {what} that begin with a manoeuvre whose collision a driver (careful) {does}"
+    return option(None, f"--{side}", "MODEL", help=text)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Models(Settings):
+    """Vehicle models."""
+
+    vehicles: Vehicles = option(
+        None,
+        "--vehicle",
+        "[NAME=]MODEL",
+        help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
+        group="search",
+        read=named(""),
+        gather=dict,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchPlace(Models):
+    """Where, with whom and for how long drives are looked for."""
+
+    road: RoadLike | None = option(
+        None,
+        "--road",
+        "R",
+        help="a reference road, or a .toml or .xodr file (default: by the formula)",
+        group="search",
+    )
+    lanes: Mapping[str, str] | None = option(
+        None,
+        "--lane",
+        "[L=]LANE",
+        help="the lane that L stands for (default: any that works, from the right)",
+        group="search",
+        read=named("L"),
+        gather=dict,
+    )
+    horizon: Number = option(
+        Fraction(6),
+        "--horizon",
+        "S",
+        help="seconds that are searched (default: 6)",
+        group="search",
+        read=seconds("--horizon"),
+    )
+    dt: Number | None = option(
+        None,
+        "--dt",
+        "S",
+        help="seconds between samples (default: the coarsest that fits, at most 3/5)",
+        group="search",
+        read=seconds("--dt"),
+    )
+    reach: Number = option(
+        Fraction(80),
+        "--reach",
+        "M",
+        help="how far apart vehicles may start (default: 80)",
+        group="search",
+        read=seconds("--reach"),
+    )
+    collisions: bool = option(False, "--allow-collisions", help="boxes may overlap", group="search")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solver(Settings):
+    """By whom drives are looked for."""
+
+    engine: Engine = option(
+        "milp", "--engine", help="default: milp", group="search", choices=("milp", "smt")
+    )
+    solver: str = option(
+        "highs", "--solver", help="a mixed-integer solver for milp (default: highs)", group="search"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Budget(Settings):
+    """How much work, and when the clock ends it."""
+
+    effort: float = effort_for("a question", 60.0)
+    timeout: float | None = option(
+        None,
+        "--timeout",
+        "S",
+        help="seconds after which the clock cuts one search off, whatever work is left; the answer then says "
+        "so (default: 60 a unit of work, at least 600)",
+        group="effort",
+        read=decimal("--timeout"),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Workers(Settings):
+    """How many processes do the work."""
+
+    jobs: Jobs = option(
+        None, "--jobs", "N", help="processes (default: one a core)", group="work", read=whole("--jobs", 1)
+    )
+    quiet: bool = option(
+        False, "--quiet", help="no word about how far it is", group="output", keyword=False
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sharing(Workers):
+    """Several runs, or a cluster, that do the work; from Python ``jobs`` says this."""
+
+    shard: str | None = option(
+        None,
+        "--shard",
+        "K/N",
+        help="the K-th of N shares, of runs that share --out; when all are done, ask once more without",
+        group="work",
+        keyword=False,
+    )
+    cluster: str | None = option(
+        None,
+        "--cluster",
+        "SCHEDULER|local:N",
+        help="work on a cluster of dask, such as tcp://host:8786; or on one of N processes here",
+        group="work",
+        keyword=False,
+    )
+    tls_ca: str | None = option(
+        None,
+        "--tls-ca",
+        "FILE",
+        help="authority, for a cluster that is spoken to with TLS",
+        group="work",
+        keyword=False,
+    )
+    tls_cert: str | None = option(
+        None,
+        "--tls-cert",
+        "FILE",
+        help="our certificate, for a cluster that is spoken to with TLS",
+        group="work",
+        keyword=False,
+    )
+    tls_key: str | None = option(
+        None,
+        "--tls-key",
+        "FILE",
+        help="its key, for a cluster that is spoken to with TLS",
+        group="work",
+        keyword=False,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listeners(Settings):
+    """Who is told how far the work is, and of kept answers that do not count."""
+
+    progress: Progress | None = option(None)
+    say: Say | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prevention(Settings):
+    """Driver models that restrict the question."""
+
+    preventable: str | None = driver_model("preventable", "prevents")
+    unpreventable: str | None = driver_model("unpreventable", "cannot prevent")

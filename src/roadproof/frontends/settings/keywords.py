@@ -1,0 +1,53 @@
+"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypedDict
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from roadproof.analysis.study.pool import Progress, Say
+    from roadproof.engines.search.question import Engine, Objective
+    from roadproof.frontends.settings.value_types import RoadLike, Vehicles
+    from roadproof.library.values import Number
+    from roadproof.runtime.executors import Jobs
+
+
+class CompareKeywords(TypedDict, total=False):
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    engine: Engine
+    solver: str
+    vehicles: Vehicles
+    road: RoadLike | None
+    lanes: Mapping[str, str] | None
+    horizon: Number
+    dt: Number | None
+    reach: Number
+    collisions: bool
+
+
+class WitnessKeywords(TypedDict, total=False):
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    preventable: str | None
+    unpreventable: str | None
+    engine: Engine
+    solver: str
+    vehicles: Vehicles
+    road: RoadLike | None
+    lanes: Mapping[str, str] | None
+    horizon: Number
+    dt: Number | None
+    reach: Number
+    collisions: bool
+    objective: Objective
+    count: int
+    out: str | Path | None
+    pictures: bool

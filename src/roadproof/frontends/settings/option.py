@@ -1,0 +1,71 @@
+"""What a field of a settings class says of its option: flag, help, group, reader."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, Self, TypeAlias
+
+from roadproof.errors import UsageError
+
+Group: TypeAlias = Literal["question", "search", "effort", "work", "output"]
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option. Without ``flag`` it exists in Python only, without ``keyword`` on the command line only."""
+
+    flag: str | None
+    help: str
+    metavar: str | None
+    group: Group
+    read: Callable[[str], object] | None
+    """Makes the value out of the text behind the flag."""
+    gather: Callable[[list[Any]], object] | None
+    """The flag may be repeated, and this makes the value out of what was read."""
+    choices: tuple[str, ...] | None
+    least: int | None
+    keyword: bool
+
+    def check(self, name: str, value: object) -> None:
+        """Raises ``UsageError`` where a Python caller gives a value that is not allowed."""
+        if self.choices is not None and value not in self.choices:
+            raise UsageError(f"{name}={value!r}: write {' or '.join(map(repr, self.choices))}")
+        if self.least is not None and isinstance(value, int) and value < self.least:
+            raise UsageError(f"{name}={value}: write a whole number greater than {self.least - 1}")
+
+
+def option(
+    default: object,
+    flag: str | None = None,
+    metavar: str | None = None,
+    *,
+    help: str = "",  # noqa: A002  (as argparse calls it)
+    group: Group = "question",
+    read: Callable[[str], object] | None = None,
+    gather: Callable[[list[Any]], object] | None = None,
+    **more: Any,
+) -> Any:
+    """A field of a settings class; ``more``: ``choices``, ``least`` or ``keyword`` of its ``Option``."""
+    rules = {"choices": None, "least": None, "keyword": True, **more}
+    found = Option(flag, help, metavar, group, read, gather, **rules)
+    return dataclasses.field(default=default, metadata={"option": found})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """The options of a question. Each subclass is frozen, and each of its fields is made by ``option``."""
+
+    @classmethod
+    def options(cls) -> dict[str, Option]:
+        """The options by the names of the fields."""
+        return {x.name: x.metadata["option"] for x in dataclasses.fields(cls)}
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> Self:
+        """The settings that keyword arguments give. Raises ``TypeError``, ``UsageError``."""
+        known = cls.options()
+        for name, value in given.items():
+            if name not in known or not known[name].keyword:
+                raise TypeError(f"{cls.__name__.lower()}() got an unexpected keyword argument {name!r}")
+            known[name].check(name, value)
+        return cls(**given)

@@ -1,0 +1,66 @@
+"""Readers of the texts behind flags; each raises ``UsageError`` by the name of its option."""
+
+import re
+from collections.abc import Callable
+from fractions import Fraction
+
+from roadproof.errors import UsageError
+
+_DECIMAL = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?")
+_WHOLE = re.compile(r"[0-9]{1,20}")
+MOST = 1_000_000
+LARGEST_SEED = 2**64 - 1
+
+
+def decimal(option: str) -> Callable[[str], float]:
+    """A reader of numbers greater than 0."""
+
+    def read(text: str) -> float:
+        value = float(text) if _DECIMAL.fullmatch(text) else 0.0
+        if not 0 < value <= MOST:
+            raise UsageError(
+                f"{option} {text[:40]}: write a decimal number greater than 0 and at most {MOST}, such as 20"
+            )
+        return value
+
+    return read
+
+
+def whole(option: str, least: int, most: int = MOST) -> Callable[[str], int]:
+    """A reader of whole numbers from ``least`` to ``most``."""
+
+    def read(text: str) -> int:
+        value = int(text) if _WHOLE.fullmatch(text) else least - 1
+        if not least <= value <= most:
+            rule = "greater than 0" if least == 1 else f"not below {least}"
+            raise UsageError(f"{option} {text[:40]}: write a whole number {rule} and at most {most}")
+        return value
+
+    return read
+
+
+def seconds(option: str) -> Callable[[str], Fraction]:
+    """A reader of numbers greater than 0, such as 6, 0.6 or 3/5."""
+    return lambda text: read_seconds(option, text)
+
+
+def read_seconds(option: str, text: str, or_zero: bool = False) -> Fraction:
+    """A time in seconds, greater than 0 (or 0 too). Raises ``UsageError``."""
+    try:
+        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
+    except (ValueError, ZeroDivisionError):
+        value = None
+    if value is None or value < 0 or (value == 0 and not or_zero):
+        least = "seconds, 0 or more" if or_zero else "a number greater than 0"
+        raise UsageError(f"{option} {text[:40]}: write {least}, such as 6, 0.6 or 3/5")
+    return value
+
+
+def named(usual: str) -> Callable[[str], tuple[str, str]]:
+    """A reader of ``NAME=VALUE`` as a pair; the name is ``usual`` where none is given."""
+
+    def read(text: str) -> tuple[str, str]:
+        name, equals, value = text.rpartition("=")
+        return (name if equals else usual), value
+
+    return read

@@ -1,0 +1,13 @@
+"""Types of values that Python callers may give for an option."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TypeAlias
+
+from roadproof.world.road import Road
+from roadproof.world.vehicle import Vehicle
+
+RoadLike: TypeAlias = Road | str | Path
+VehicleLike: TypeAlias = Vehicle | str | Path
+Vehicles: TypeAlias = VehicleLike | Mapping[str, VehicleLike] | None
+"""A model for all vehicles, or models by name."""
