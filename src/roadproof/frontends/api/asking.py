@@ -13,8 +13,9 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import Vehicles, basis_of
+from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.frontends.settings.value_types import Vehicles
 from roadproof.library.scenarios import numbers_of
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import Verdict

@@ -31,11 +31,12 @@ from roadproof.frontends.api.completing import CompletionAnswer, write_completio
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import drivers_of, restricted
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import Vehicles, basis_of, one_of
+from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report import catalogue_drivers as decisions
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
+from roadproof.frontends.settings.value_types import Vehicles
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict

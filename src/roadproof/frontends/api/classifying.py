@@ -27,9 +27,10 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import Vehicles, basis_of
+from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import classify as report
+from roadproof.frontends.settings.value_types import Vehicles
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
 from roadproof.recordings.formats.recording import Recording

@@ -1,16 +1,16 @@
 """Two formulas side by side."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from roadproof.analysis.study.evidence_store import keep_specifications, specification_names
 from roadproof.analysis.study.pool import count_workers
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.compare import DIRECTIONS, Comparison, Direction
 from roadproof.engines.search.compare import compare as compare_queries
-from roadproof.engines.search.question import Engine, SearchOptions
+from roadproof.engines.search.question import SearchOptions
 from roadproof.engines.solve.milp import prepare
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import compare as kept
@@ -22,12 +22,14 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Answer, Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import RoadLike, Vehicles, one_of, setting, work_of
+from roadproof.frontends.api.settings import setting, work_of
 from roadproof.frontends.report.compare import as_text as compare_text
 from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.settings.keywords import CompareKeywords
+from roadproof.frontends.settings.questions import Compare
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.compose import taken_from
 from roadproof.library.specification import Library, Specification
-from roadproof.library.values import Number
 from roadproof.runtime.files import make_folder, write_json, write_whole
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ExitCode, Verdict
@@ -103,24 +105,15 @@ class ComparisonAnswer(Answer):
         return compare_text(self.comparison, self.specification)
 
 
+@takes(Compare)
 def compare(
     first: What,
     second: What,
     using: Definitions | None = None,
-    road: RoadLike | None = None,
-    lanes: Mapping[str, str] | None = None,
-    vehicles: Vehicles = None,
-    horizon: Number = 6,
-    dt: Number | None = None,
-    reach: Number = 80,
-    collisions: bool = False,
-    engine: Engine = "milp",
-    solver: str = "highs",
-    effort: float = 60.0,
-    timeout: float | None = None,
-    jobs: int | None = None,
+    *,
     each: Callable[[str, Direction], object] | None = None,
     stage: Listener | None = None,
+    **options: Unpack[CompareKeywords],
 ) -> ComparisonAnswer:
     """Which of two formulas implies the other.
 
@@ -130,20 +123,20 @@ def compare(
     all. Where ``using`` has two spec sets, the second formula is of the second one. Drives that tell the two
     apart are looked for as by ``witness``. Raises as that does.
     """
-    one_of("engine", engine, Engine)
+    given = Compare.of(options)
     home = using or load()
     if len(home.sets) > 2:
         raise UsageError(f"{len(home.sets)} spec sets are given: two formulas have at most two")
     other = home.sets[-1]
     query = replace(home, specification=home.specification.in_set(other)).read(second)
-    place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
+    work = work_of(given.effort, given.timeout)
     search = Search(
         home.specification,
         home.read(first),
-        place,
-        SearchOptions(engine=engine, solver=solver, effort=work_of(effort, timeout)),
+        setting(home, given),
+        SearchOptions(engine=given.engine, solver=given.solver, effort=work),
     )
-    processes = count_workers(DIRECTIONS, jobs)
+    processes = count_workers(DIRECTIONS, given.jobs)
     if processes > 1:
         prepare()
     against = taken_from(home.specification, query, other)

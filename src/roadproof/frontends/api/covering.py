@@ -25,9 +25,10 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import RoadLike, Vehicles, as_road, basis_of
+from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import coverage as report
+from roadproof.frontends.settings.value_types import RoadLike, Vehicles
 from roadproof.library.words import Called, called
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_if_any

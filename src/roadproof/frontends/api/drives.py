@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.frame import StudyResult, put_away
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.analysis.witnesses import WitnessStudy, evidence_files, stems
 from roadproof.engines.search.ask import Outcome, Search
-from roadproof.engines.search.question import Engine, Objective, SearchOptions
+from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import Answer
@@ -24,12 +24,14 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import RoadLike, Vehicles, one_of, searches_of, setting, work_of
+from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.witness import as_line, files_of, kinds
+from roadproof.frontends.settings.keywords import WitnessKeywords
+from roadproof.frontends.settings.questions import Witness
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import Library
-from roadproof.library.values import Number
 from roadproof.library.words import words_of
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
@@ -148,30 +150,12 @@ def _core_of(outcome: Outcome) -> str:
     return "" if outcome.impossibility is None else f"core: {'; '.join(outcome.impossibility.told)}"
 
 
+@takes(Witness)
 def witness(
     *what: What,
     using: Definitions | None = None,
-    road: RoadLike | None = None,
-    lanes: Mapping[str, str] | None = None,
-    vehicles: Vehicles = None,
-    horizon: Number = 6,
-    dt: Number | None = None,
-    reach: Number = 80,
-    collisions: bool = False,
-    objective: Objective = "smooth",
-    engine: Engine = "milp",
-    solver: str = "highs",
-    count: int = 1,
-    preventable: str | None = None,
-    unpreventable: str | None = None,
-    effort: float = 60.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    pictures: bool = True,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
     stage: Listener | None = None,
+    **options: Unpack[WitnessKeywords],
 ) -> Witnesses:
     """Find a drive for each of some scenarios or formulas, in each spec set; without any, for all scenarios.
 
@@ -187,16 +171,18 @@ def witness(
     >>> witness(4, jobs=1).verdict
     <Verdict.WITNESSED: 'WITNESSED'>
     """
-    one_of("engine", engine, Engine)
-    one_of("objective", objective, Objective)
-    if count < 1:
-        raise UsageError(f"count={count}: write a whole number greater than 0")
-    home = restricted(using or load(), preventable, unpreventable, what=what)
-    place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
-    search_options = SearchOptions(objective, engine, solver, work_of(effort, timeout))
-    searches = list(searches_of(home, what, place, search_options, count))
+    given = Witness.of(options)
+    searches = searches_for(what, using or load(), given)
     with listening(stage):
-        return witness_all(searches, out, pictures, jobs, progress, say)
+        return witness_all(searches, given.out, given.pictures, given.jobs, given.progress, given.say)
+
+
+def searches_for(what: Sequence[What], using: Definitions, given: Witness) -> list[Search]:
+    """The searches that ``witness`` makes. Raises as that does."""
+    home = restricted(using, given.preventable, given.unpreventable, what=what)
+    work = work_of(given.effort, given.timeout)
+    search_options = SearchOptions(given.objective, given.engine, given.solver, work)
+    return list(searches_of(home, what, setting(home, given), search_options, given.count))
 
 
 def witness_all(

@@ -7,7 +7,8 @@ from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.frontends.api.definitions import Definitions, What, load
-from roadproof.frontends.api.settings import RoadLike, as_road, positive
+from roadproof.frontends.api.settings import as_road, positive
+from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import values_with
 from roadproof.library.values import Number, exact
 from roadproof.world.drive import Drive, Motion

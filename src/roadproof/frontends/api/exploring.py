@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Unpack
 
 from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, say_nothing
 from roadproof.analysis.explore.asking import ask_for
@@ -10,7 +11,7 @@ from roadproof.analysis.explore.measure import Sense
 from roadproof.analysis.explore.study import Exploration
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say
-from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.kinds import Evidence
@@ -19,9 +20,12 @@ from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.phrases import Term
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import RoadLike, Vehicles, searches_of, setting, work_of
+from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import explore as report
+from roadproof.frontends.settings.keywords import ExploreKeywords
+from roadproof.frontends.settings.questions import Explore
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import are_numbers
 from roadproof.library.values import Number
 from roadproof.runtime.executors import Jobs
@@ -101,30 +105,9 @@ def _at(finding: PointFinding) -> str:
     return ", ".join(report.show(value) for value in finding.at)
 
 
+@takes(Explore)
 def explore(
-    *what: What,
-    vary: Mapping[str, tuple[Number, Number]] | None = None,
-    least: Term | None = None,
-    greatest: Term | None = None,
-    when: What | None = None,
-    using: Definitions | None = None,
-    steps: int | None = None,
-    precision: Number | None = None,
-    road: RoadLike | None = None,
-    lanes: Mapping[str, str] | None = None,
-    vehicles: Vehicles = None,
-    horizon: Number = 6,
-    dt: Number | None = None,
-    reach: Number = 80,
-    collisions: bool = False,
-    preventable: str | None = None,
-    unpreventable: str | None = None,
-    effort: float = 6.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
+    *what: What, using: Definitions | None = None, **options: Unpack[ExploreKeywords]
 ) -> Explorations:
     """For which values of parameters or limits there is a drive, and how far a measure can go.
 
@@ -132,37 +115,31 @@ def explore(
     one or two. ``least``, ``greatest``: a term, at time 0 or ``when`` a formula holds. ``steps``: values of
     each; ``precision``: width of a bracket, SI units. The rest as for ``witness``. Raises as that does.
     """
-    home = restricted(using or load(), preventable, unpreventable, what=what)
-    for name in {*(vary or {})} & {*home.values}:
+    given = Explore.of(options)
+    home = restricted(using or load(), given.preventable, given.unpreventable, what=what)
+    vary = given.vary or {}
+    for name in {*vary} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")
-    place = setting(home, road, lanes, vehicles, horizon, dt, reach, collisions)
-    search_options = SearchOptions(effort=work_of(effort, timeout))
-    ranges = [(name, *ends) for name, ends in (vary or {}).items()]
-    measures: dict[Sense, Term | None] = {"least": least, "greatest": greatest}
-    asked = explorables(home, what, place, search_options, ranges, measures, when, steps, precision)
-    return explore_all(asked, out, jobs, progress, say)
+    asked = explorables(home, what, given, [(name, *ends) for name, ends in vary.items()])
+    return explore_all(asked, given.out, given.jobs, given.progress, given.say)
 
 
 def explorables(
-    home: Definitions,
-    what: Sequence[What],
-    place: Setting,
-    search_options: SearchOptions,
-    ranges: Sequence[tuple[str, Number, Number]],
-    measures: Mapping[Sense, Term | None],
-    when: What | None = None,
-    steps: int | None = None,
-    precision: Number | None = None,
+    home: Definitions, what: Sequence[What], given: Explore, ranges: Sequence[tuple[str, Number, Number]]
 ) -> Iterator[Explorable]:
-    """What is asked of each formula in each spec set; arguments as for ``explore``. Raises as that does."""
-    wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None]
-    for search in searches_of(home, what, place, search_options):
+    """What is asked of each formula in each spec set, varied over ``ranges``. Raises as ``explore``."""
+    work = work_of(given.effort, given.timeout)
+    search_options = SearchOptions(engine=given.engine, solver=given.solver, effort=work)
+    measures: dict[Sense, Term | None] = {"least": given.least, "greatest": given.greatest}
+    wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None and x != ""]
+    when = given.when
+    for search in searches_of(home, what, setting(home, given), search_options):
         here = replace(home, specification=search.specification)
         if when is None or (isinstance(when, str) and not are_numbers(when)):
             moment = when or ""
         else:
             moment = here.read(when).text
-        yield ask_for(search, ranges, steps, precision, wanted, moment)
+        yield ask_for(search, ranges, given.steps, given.precision, wanted, moment)
 
 
 def explore_all(

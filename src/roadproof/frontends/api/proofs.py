@@ -21,9 +21,11 @@ from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import RoadLike, Vehicles, models_of, one_of, setting, work_of
+from roadproof.frontends.api.settings import models_of, one_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import claims as claims_text
+from roadproof.frontends.settings.groups import SearchPlace
+from roadproof.frontends.settings.value_types import RoadLike, Vehicles
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split
 from roadproof.library.scenarios import are_numbers, read_numbers
@@ -377,5 +379,6 @@ def within_limits(
             f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "
             "engine='dense'"
         )
-    place = replace(setting(home, road, vehicles=vehicles, horizon=horizon, dt=dt), values=dict(home.values))
+    where = SearchPlace(road=road, vehicles=vehicles, horizon=horizon, dt=dt)
+    place = replace(setting(home, where), values=dict(home.values))
     return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))

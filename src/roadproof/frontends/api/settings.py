@@ -3,11 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Definitions, What
+from roadproof.frontends.settings.groups import SearchPlace
+from roadproof.frontends.settings.value_types import RoadLike, Vehicles
 from roadproof.library.bind import values_with
 from roadproof.library.scenarios import numbers_of, roles
 from roadproof.library.values import Number, exact
@@ -21,39 +22,20 @@ if TYPE_CHECKING:
     from roadproof.engines.search.ask import Search
     from roadproof.engines.search.question import SearchOptions, Setting
 
-RoadLike: TypeAlias = Road | str | Path
-VehicleLike: TypeAlias = Vehicle | str | Path
-Vehicles: TypeAlias = VehicleLike | Mapping[str, VehicleLike] | None
-"""A model for all vehicles, or models by name."""
 
-
-def setting(
-    using: Definitions,
-    road: RoadLike | None = None,
-    lanes: Mapping[str, str] | None = None,
-    vehicles: Vehicles = None,
-    horizon: Number = 6,
-    dt: Number | None = None,
-    reach: Number = 80,
-    collisions: bool = False,
-) -> "Setting":
-    """Where, with whom and for how long drives are looked for.
-
-    ``road``: a reference road or a .toml file, by the formula where None; ``lanes``: free lanes, such as
-    ``{"L": "main-2"}``; ``vehicles``: a model for all, or models by name; ``horizon``, ``dt`` in s,
-    ``reach`` in m. Raises ``InputError``.
-    """
+def setting(using: Definitions, given: SearchPlace) -> "Setting":
+    """Where, with whom and for how long drives are looked for. Raises ``InputError``, ``UsageError``."""
     from roadproof.engines.search.question import Setting
 
     return Setting(
-        None if road is None else as_road(road),
-        dict(lanes or {}),
-        models_of(vehicles),
+        None if given.road is None else as_road(given.road),
+        dict(given.lanes or {}),
+        models_of(given.vehicles),
         values=values_with(using.library, using.values),
-        horizon=positive("horizon", horizon, "s"),
-        dt=None if dt is None else positive("dt", dt, "s"),
-        reach=positive("reach", reach, "m"),
-        collisions=collisions,
+        horizon=positive("horizon", given.horizon, "s"),
+        dt=None if given.dt is None else positive("dt", given.dt, "s"),
+        reach=positive("reach", given.reach, "m"),
+        collisions=given.collisions,
     )
 
 

@@ -21,11 +21,12 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import Vehicles, basis_of, one_of, positive
+from roadproof.frontends.api.settings import basis_of, one_of, positive
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
+from roadproof.frontends.settings.value_types import Vehicles
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.values import Number
 from roadproof.library.words import Called, called, called_in

@@ -18,8 +18,9 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import RoadLike, as_road, one_of, positive
+from roadproof.frontends.api.settings import as_road, one_of, positive
 from roadproof.frontends.report.one_trace import as_text, draw_strips
+from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with
 from roadproof.library.query import Query
 from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner

@@ -96,7 +96,7 @@ def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]") ->
     if args.json:
         write_json(found.as_data(), args.json)
     if args.out is not None:
-        found.add_files(not getattr(args, "no_pictures", False))
+        found.add_files(getattr(args, "pictures", not getattr(args, "no_pictures", False)))
     if args.json != "-":
         print(found)
         for line in found.supposed:

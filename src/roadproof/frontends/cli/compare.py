@@ -2,15 +2,14 @@
 
 import argparse
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.numbers import add_working_options
-from roadproof.frontends.cli.options import add_json_option, chosen_sets, write_json
+from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets, write_json
 from roadproof.frontends.cli.progress import clear, note, tell_stage
-from roadproof.frontends.cli.search_options import add_search_options, how_asked, where_asked
+from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.questions import Compare
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
@@ -30,9 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("first", metavar="F1", help="a scenario's number, or a formula")
     parser.add_argument("second", metavar="F2", help="another; in the second --set where two are given")
-    add_search_options(parser)
-    add_working_options(parser)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates and drive files")
+    add_definition_options(parser, several=True)
+    add_flags(parser, Compare)
     add_json_option(parser)
 
 
@@ -53,10 +51,8 @@ def run(args: argparse.Namespace) -> int:
             args.first,
             args.second,
             home,
-            **where_asked(args),
-            **how_asked(args),
-            jobs=args.jobs,
             each=show,
+            **read_keywords(args, Compare),
         )
     clear()
     if args.out is not None:

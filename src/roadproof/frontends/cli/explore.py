@@ -1,25 +1,15 @@
 """``roadproof explore``: for which values a scenario has a drive, and how far a measure can go."""
 
 import argparse
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, restricting
-from roadproof.frontends.cli.numbers import (
-    add_sharing_options,
-    add_working_options,
-    read_effort,
-    read_hands,
-    whole,
-)
-from roadproof.frontends.cli.options import add_json_option, add_prevention_options, chosen_sets
+from roadproof.frontends.cli.numbers import read_hands
+from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
 from roadproof.frontends.cli.progress import Counter, tell, warn
-from roadproof.frontends.cli.search_options import add_search_options, where_asked
 from roadproof.frontends.cli.what import add_what_arguments, some_or_all
-
-if TYPE_CHECKING:
-    from roadproof.analysis.explore.measure import Sense
+from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.questions import Explore
 
 SUMMARY = "for which values of parameters and limits a scenario has a drive, and how far a measure can go"
 
@@ -51,48 +41,21 @@ A run with --out that was broken off goes on where it was, formula by formula.
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all scenarios of each --set")
-    parser.add_argument(
-        "--vary",
-        metavar="NAME=LOW:HIGH",
-        action="append",
-        default=[],
-        help="a parameter, or a limit such as POV.a_lon.min; may be given twice",
-    )
-    parser.add_argument(
-        "--steps", type=whole("--steps", 2), metavar="K", help="values of each (default: 11; of two: 6)"
-    )
-    for sense in ("least", "greatest"):
-        parser.add_argument(f"--{sense}", metavar="TERM", help=f"the {sense} value of a term")
-    parser.add_argument("--when", metavar="FORMULA", help="measure at a moment at which this holds, not at 0")
-    parser.add_argument(
-        "--precision",
-        metavar="P",
-        help="width of a bracket, in SI units (default: range/60; of a measure 0.1)",
-    )
-    add_search_options(parser, 6.0)
-    add_prevention_options(parser)
-    add_working_options(parser)
-    add_sharing_options(parser)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, JSON, pictures")
-    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    add_definition_options(parser, several=True)
+    add_flags(parser, Explore)
     add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.engines.search.question import SearchOptions
     from roadproof.frontends.api.exploring import explorables, explore_all
     from roadproof.frontends.api.restricting import restricted
-    from roadproof.frontends.api.settings import setting
 
-    what, ranges = some_or_all(args), [_varied(text) for text in args.vary]
+    what, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
     home = restricted(read_definitions(args, chosen_sets(args)), what=what, **restricting(args))
     for name, _, _ in ranges:
         if name in home.values:
             raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")
-    place = setting(home, **where_asked(args))
-    means = SearchOptions(engine=args.engine, solver=args.solver, effort=read_effort(args))
-    measures: dict[Sense, str | None] = {"least": args.least or None, "greatest": args.greatest or None}
-    asked = explorables(home, what, place, means, ranges, measures, args.when, args.steps, args.precision)
+    asked = explorables(home, what, Explore.of(read_keywords(args, Explore)), ranges)
     folder = evidence_folder(args.out, args.json)
     return hand_over(args, explore_all(asked, folder, read_hands(args), Counter(), warn, tell))
 

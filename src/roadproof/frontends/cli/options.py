@@ -33,6 +33,14 @@ def add_specification_options(
     add_reading_options(parser)
 
 
+def add_definition_options(
+    parser: argparse.ArgumentParser, set_name: str | None = "base", several: bool = False
+) -> None:
+    """``--set``, ``--option``, ``--spec`` and ``--param``, which ``cli.basis.read_definitions`` reads."""
+    add_specification_options(parser, set_name, several)
+    add_parameter_option(parser)
+
+
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
     """``--option`` and ``--spec``: which readings, and which files on top of the library."""
     parser.add_argument(

@@ -1,22 +1,16 @@
 """``roadproof witness``: drives on which scenarios and formulas hold, each judged exactly."""
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.cli.basis import in_order, read_definitions, restricting
-from roadproof.frontends.cli.numbers import (
-    add_sharing_options,
-    add_working_options,
-    read_effort,
-    read_hands,
-    whole,
-)
-from roadproof.frontends.cli.options import add_json_option, add_prevention_options, chosen_sets, write_json
+from roadproof.frontends.cli.basis import in_order, read_definitions
+from roadproof.frontends.cli.numbers import read_hands
+from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets, write_json
 from roadproof.frontends.cli.progress import Counter, clear, tell_stage, warn
-from roadproof.frontends.cli.search_options import add_search_options, where_asked
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.cli.what import add_what_arguments, some_or_all
+from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
@@ -41,39 +35,22 @@ A run with --out that was broken off goes on where it was; what is there for the
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all 24 scenarios, in each --set")
-    add_search_options(parser)
-    add_prevention_options(parser)
-    parser.add_argument(
-        "--objective",
-        choices=("any", "smooth", "margin", "mild", "severe", "short"),
-        default="smooth",
-        help="what the drive should be like (default: smooth)",
-    )
-    parser.add_argument(
-        "--count", type=whole("--count", 1), default=1, metavar="K", help="K clearly different drives"
-    )
-    add_working_options(parser)
-    add_sharing_options(parser)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write drive files, CSV and pictures")
-    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    add_definition_options(parser, several=True)
+    add_flags(parser, Witness)
     parser.add_argument("--verbose", action="store_true", help="print sizes and seconds by stage")
     add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.analysis.witnesses import WitnessStudy
-    from roadproof.engines.search.question import SearchOptions
-    from roadproof.frontends.api.drives import files_written, witness_all
-    from roadproof.frontends.api.restricting import restricted
-    from roadproof.frontends.api.settings import searches_of, setting
+    from roadproof.frontends.api.drives import files_written, searches_for, witness_all
     from roadproof.frontends.report.witness import as_line
 
     what = some_or_all(args)
-    home = restricted(read_definitions(args, chosen_sets(args)), what=what, **restricting(args))
-    means = SearchOptions(args.objective, args.engine, args.solver, read_effort(args))
-    searches = list(searches_of(home, what, setting(home, **where_asked(args)), means, args.count))
+    given = Witness.of(read_keywords(args, Witness))
+    searches = searches_for(what, read_definitions(args, chosen_sets(args)), given)
     named = WitnessStudy(tuple(searches)).named
-    pictures, plain = not args.no_pictures, args.json != "-"
+    pictures, plain = given.pictures, args.json != "-"
     written: list[str] = []
 
     def show(name: str, outcome: "Outcome") -> None:

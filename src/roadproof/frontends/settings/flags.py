@@ -21,7 +21,9 @@ def add_flags(parser: argparse.ArgumentParser, settings: type[Settings]) -> None
         section = parser.add_argument_group(title)
         for name, option in options.items():
             if option.group == group and option.flag is not None:
-                section.add_argument(option.flag, dest=name, help=option.help, **_rules(settings, name, option))
+                section.add_argument(
+                    option.flag, dest=name, help=option.help, **_rules(settings, name, option)
+                )
 
 
 def _rules(settings: type[Settings], name: str, option: Option) -> dict[str, Any]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from roadproof.library.values import Number
     from roadproof.runtime.executors import Jobs
 
+
 def effort_for(what: str, units: float) -> Any:
     """``effort`` of a question that gives so many units of work to each ``what``."""
     text = f"units of work for {what}, each about a second of a solver; counted, so the answer is the same "
@@ -26,14 +27,16 @@ def effort_for(what: str, units: float) -> Any:
     return option(units, "--effort", "N", help=text, group="effort", read=decimal("--effort"))
 
 
-def folder_for(what: str) -> Any:
+def folder_for(what: str, command_line_only: bool = False) -> Any:
     """``out`` of a question that writes ``what``."""
-    return option(None, "--out", "DIR", help=f"write {what}", group="output", read=Path)
+    keyword = not command_line_only
+    return option(None, "--out", "DIR", help=f"write {what}", group="output", read=Path, keyword=keyword)
 
 
-def pictures_of(what: str = "pictures") -> Any:
+def pictures_of(what: str = "pictures", command_line_only: bool = False) -> Any:
     """``pictures`` of a question that draws ``what``."""
-    return option(True, "--no-pictures", help=f"with --out: no {what}", group="output")
+    keyword = not command_line_only
+    return option(True, "--no-pictures", help=f"with --out: no {what}", group="output", keyword=keyword)
 
 
 def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
@@ -108,9 +111,7 @@ class SearchPlace(Models):
 class Solver(Settings):
     """By whom drives are looked for."""
 
-    engine: Engine = option(
-        "milp", "--engine", help="default: milp", group="search", choices=("milp", "smt")
-    )
+    engine: Engine = option("milp", "--engine", help="default: milp", group="search", choices=("milp", "smt"))
     solver: str = option(
         "highs", "--solver", help="a mixed-integer solver for milp (default: highs)", group="search"
     )
@@ -139,9 +140,7 @@ class Workers(Settings):
     jobs: Jobs = option(
         None, "--jobs", "N", help="processes (default: one a core)", group="work", read=whole("--jobs", 1)
     )
-    quiet: bool = option(
-        False, "--quiet", help="no word about how far it is", group="output", keyword=False
-    )
+    quiet: bool = option(False, "--quiet", help="no word about how far it is", group="output", keyword=False)
 
 
 @dataclass(frozen=True, kw_only=True)

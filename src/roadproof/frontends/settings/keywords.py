@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
     from roadproof.analysis.study.pool import Progress, Say
     from roadproof.engines.search.question import Engine, Objective
+    from roadproof.frontends.api.definitions import What
+    from roadproof.frontends.api.phrases import Term
     from roadproof.frontends.settings.value_types import RoadLike, Vehicles
     from roadproof.library.values import Number
     from roadproof.runtime.executors import Jobs
@@ -51,3 +53,29 @@ class WitnessKeywords(TypedDict, total=False):
     count: int
     out: str | Path | None
     pictures: bool
+
+
+class ExploreKeywords(TypedDict, total=False):
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    preventable: str | None
+    unpreventable: str | None
+    engine: Engine
+    solver: str
+    vehicles: Vehicles
+    road: RoadLike | None
+    lanes: Mapping[str, str] | None
+    horizon: Number
+    dt: Number | None
+    reach: Number
+    collisions: bool
+    vary: Mapping[str, tuple[Number, Number]] | None
+    steps: int | None
+    least: Term | None
+    greatest: Term | None
+    when: What | None
+    precision: Number | None
+    out: str | Path | None

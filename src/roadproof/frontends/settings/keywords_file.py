@@ -7,6 +7,7 @@ import dataclasses
 import inspect
 import re
 from pathlib import Path
+from typing import TypeGuard
 
 from roadproof.frontends.settings import groups, questions
 from roadproof.frontends.settings.option import Settings
@@ -25,7 +26,11 @@ if TYPE_CHECKING:
 def all_questions() -> list[type[Settings]]:
     """The settings classes of questions, in the order of their definition."""
     found = vars(questions).values()
-    return [x for x in found if inspect.isclass(x) and x.__module__ == questions.__name__]
+    return [x for x in found if _is_settings(x) and x.__module__ == questions.__name__]
+
+
+def _is_settings(value: object) -> TypeGuard[type[Settings]]:
+    return isinstance(value, type) and issubclass(value, Settings)
 
 
 def text() -> str:

@@ -39,7 +39,7 @@ def option(
     flag: str | None = None,
     metavar: str | None = None,
     *,
-    help: str = "",  # noqa: A002  (as argparse calls it)
+    help: str = "",
     group: Group = "question",
     read: Callable[[str], object] | None = None,
     gather: Callable[[list[Any]], object] | None = None,
