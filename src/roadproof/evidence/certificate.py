@@ -13,10 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers import certificate as kept
 from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.derivation import Lemma, Site, derive_lemma_queries, derive_query
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.strict import Fields, read_assuming, read_json, text
+from roadproof.evidence.strict import Fields, read_json
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import (
     ALL_SCHEMAS,
@@ -34,10 +36,9 @@ from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of, with_values
 
-SCHEMA = "roadproof/certificate/2"
+SCHEMA = kept.SCHEMA
 WITHOUT_TABLEAU = "roadproof/certificate/1"  # as files were written before, which are read too
 SCHEMAS_READ = (SCHEMA, WITHOUT_TABLEAU)
-VIEW = "dense"
 
 
 @dataclass(frozen=True)
@@ -218,44 +219,38 @@ def certificate_data(certificate: Certificate) -> dict[str, Any]:
     table = list(dict.fromkeys(site.formula for site in sites))
     place = {text: number for number, text in enumerate(table)}
 
-    def write(site: Site) -> list[Any]:
+    def said(site: Site) -> tuple[Any, ...]:
         sign = "+" if site.positive else "-"
-        return [place[site.formula], sign, site.moment] + ([site.instance] if site.instance else [])
+        return (place[site.formula], sign, site.moment, *([site.instance] if site.instance else []))
 
-    return {
-        "schema": SCHEMA,
-        "property": certificate.property,
-        "scenario": certificate.scenario,
-        "claim": certificate.claim,
-        **_assumed_data(certificate.assumed),
-        **({"pinned": list(certificate.pinned)} if certificate.pinned else {}),
-        "set": certificate.set_name,
-        "options": dict(certificate.options),
-        "view": VIEW,
-        "assumptions": list(certificate.assumptions),
-        "formulas": table,
-        "times": [[name, *write(site)] for site, name in certificate.names.items()],
-        "instances": [[*write(site), list(terms)] for site, terms in certificate.instances.items()],
-        "lemmas": [
-            {"clause": [[n, p] for n, p in lemma.literals], "at": list(lemma.moments)}
-            for lemma in certificate.lemmas
-        ],
-        "queries": [{"title": title, "smtlib": query.splitlines()} for title, query in certificate.queries],
-        "tableau": None if certificate.tableau is None else list(certificate.tableau),
-    }
-
-
-def _assumed_data(assumed: Assumption) -> dict[str, Any]:
-    """What is assumed, the facts about motion that are premises, and the limits that are none.
-
-    Nothing where nothing is assumed.
-    """
-    if not assumed.said and not assumed.axioms:
-        return {}
-    axioms = [{"schema": x.schema, "arguments": x.named()} for x in assumed.axioms]
-    unused = {"unused": list(assumed.unused)} if assumed.unused else {}
-    said = {"assuming": list(assumed.said)} if assumed.said else {}
-    return {**said, "axioms": axioms, **unused}
+    tableau, assumed = certificate.tableau, certificate.assumed
+    is_assumed = assumed.said or assumed.axioms
+    return write(
+        kept.Certificate(
+            property=certificate.property,
+            scenario=certificate.scenario,
+            claim=certificate.claim,
+            assuming=assumed.said,
+            axioms=tuple(kept.Axiom(schema=x.schema, arguments=x.named()) for x in assumed.axioms)
+            if is_assumed
+            else None,
+            unused=assumed.unused if is_assumed else (),
+            pinned=certificate.pinned,
+            set=certificate.set_name,
+            options=certificate.options,
+            view="dense",
+            assumptions=certificate.assumptions,
+            formulas=tuple(table),
+            times=tuple((name, *said(site)) for site, name in certificate.names.items()),
+            instances=tuple((*said(site), terms) for site, terms in certificate.instances.items()),
+            lemmas=tuple(kept.Lemma(clause=x.literals, at=x.moments) for x in certificate.lemmas),
+            queries=tuple(
+                kept.Query(title=title, smtlib=tuple(query.splitlines()))
+                for title, query in certificate.queries
+            ),
+            tableau=tableau,
+        )
+    )
 
 
 def read_certificate(path: Path) -> Certificate:
@@ -263,102 +258,60 @@ def read_certificate(path: Path) -> Certificate:
     return read_certificate_data(read_json(path), str(path))
 
 
-_FIELDS = (
-    *("schema", "property", "scenario", "claim", "set", "options", "view", "assumptions"),
-    *("formulas", "times", "instances", "lemmas", "queries", "assuming", "axioms", "pinned"),
-    *("unused", "tableau"),
-)
-
-
 def read_certificate_data(content: object, where: str) -> Certificate:
     """The inverse of ``certificate_data``. Raises ``InputError``."""
-    data = Fields(content, where, _FIELDS)
-    if data.text("schema") not in SCHEMAS_READ:
+    data = Fields(content, where)
+    schema = data.text("schema")
+    if schema not in SCHEMAS_READ:
         raise InputError(f"{where} is no certificate: its schema must be {SCHEMA} or {WITHOUT_TABLEAU}")
-    if ("tableau" in data.content) != (data.text("schema") == SCHEMA):
+    if ("tableau" in data.content) != (schema == SCHEMA):
         raise InputError(f"{where}: tableau is a field of {SCHEMA}, and of no other")
-    if data.text("view") != VIEW:
-        raise InputError(f"{where}: view={data.text('view')!r}: a certificate is about {VIEW} time")
-    table = data.texts("formulas")
-    names = [(_site(entry[1:], table, where), text(entry[0], where)) for entry in _rows(data, "times")]
-    instances = [
-        (_site(entry[:-1], table, where), _texts(entry[-1], where)) for entry in _rows(data, "instances")
-    ]
+    said = read(kept.Certificate, {"tableau": None, **data.content, "schema": SCHEMA}, where)
+    names = [(_site(row[1:], said.formulas, where), row[0]) for row in said.times]
+    instances = [(_site(row[:-1], said.formulas, where), row[-1]) for row in said.instances]
     for what, sites in (("times", names), ("instances", instances)):
         if len({site for site, _ in sites}) < len(sites):
             raise InputError(f"{where}, {what}: one quantifier is listed twice")
     return Certificate(
-        data.text("property"),
-        data.whole("scenario") if data.get("scenario") is not None else None,
-        data.text("claim"),
-        data.text("set"),
-        data.named_texts("options"),
-        data.texts("assumptions"),
+        said.property,
+        said.scenario,
+        said.claim,
+        said.set,
+        said.options,
+        said.assumptions,
         dict(instances),
         dict(names),
-        tuple(_lemma(entry, f"{where}, lemmas") for entry in data.items("lemmas")),
-        tuple(_query(entry, f"{where}, queries") for entry in data.items("queries")),
-        _assumed(data),
-        data.texts("pinned") if "pinned" in data.content else (),
-        data.texts("tableau") if data.has("tableau") else None,
+        tuple(Lemma(x.clause, x.at) for x in said.lemmas),
+        tuple((x.title, "\n".join(x.smtlib) + "\n") for x in said.queries),
+        _assumed(said, where),
+        said.pinned,
+        said.tableau,
     )
 
 
-def _assumed(data: Fields) -> Assumption:
-    """The inverse of ``_assumed_data``."""
-    if not {"assuming", "axioms", "unused"} & {*data.content}:
+def _assumed(said: kept.Certificate, where: str) -> Assumption:
+    """What is assumed, the facts about motion that are premises, and the limits that are none."""
+    if said.axioms is None:
+        if said.assuming or said.unused:
+            raise InputError(f"{where}: 'axioms' is missing")
         return NOTHING
-    said = read_assuming(data) if "assuming" in data.content else ()
-    entries = data.items("axioms")
-    if not said and not entries:
-        raise InputError(f"{data.where}: 'axioms' is empty, and nothing is assumed: leave it out")
-    unused = data.texts("unused") if "unused" in data.content else ()
-    return Assumption(said, tuple(_axiom(entry, f"{data.where}, axioms") for entry in entries), unused)
+    if not said.assuming and not said.axioms:
+        raise InputError(f"{where}: 'axioms' is empty, and nothing is assumed: leave it out")
+    return Assumption(said.assuming, tuple(_axiom(x, f"{where}, axioms") for x in said.axioms), said.unused)
 
 
-def _axiom(content: object, where: str) -> Axiom:
-    data = Fields(content, where, ("schema", "arguments"))
-    schema, arguments = data.text("schema"), data.named_texts("arguments")
+def _axiom(said: kept.Axiom, where: str) -> Axiom:
+    schema = said.schema
     if schema not in ALL_SCHEMAS:
         raise InputError(f"{where}: {unknown('schema of motion', schema[:40], ALL_SCHEMAS)}")
-    if tuple(arguments) != ALL_SCHEMAS[schema]:
+    if tuple(said.arguments) != ALL_SCHEMAS[schema]:
         raise InputError(f"{where}: schema {schema} takes {', '.join(ALL_SCHEMAS[schema])}, in this order")
-    return Axiom(schema, tuple(arguments.values()))
+    return Axiom(schema, tuple(said.arguments.values()))
 
 
-def _rows(data: Fields, what: str) -> list[list[Any]]:
-    rows = data.items(what)
-    for row in rows:
-        if not isinstance(row, list) or len(row) not in (4, 5):
-            raise InputError(f"{data.where}, {what}: {str(row)[:60]!r} is no entry of 4 or 5 parts")
-    return rows
-
-
-def _site(entry: list[Any], table: Sequence[str], where: str) -> Site:
-    number, sign, *moments = entry
-    if type(number) is not int or not 0 <= number < len(table):
-        raise InputError(f"{where}: there is no formula number {str(number)[:20]}")
-    if sign not in ("+", "-"):
-        raise InputError(f"{where}: sign={str(sign)[:20]!r} must be + or -")
-    return Site(table[number], sign == "+", *_texts(moments, where))
-
-
-def _lemma(content: object, where: str) -> Lemma:
-    data = Fields(content, where, ("clause", "at"))
-    literals: list[tuple[str, bool]] = []
-    for literal in data.items("clause"):
-        if not isinstance(literal, list) or len(literal) != 2 or type(literal[1]) is not bool:
-            raise InputError(f"{where}: {str(literal)[:60]!r} is no pair of an atom and a truth value")
-        literals.append((text(literal[0], where), literal[1]))
-    return Lemma(tuple(literals), data.texts("at"))
-
-
-def _query(content: object, where: str) -> tuple[str, str]:
-    data = Fields(content, where, ("title", "smtlib"))
-    return data.text("title"), "\n".join(data.texts("smtlib")) + "\n"
-
-
-def _texts(items: object, where: str) -> tuple[str, ...]:
-    if not isinstance(items, list):
-        raise InputError(f"{where}: {str(items)[:60]!r} is no list")
-    return tuple(text(item, where) for item in items)
+def _site(row: Sequence[Any], table: Sequence[str], where: str) -> Site:
+    """``row``: place in the table, sign, moment, and instance where it is inside one."""
+    number, sign, *moments = row
+    if number >= len(table):
+        raise InputError(f"{where}: there is no formula number {number}")
+    return Site(table[number], sign == "+", *moments)

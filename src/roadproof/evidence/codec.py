@@ -230,6 +230,8 @@ def _unruled(kind: Any) -> Read:
     origin, inside = get_origin(kind), get_args(kind)
     if origin in (Union, UnionType):
         several = [x for x in inside if x is not NoneType]
+        if all(get_origin(x) is tuple for x in several[1:]) and len(several) > 1:
+            return _by_length({len(get_args(x)): _reader(x) for x in several})
         made = _either([bare(x) for x in several]) if len(several) > 1 else _reader(several[0])
         return _optional(made) if NoneType in inside else made
     if origin is Literal:
@@ -275,6 +277,19 @@ def _either(kinds: list[Any]) -> Read:
             raise InputError(f"{where}: {_shown(content)} is no object")
         best = max(kinds, key=lambda kind: len(content.keys() & {x.key for x in fields_of(kind)}))
         return _reader(best)(content, where)
+
+    return make
+
+
+def _by_length(readers: Mapping[int, Read]) -> Read:
+    """``readers``: one for each number of items."""
+
+    def make(content: object, where: str) -> Any:
+        if not isinstance(content, list) or len(content) not in readers:
+            raise InputError(
+                f"{where}: {_shown(content)} is no list of {' or '.join(map(str, readers))} items"
+            )
+        return readers[len(content)](content, where)
 
     return make
 

@@ -150,7 +150,8 @@ def _shared(notes: tuple[object, ...]) -> Shared | None:
 
 def _inline(kind: Any, made: dict[str, Any]) -> dict[str, Any]:
     made |= _plain(_shape(kind))
-    for note in notes_of(kind):
+    told = [y for x in notes_of(kind) for y in ((*notes_of(x.kind), x) if isinstance(x, Plain) else (x,))]
+    for note in told:
         match note:
             case Doc(text):
                 made["description"] = text

@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 from roadproof.evidence.answers import (
     catalogue_index,
+    certificate,
     check,
     classify,
     compare,
@@ -29,6 +30,7 @@ from roadproof.evidence.answers import (
 )
 from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import COMMON, DRAFT, Shared, schema_of, shared_schemas, tagged_schema
+from roadproof.library.motion import INDUCTIONS
 
 TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
@@ -65,6 +67,16 @@ TITLES: Mapping[type, str] = {
         "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
     ),
 }
+WITHOUT_ASSUMPTION: Mapping[str, object] = {
+    "dependentRequired": {"assuming": ["axioms"], "unused": ["assuming"]},
+    "if": {"not": {"required": ["assuming"]}},
+    "then": {
+        "properties": {
+            "axioms": {"minItems": 1, "items": {"properties": {"schema": {"enum": [*INDUCTIONS]}}}}
+        }
+    },
+}
+"""Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
 RECORDS: Mapping[type, type] = {
     catalogue_index.Index: catalogue_index.Record,
@@ -89,6 +101,9 @@ def schemas() -> Iterator[tuple[str, dict[str, Any]]]:
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
         name = f"{schema.split('/')[1]}.json"
         yield name, schema_of(kind, RECORDS.get(kind, kind), name, title)
+    title = "A proof for all time that a second program can check"
+    made = schema_of(certificate.Certificate, certificate.Certificate, "certificate.json", title)
+    yield "certificate.json", {**made, **WITHOUT_ASSUMPTION}
     yield (
         "drive.json",
         tagged_schema(DRIVES, "drive.json", "A judged drive, with all that is needed to judge it again"),

@@ -157,14 +157,6 @@ class Fields:
         return rational(self.get(field), f"{self.where}, {field}")
 
 
-def read_assuming(data: Fields) -> tuple[str, ...]:
-    """What evidence says that it assumes, which is something where the field is there."""
-    said = data.texts("assuming")
-    if not said:
-        raise InputError(f"{data.where}: 'assuming' is empty: leave it out")
-    return said
-
-
 def text(value: object, where: str) -> str:
     """A text. Raises ``InputError``."""
     if not isinstance(value, str):

@@ -1,0 +1,218 @@
+"""The files of certificates, as they stand in JSON."""
+
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal, TypeAlias
+
+from roadproof.evidence.answers.shared import Assuming, Dense, Formula, OneScenario, Options, SetName
+from roadproof.evidence.codec import LEFT_OUT, Doc, Remedy, Rule
+from roadproof.evidence.json_schema import Plain
+
+SCHEMA: Final = "roadproof/certificate/2"
+Term: TypeAlias = Annotated[str, Rule(least=1)]
+Place: TypeAlias = Annotated[int, Rule(minimum=0), Remedy("there is no formula of that number")]
+Sign: TypeAlias = Annotated[Literal["+", "-"], Remedy("a sign must be + or -")]
+NamedSite: TypeAlias = tuple[str, Place, Sign, str] | tuple[str, Place, Sign, str, str]
+InstancedSite: TypeAlias = (
+    tuple[Place, Sign, str, tuple[str, ...]] | tuple[Place, Sign, str, str, tuple[str, ...]]
+)
+_RULES = (
+    "Close|CloseTruth|CloseLinear|CloseRoad|CloseRoads|CloseZones|Alpha|Beta|Timing|New|Inst|InstUntil|"
+    "NewRoad|InstRoad|Cut|Fact"
+)
+TableauLine: TypeAlias = Annotated[str, Rule(pattern=rf"^({_RULES}) [A-Za-z0-9_ ,*/-]+$")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfSides:
+    """Two terms that are compared."""
+
+    left: Term
+    right: Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfGrowth(OfSides):
+    """Two terms, the speed at which one gains on the other, and a time."""
+
+    speed: Term
+    time: Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfGrowthTwice(OfSides):
+    """As before, with the growth of the speed."""
+
+    speed: Term
+    growth: Term
+    time: Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfFormula:
+    """A formula."""
+
+    inside: Formula
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfSteps(OfFormula):
+    """A formula with an interval of time."""
+
+    low: Term
+    high: Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfLasting(OfFormula):
+    """A formula with a time."""
+
+    time: Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class SidesAxiom:
+    """How two terms may come to be equal."""
+
+    schema: Literal["at-most", "below", "meets"]
+    arguments: OfSides
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeavesAxiom:
+    """How a formula comes to be false."""
+
+    schema: Literal["leaves"]
+    arguments: OfFormula
+
+
+@dataclass(frozen=True, kw_only=True)
+class GrowthAxiom:
+    """How far a term gains on another in a time."""
+
+    schema: Literal["within", "after"]
+    arguments: OfGrowth
+
+
+@dataclass(frozen=True, kw_only=True)
+class GrowthTwiceAxiom:
+    """How far a term gains on another in a time, where the speed grows."""
+
+    schema: Literal["within-twice", "after-twice"]
+    arguments: OfGrowthTwice
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepsAxiom:
+    """An induction in steps of time."""
+
+    schema: Literal["steps"]
+    arguments: OfSteps
+
+
+@dataclass(frozen=True, kw_only=True)
+class LastsAxiom:
+    """An induction over a time that lasts."""
+
+    schema: Literal["lasts"]
+    arguments: OfLasting
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axiom:
+    """A fact about motion or an induction over time, by the name of its schema."""
+
+    schema: str
+    arguments: Options
+
+
+_AXIOMS = Plain(SidesAxiom | LeavesAxiom | GrowthAxiom | GrowthTwiceAxiom | StepsAxiom | LastsAxiom)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lemma:
+    """A clause that holds at every instant."""
+
+    clause: Annotated[
+        tuple[Annotated[tuple[str, bool], Remedy("no pair of an atom and a truth value")], ...],
+        Doc("Atoms, each with the truth value of which one must hold."),
+    ]
+    at: Annotated[tuple[str, ...], Doc("The moments at which it is used.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Query:
+    """A query that is to be answered unsat."""
+
+    title: Annotated[str, Doc("Of what it is a query.")]
+    smtlib: Annotated[tuple[str, ...], Doc("The lines of a script in SMT-LIB 2.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Certificate:
+    """The claim, and the instances and lemmas from which the stored queries are derived again; each query is
+    to be answered unsat. Those of roadproof/certificate/1 have no tableau, and are still read.
+    """
+
+    schema: Literal["roadproof/certificate/2"] = SCHEMA
+    property: Annotated[str, Doc("Template property such as P1, another name, or empty.")]
+    scenario: OneScenario
+    claim: Formula
+    assuming: Annotated[Assuming, Remedy("leave 'assuming' out"), LEFT_OUT] = ()
+    axioms: Annotated[
+        tuple[Annotated[Axiom, _AXIOMS], ...] | None,
+        LEFT_OUT,
+        Doc(
+            "The facts about motion and the inductions over time that the proof uses; inductions are true on "
+            "every trace; formulas are made anew of schema and arguments (docs/motion.md)."
+        ),
+    ] = None
+    unused: Annotated[
+        tuple[Formula, ...],
+        Rule(least=1),
+        LEFT_OUT,
+        Doc(
+            "Limits under assuming that are no premises: the queries prove the claim without them. Left out "
+            "where all limits are premises."
+        ),
+    ] = ()
+    pinned: Annotated[
+        tuple[Formula, ...],
+        Rule(least=1),
+        LEFT_OUT,
+        Doc(
+            "Values of parameters that the claim's own premise demands, such as minDanger = 0.6 s; they are "
+            "put in before the queries are derived."
+        ),
+    ] = ()
+    set: SetName
+    options: Options
+    view: Annotated[Dense, Remedy("a certificate is about dense time")]
+    assumptions: Annotated[
+        tuple[str, ...], Doc("Declared bounds of parameters that were used, such as minSafe >= 0.")
+    ]
+    formulas: Annotated[tuple[str, ...], Doc("A table of formulas, which times and instances name by place.")]
+    times: Annotated[
+        tuple[NamedSite, ...],
+        Doc(
+            "Name of a moment, then where it comes from: place in formulas, sign, moment, and instance where "
+            "it is inside one."
+        ),
+    ]
+    instances: Annotated[
+        tuple[InstancedSite, ...],
+        Doc("A quantifier as in times, then the terms that it is instantiated with."),
+    ]
+    lemmas: Annotated[tuple[Lemma, ...], Doc("Clauses that the queries use.")]
+    queries: Annotated[
+        tuple[Query, ...],
+        Plain(Annotated[tuple[Query, ...], Rule(least=1)]),
+        Doc("What is to be answered unsat: the claim, and each case of each lemma."),
+    ]
+    tableau: Annotated[
+        tuple[str, ...] | None,
+        Plain(Annotated[tuple[TableauLine, ...], Rule(least=1)] | None),
+        Doc(
+            "The proof for Coq, a line a node: a rule of proofs/kernel/Tableau.v with what it is told, "
+            "children after it; null where none was found."
+        ),
+    ]
