@@ -6,9 +6,10 @@ from typing import TypeAlias, TypeVar, get_args
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Common, Entry, common_of
-from roadproof.evidence.codec import bare, fields_of, read, unchecked
+from roadproof.evidence.codec import bare, fields_of, read
 from roadproof.evidence.heading import HEADING
 from roadproof.evidence.strict import Fields
+from roadproof.evidence.unchecked import unchecked
 from roadproof.library.specification import Library
 
 T = TypeVar("T")
