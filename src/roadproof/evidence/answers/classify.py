@@ -23,8 +23,9 @@ from roadproof.evidence.answers.shared import (
     Specifications,
 )
 from roadproof.evidence.answers.shared import Formula as FormulaText
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule, read, unchecked
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
+from roadproof.evidence.unchecked import unchecked
 from roadproof.library.compose import both, either, equivalence, implication, negation
 from roadproof.library.elaborate import apply_definition, signature
 from roadproof.library.scenarios import LANE, Scenario, applied, name_of, number_in, numbers_of, vehicles_of

@@ -25,9 +25,10 @@ from roadproof.evidence.answers.shared import (
     Specifications,
 )
 from roadproof.evidence.answers.shared import Formula as FormulaText
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read, unchecked
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields
+from roadproof.evidence.unchecked import unchecked
 from roadproof.library.scenarios import numbers_of
 from roadproof.logic.formula import Formula
 from roadproof.verdict import ProofVerdict, Verdict

@@ -21,9 +21,10 @@ from roadproof.evidence.answers.shared import (
     SetName,
     Specifications,
 )
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, unchecked
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File, Whole
 from roadproof.evidence.strict import Fields, rational
+from roadproof.evidence.unchecked import unchecked
 from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
