@@ -16,6 +16,7 @@ for folder in (ROOT / "tests", ROOT / "src"):
 from documents.reference import PAGES  # noqa: E402
 
 _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)]*)?\)")
+_FOR_DEVELOPERS = ("tests", "map")
 _SHIM = "https://unpkg.com/iframe-worker/shim"
 _FILE_BLOCK = re.compile(r"^```file (\S+)$", re.M)
 
@@ -41,8 +42,8 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Name files outside docs/ instead of linking to them, and give blocks of files their titles."""
     here = Path(config.docs_dir, page.file.src_uri).parent
-    if here.name == "adr":
-        page.meta["search"] = {"boost": 0.2}  # guides come before decision records
+    if here.name == "adr" or page.file.name in _FOR_DEVELOPERS:
+        page.meta["search"] = {"boost": 0.2}  # the search lists guides for users first
 
     def outside(link: re.Match[str]) -> str:
         label, target = link[1], link[2]

@@ -58,7 +58,7 @@ def _options(name: str, summary: str) -> Iterator[str]:
     )
     import_module(f"roadproof.frontends.cli.{name}").add_arguments(parser)
     for group in parser._action_groups:
-        actions = [x for x in group._group_actions if x.help != argparse.SUPPRESS]
+        actions = group._group_actions  # rare ones too, which --help may leave out
         if not actions:
             continue
         title = {"positional arguments": "Arguments", "options": "Options"}.get(
@@ -85,7 +85,9 @@ def _spelling(action: argparse.Action) -> str:
 
 
 def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
-    return parser._get_formatter()._expand_help(action) if action.help else ""
+    if not action.help or action.help == argparse.SUPPRESS:
+        return ""
+    return parser._get_formatter()._expand_help(action)
 
 
 # --- library -----------------------------------------------------------------------------------------

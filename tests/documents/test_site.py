@@ -1,10 +1,12 @@
 """The documentation site builds without a warning, and all its links resolve."""
 
+import argparse
 import os
 import re
 import subprocess
 import sys
 from html.parser import HTMLParser
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -114,3 +116,20 @@ def test_the_generated_pages_hold_all_that_the_program_has() -> None:
     assert set(EXIT_CODES) == set(ExitCode)
     assert "::: roadproof.prove\n" in pages["reference/api.md"]
     assert "roadproof/witness/1" in pages["reference/json.md"]
+
+
+@needs_mkdocs
+def test_examples_in_docstrings_become_blocks() -> None:
+    from documents.doctests import fenced
+
+    assert fenced("Add.\n\n>>> 1 + 1\n2\n\nMore.") == "Add.\n\n```pycon\n>>> 1 + 1\n2\n```\n\nMore."
+
+
+def test_every_option_is_in_the_reference() -> None:
+    page = PAGES["reference/commands.md"]()
+    for name in COMMANDS:
+        parser = argparse.ArgumentParser()
+        import_module(f"roadproof.frontends.cli.{name}").add_arguments(parser)
+        section = page.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
+        for action in parser._actions:
+            assert all(f"`{option}" in section for option in action.option_strings), (name, action)
