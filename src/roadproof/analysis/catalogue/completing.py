@@ -9,7 +9,7 @@ from typing import TypeAlias
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.gaps import PREFIX
-from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, begins_of
+from roadproof.analysis.catalogue.showing import begins_of, names_shown
 from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.text import with_classes, write_classes
@@ -179,7 +179,7 @@ def complete(
         found.extend(x for made in pool.in_order(done) for x in made)
 
     ask(_of_classes(asked, missing))
-    shown = {x for one in found if one.drive for x in _shown(one.drive, asked)}
+    shown = {x for one in found if one.drive for x in names_shown(one.drive, asked)}
     ask([n for name in missing if name not in shown and (n := number_in(name)) is not None])
     found += _of_gaps(basis, asked, [x for x in missing if x.startswith(PREFIX)], known)
     if spread > 1:
@@ -202,10 +202,6 @@ def _of_classes(asked: Questions, missing: Sequence[str]) -> list[tuple[Class, .
     return [x for x in groups if x]
 
 
-def _shown(drive: JudgedDrive, asked: Questions) -> set[str]:
-    return {x.what for x in all_shown_by(drive.file, asked, Freedom())}
-
-
 def _of_gaps(basis: Basis, asked: Questions, missing: Sequence[str], known: PriorResults) -> list[Completion]:
     """The drives that were found when it was asked which classes are empty; one may be for several."""
     found: list[Completion] = []
@@ -216,7 +212,7 @@ def _of_gaps(basis: Basis, asked: Questions, missing: Sequence[str], known: Prio
         drive = known.gaps[name].gaps[0].drive
         if basis.objective != "smooth":
             drive = _reshaped(basis, drive, name, asked) or drive
-        shown |= _shown(drive, asked)
+        shown.update(names_shown(drive, asked))
         reason = "" if name in shown else "its drive is no gap when it is looked at as a test"
         found.append(Completion(name, drive if name in shown else None, reason=reason))
     return found
@@ -229,7 +225,7 @@ def _reshaped(basis: Basis, drive: JudgedDrive, name: str, asked: Questions) -> 
         outcome = answer(basis.search(query, drive.file.road))
     except UsageError:  # a grid that is too fine, a comparison too steep
         return None
-    return next((x for x in outcome.drives if name in _shown(x, asked)), None)
+    return next((x for x in outcome.drives if name in names_shown(x, asked)), None)
 
 
 def _further(
@@ -242,7 +238,7 @@ def _further(
         names = [one.name for one in asked.classes.all()]
     jobs = []
     for name in names:
-        made = [x.drive for x in found if x.drive is not None and name in _shown(x.drive, asked)]
+        made = [x.drive for x in found if x.drive is not None and name in names_shown(x.drive, asked)]
         points = (*known.begins.get(name, ()), *(begins_of(x.file) for x in made))
         tests = known.tests.get(name, 0) + len(made)
         if 0 < tests < spread:

@@ -19,7 +19,7 @@ from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact, read_fact, record_of
 from roadproof.analysis.catalogue.gaps import GapKinds
 from roadproof.analysis.catalogue.ranges import Reach, reached
-from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, shown_by
+from roadproof.analysis.catalogue.showing import Freedom, names_shown, shown_by
 from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides, unanswered_sides
 from roadproof.analysis.coverage import pieces
 from roadproof.analysis.coverage.study import Coverage
@@ -170,7 +170,7 @@ class Meanings:
         if not outcome.drives:
             return (self._without_drive(entry, outcome),)
         drive = outcome.drives[0]
-        shown = self._shown(drive)
+        shown = names_shown(drive, self.asked)
         alone = Fact(entry.id, "", "runs", entry.query, drive=drive, also=shown)
         scenarios = self.asked.scenarios_of(entry.query.vehicles)
         found = [self._of_scenario(entry, name, query, drive, shown) for name, query in scenarios.items()]
@@ -211,7 +211,9 @@ class Meanings:
             reason = outcome.told(()) or "no drive was found"
             return Fact(entry.id, name, "open", entry.query, query, reason)
         drive = outcome.drives[0]
-        return Fact(entry.id, name, "shows", entry.query, query, drive=drive, also=self._shown(drive))
+        return Fact(
+            entry.id, name, "shows", entry.query, query, drive=drive, also=names_shown(drive, self.asked)
+        )
 
     def _implied(self, one: Abstract, other: Abstract, drive: JudgedDrive) -> Facts:
         formula = bind(other.query.formula, drive.file.road, drive.file.lanes, self.asked.values)
@@ -232,9 +234,6 @@ class Meanings:
         setting = Setting(entry.road, vehicles=entry.vehicles, values=self.basis.values)
         options = SearchOptions("smooth", effort=self.basis.effort, explain=explain)
         return answer(Search(self.basis.specification, query, setting, options))
-
-    def _shown(self, drive: JudgedDrive) -> tuple[str, ...]:
-        return tuple(sorted({x.what for x in all_shown_by(drive.file, self.asked, Freedom())}))
 
     def doubt(self, piece: Piece, reason: str) -> dict[str, Kept]:
         match piece:

@@ -23,7 +23,7 @@ from roadproof.drivers.restriction import restriction_of, unrestricted
 from roadproof.errors import InputError
 from roadproof.evidence.answers.catalogue_index import Shown, Why
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.evidence.judged import judge_file
+from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.library.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in
 from roadproof.library.scenarios import roles as scenario_roles
 from roadproof.library.specification import Specification
@@ -193,6 +193,11 @@ def all_shown_by(file: DriveFile, asked: Questions, freedom: Freedom) -> tuple[S
     """As ``shown_by``, gaps too."""
     shown = shown_by(file, asked, freedom)
     return (*shown, *_gap(file, asked, shown))
+
+
+def names_shown(drive: JudgedDrive, asked: Questions) -> tuple[str, ...]:
+    """All that a drive shows in the roles and the lane of its file, by name, in order."""
+    return tuple(sorted({x.what for x in all_shown_by(drive.file, asked, Freedom())}))
 
 
 def _gap(file: DriveFile, asked: Questions, shown: tuple[Shown, ...]) -> Iterator[Shown]:

@@ -14,7 +14,7 @@ from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, course_of
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, decisions_on
+from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, decisions_on, names_shown
 from roadproof.analysis.placing import judged_as
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.restriction import Restriction, Side, check_library, files_for, said_in
@@ -126,7 +126,7 @@ def _fact(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides, wanted
             (x.driver, x.side) == (wanted.model, wanted.side)
             for x in decisions_of([judged], [piece.scenario], asked, drivers)
         ):
-            also = tuple(sorted({x.what for x in all_shown_by(judged.file, asked, Freedom())}))
+            also = names_shown(judged, asked)
             return Fact(entry.id, other, "shows", entry.query, plain, drive=judged, also=also)
     return replace(left_open, reason=outcome.told(()) or "a search found none")
 

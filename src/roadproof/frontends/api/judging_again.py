@@ -12,7 +12,7 @@ from roadproof.analysis.catalogue.fact import Fact, read_fact
 from roadproof.analysis.catalogue.meaning import GAPS, AboutGaps, Kept, Meanings
 from roadproof.analysis.catalogue.request import Request, read_request
 from roadproof.analysis.catalogue.result import Result
-from roadproof.analysis.catalogue.showing import Freedom, all_shown_by
+from roadproof.analysis.catalogue.showing import names_shown
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.coverage.answers import ClassAnswer, names_of
 from roadproof.analysis.coverage.pieces import name_of
@@ -227,7 +227,7 @@ def _wrong(fact: Fact, entries: Mapping[str, Abstract], made: Examination) -> st
             return reason
     if fact.drive is None or fact.relation == "reaches":
         return "it names what drives show, and has none" if fact.also else ""
-    shown = {x.what for x in all_shown_by(fact.drive.file, asked, Freedom())}
+    shown = {*names_shown(fact.drive, asked)}
     return "" if shown == {*fact.also} else f"its drive shows {', '.join(sorted(shown)) or 'nothing'}"
 
 
