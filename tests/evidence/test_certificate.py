@@ -15,7 +15,7 @@ from roadproof.errors import InputError
 from roadproof.evidence import derivation
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, read_certificate, refusal, to_json
-from roadproof.evidence.derivation import Lemma, Site
+from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.times import ZERO
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import bundled_library

@@ -16,8 +16,9 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import certificate as kept
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.derivation import Lemma, Site, derive_lemma_queries, derive_query
+from roadproof.evidence.derivation import derive_lemma_queries, derive_query
 from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import (

@@ -16,6 +16,7 @@ from roadproof.errors import InputError
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.cases import split
+from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import (
     ZERO,
     Moment,
@@ -28,67 +29,12 @@ from roadproof.evidence.times import (
 )
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import rename, road_names
-from roadproof.logic.show import text
 
 _NEW_NAME = re.compile(r"[tM]_*[0-9]{1,9}", re.ASCII)
 
 # What an instance says at a moment: its guards, and the body that they guard.
 Instance: TypeAlias = Callable[[Moment], tuple[list[str], str]]
-
-
-@dataclass(frozen=True)
-class Site:
-    """A quantifier met at a moment: ``formula`` in prefix form, its polarity, when it is read.
-
-    ``instance`` is set where the quantifier stands under an instance of a negated until.
-    """
-
-    formula: str
-    positive: bool
-    moment: str
-    instance: str = ""
-
-
-@dataclass(frozen=True)
-class Lemma:
-    """A clause over atoms that holds at every instant; ``moments`` are where the proof uses it."""
-
-    literals: tuple[tuple[str, bool], ...]
-    moments: tuple[str, ...]
-
-
-def prefix_form(formula: Formula) -> str:
-    """An abstracted formula as text in which nothing is ambiguous."""
-    match formula:
-        case f.Truth(value):
-            return str(value).lower()
-        case f.Application(name, _, _):
-            return f"|{name}|"
-        case f.Not(body):
-            return f"(not {prefix_form(body)})"
-        case f.And(parts):
-            return f"(and {' '.join(map(prefix_form, parts))})"
-        case f.Or(parts):
-            return f"(or {' '.join(map(prefix_form, parts))})"
-        case f.Until(left, interval, right):
-            return f"(U {_window(interval)} {prefix_form(left)} {prefix_form(right)})"
-        case f.Eventually(interval, body):
-            return f"(F {_window(interval)} {prefix_form(body)})"
-        case f.Always(interval, body):
-            return f"(G {_window(interval)} {prefix_form(body)})"
-        case f.Some() | f.Every():
-            return f"({text(as_syntax(formula, expand=False))})"
-        case f.Compare() | f.Occupies():
-            raise ValueError("abstract the formula first")
-        case _:
-            assert_never(formula)
-
-
-def _window(interval: f.Interval) -> str:
-    high = "inf" if interval.high is None else str(moment_of(interval.high))
-    return f"[{moment_of(interval.low)}, {high}]"
 
 
 def derive_query(

@@ -63,11 +63,6 @@ class Diagnosis:
     library: Library
     lost: Lost = ()
 
-    @property
-    def is_sound(self) -> bool:
-        """Whether there is no error."""
-        return not any(x.severity == "error" for x in self.diagnostics)
-
 
 @dataclass
 class Proofreader:

@@ -14,7 +14,7 @@ from typing import TypeAlias, assert_never
 from roadproof.engines.prove.small_roads import Roster
 from roadproof.engines.solve.smt import Session
 from roadproof.evidence.atoms import ZONES, Atoms, is_rigid, membership, true_of_roads
-from roadproof.evidence.derivation import Lemma, Site, prefix_form
+from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

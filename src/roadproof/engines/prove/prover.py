@@ -15,8 +15,9 @@ from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, goal_of
-from roadproof.evidence.derivation import Lemma, Site, derive_query, met_sites, prefix_form
+from roadproof.evidence.derivation import derive_query, met_sites
 from roadproof.evidence.refutation import Countermodel
+from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO
 from roadproof.library.bind import default_values
 from roadproof.library.motion import (

@@ -19,7 +19,8 @@ from roadproof.engines.prove.small_roads import Roster, open_quantifiers
 from roadproof.engines.prove.states import CASE, StateChecker
 from roadproof.engines.solve.smt import Satisfiability
 from roadproof.evidence.atoms import free_lanelets, membership
-from roadproof.evidence.derivation import Lemma, Site, free_prefix
+from roadproof.evidence.derivation import free_prefix
+from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

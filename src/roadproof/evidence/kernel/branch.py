@@ -10,9 +10,9 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.evidence.atoms import Atoms, up_to_variables
-from roadproof.evidence.derivation import Site
 from roadproof.evidence.kernel.linear import GOAL, Linear, Witness
 from roadproof.evidence.kernel.steps import Step
+from roadproof.evidence.sites import Site
 from roadproof.evidence.times import Moment, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

@@ -7,7 +7,6 @@ decided by the constraints, they are divided by it.
 from collections.abc import Iterator
 from typing import TypeAlias
 
-from roadproof.evidence.derivation import Site
 from roadproof.evidence.kernel.branch import (
     At,
     Belongs,
@@ -24,6 +23,7 @@ from roadproof.evidence.kernel.branch import (
     used,
 )
 from roadproof.evidence.kernel.linear import GOAL, Witness
+from roadproof.evidence.sites import Site
 from roadproof.evidence.times import ZERO, Moment, at, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

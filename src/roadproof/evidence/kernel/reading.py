@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from roadproof.evidence.atoms import ZONES, is_rigid
-from roadproof.evidence.derivation import Site, prefix_form
 from roadproof.evidence.kernel.branch import (
     At,
     Belongs,
@@ -19,6 +18,7 @@ from roadproof.evidence.kernel.branch import (
     used,
 )
 from roadproof.evidence.kernel.steps import Step
+from roadproof.evidence.sites import Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import rename
