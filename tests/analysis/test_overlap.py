@@ -20,13 +20,14 @@ from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.overlap import (
-    as_csv,
     as_matrix,
     as_text,
     compose_overlap,
     draw_overlap,
     sectors_among,
+    sheet_of,
 )
+from roadproof.frontends.report.sheet import as_csv
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.query import Query
@@ -261,7 +262,7 @@ def test_the_matrix_is_symmetric_within_a_set_only() -> None:
     rows = as_matrix(answers, across=False).splitlines()
     assert rows[:4] == ["      1  4  5", "   1     .  #", "   4  .     ?", "   5  #  ?   "]
     assert as_matrix(answers, across=True).splitlines()[:3] == ["      4  5", "   1  .  #", "   4     ?"]
-    assert as_csv(answers, WORDS).splitlines()[1] == (
+    assert as_csv(sheet_of(answers, WORDS)).splitlines()[1] == (
         '1,4,base,base,IMPOSSIBLE,"aheadOf(SV,POV) and true","aheadOf(SV, POV); not aheadOf(SV, POV)",,,'
         '"cut-in, lane keep, main road","deceleration ahead, lane keep, main road"'
     )

@@ -21,6 +21,7 @@ from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import preventable as report
 from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.sheet import as_csv, as_rows
 from roadproof.library.specification import unknown
 from roadproof.library.values import Number, exact
 from roadproof.runtime.executors import Jobs
@@ -60,19 +61,7 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record]):
 
     def rows(self) -> list[Row]:
         """A row for each span in which a collision is unpreventable, in SI units."""
-        manoeuvre = self.study.manoeuvre
-        return [
-            {
-                "model": plate.model,
-                **{name: float(value) for name, value in plate.fixed.items()},
-                manoeuvre.across: float(line.at),
-                f"{manoeuvre.line}_from": a.near,
-                f"{manoeuvre.line}_to": b.near,
-            }
-            for plate in self.plates
-            for line in plate.lines
-            for a, b in line.spans
-        ]
+        return as_rows(report.sheet_of(self.study, self.plates))
 
     def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(records, self.seconds)
@@ -89,7 +78,7 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record]):
                     )
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        table = {"plates.csv": report.as_csv(self.study, self.plates).encode()}
+        table = {"plates.csv": as_csv(report.sheet_of(self.study, self.plates)).encode()}
         sheet = {"plates": picture(report.draw_sheet(self.study, self.plates))} if pictures else {}
         return table | drawn(sheet)
 

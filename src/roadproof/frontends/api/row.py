@@ -2,5 +2,7 @@
 
 from typing import TypeAlias
 
-Row: TypeAlias = dict[str, str | int | float | bool | None]
+from roadproof.frontends.report.sheet import Value
+
+Row: TypeAlias = dict[str, Value]
 """Values by the name of their column."""

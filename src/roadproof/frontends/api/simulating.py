@@ -1,7 +1,5 @@
 """Traffic that is simulated in the shape of recordings."""
 
-import csv
-import io
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -12,6 +10,7 @@ from roadproof.analysis.study.pool import Say
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.frontends.report.sheet import csv_text
 from roadproof.library.specification import bundled_library
 from roadproof.recordings.export.road_toml import road_toml
 from roadproof.recordings.formats.table import Frame, frame_of
@@ -96,11 +95,8 @@ def simulate(
         truths += made
         left_out |= dict.fromkeys(missing)
     if drives:
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(PLANTED_COLUMNS)
-        writer.writerows(rows_of(truths))
-        write_whole(folder / "planted.csv", text.getvalue().encode())
+        table = csv_text(PLANTED_COLUMNS, rows_of(truths))
+        write_whole(folder / "planted.csv", table.encode())
     return Simulation(folder, recordings, tuple(truths), tuple(left_out))
 
 

@@ -26,6 +26,7 @@ from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
+from roadproof.frontends.report.sheet import Sheet, as_csv, as_rows
 from roadproof.frontends.settings.value_types import Vehicles
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.values import Number
@@ -69,17 +70,12 @@ class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
     def exit_code(self) -> ExitCode:
         return exit_code((x.verdict, x.verdict) for x in self.pairs)
 
+    @property
+    def _sheet(self) -> Sheet[PairVerdict]:
+        return overlap_report.sheet_of(self.pairs, self.words)
+
     def rows(self) -> list[Row]:
-        return [
-            {
-                "a": str(x.a),
-                "b": str(x.b),
-                "verdict": str(x.verdict),
-                "reason": x.reason,
-                "seconds": x.seconds,
-            }
-            for x in self.pairs
-        ]
+        return as_rows(self._sheet)
 
     def _index(self, records: Mapping[str, overlap_answers.Record]) -> overlap_answers.Index:
         return self.study.index(records, self.seconds)
@@ -92,7 +88,7 @@ class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
         yield "overlap", picture(overlap_report.draw_overlap(self.pairs, title, self.across, self.words))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        table = {"overlap.csv": overlap_report.as_csv(self.pairs, self.words).encode()}
+        table = {"overlap.csv": as_csv(self._sheet).encode()}
         return table | drawn(self.pictures() if pictures else {})
 
     def __str__(self) -> str:

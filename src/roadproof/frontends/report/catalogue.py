@@ -1,7 +1,5 @@
 """What a catalogue tests, to look at: lines, a table for a spreadsheet, a report for CI, a matrix."""
 
-import csv
-import io
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from textwrap import indent
@@ -15,6 +13,7 @@ from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, Targets, kin
 from roadproof.evidence.answers.catalogue_index import Figure, Remark, Target
 from roadproof.frontends.report import catalogue_drivers
 from roadproof.frontends.report.figures import as_bytes, count_axis, make_figure
+from roadproof.frontends.report.sheet import csv_text
 from roadproof.library.scenarios import number_in
 
 MOST_TOLD = 40
@@ -93,11 +92,8 @@ def tables(result: Result) -> dict[str, bytes]:
 
 def figures_csv(counted: Sequence[Figure]) -> str:
     """The figures as a table."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["set", "kind", "sector", "tested", "total"])
-    writer.writerows([x.set_name, x.kind, x.sector, x.tested, x.total] for x in counted)
-    return out.getvalue()
+    rows = ([x.set_name, x.kind, x.sector, x.tested, x.total] for x in counted)
+    return csv_text(["set", "kind", "sector", "tested", "total"], rows)
 
 
 def headings(found: Targets) -> dict[str, Sequence[Remark]]:
@@ -141,12 +137,8 @@ def as_csv(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -
 
     ``in_force``: what was asked otherwise than by default, which the first cell says.
     """
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["; ".join(["test", *in_force]), *(x.name for x in found.all_targets)])
-    for test in tests:
-        writer.writerow([test, *(_mark(test, x) for x in found.all_targets)])
-    return out.getvalue()
+    header = ["; ".join(["test", *in_force]), *(x.name for x in found.all_targets)]
+    return csv_text(header, ([test, *(_mark(test, x) for x in found.all_targets)] for test in tests))
 
 
 def _mark(test: str, target: Target) -> str:

@@ -1,12 +1,11 @@
 """What becomes of tests under driver models, as lines and as a table for a spreadsheet."""
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.drivers.models import MODELS
+from roadproof.frontends.report.sheet import csv_text
 
 MOST_TOLD, MOST_ALIKE = 40, 8
 _STARTS = ("Ve0", "dV0", "Vf0", "Vy", "Gx", "headway", "dx0", "dx0_f", "dy0")
@@ -52,12 +51,13 @@ def said(decision: Decision) -> str:
 
 def as_csv(decisions: Sequence[tuple[str, Decision]]) -> str:
     """A row for each test, scenario and model; of the state when the manoeuvre begins in SI units."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
     head = ["test", "scenario", "vehicles", "driver", "side", "at", "margin_m", "margin_s"]
-    writer.writerow([*head, *_STARTS, "reason"])
-    for test, x in decisions:
-        row = [test, x.scenario, " ".join(x.vehicles), x.driver, x.side, x.at, x.metres, x.seconds]
-        values = [*row, *(x.start.get(name) for name in _STARTS), x.reason]
-        writer.writerow(["" if value is None else value for value in values])
-    return out.getvalue()
+    rows = (
+        [
+            *(test, x.scenario, " ".join(x.vehicles), x.driver, x.side, x.at, x.metres, x.seconds),
+            *(x.start.get(name) for name in _STARTS),
+            x.reason,
+        ]
+        for test, x in decisions
+    )
+    return csv_text([*head, *_STARTS, "reason"], rows)

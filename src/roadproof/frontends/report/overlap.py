@@ -1,7 +1,5 @@
-"""The overlap of scenarios to look at: a matrix as text, a table as CSV, a heat map with the cores."""
+"""The overlap of scenarios to look at: a matrix as text, a sheet, a heat map with the cores."""
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from textwrap import wrap
@@ -9,6 +7,7 @@ from typing import Any
 
 from roadproof.analysis.overlap import PairVerdict, name_of
 from roadproof.frontends.report.figures import as_bytes, legend_beside, make_figure
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.words import Called, Words, legend
 from roadproof.verdict import Verdict
 
@@ -26,8 +25,6 @@ _MEANING = {
     Verdict.UNKNOWN: "not decided",
 }
 _CELL, _NAMES, _LETTER = 0.32, 4.0, 0.06  # inches: a cell, the names beside, a letter of the cores
-NAMES = ("name_a", "name_b")
-"""Columns of what the two scenarios are called."""
 FEW = 30
 """So many pairs are listed by number."""
 
@@ -57,20 +54,35 @@ def as_matrix(verdicts: Sequence[PairVerdict], across: bool) -> str:
     return "\n".join([*lines, *(f"  {SIGNS[v]} {v}: {_MEANING[v]}" for v in present)])
 
 
-def as_csv(verdicts: Sequence[PairVerdict], words: Called) -> str:
-    """A line for each pair; parts of a core are separated by semicolons."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(["a", "b", "set_a", "set_b", "verdict", "formula", "core", "reason", "evidence", *NAMES])
-    for x in verdicts:
-        name = name_of(x.a, x.b)
-        evidence = f"impossible-{name}.json" if x.certificate else f"drive-{name}.json" if x.drive else ""
-        formula = "" if x.query is None else x.query.text
-        who = (x.a.number, x.b.number, x.a.set_name, x.b.set_name)
-        core = "; ".join(dict.fromkeys(part for one in x.cores for part in one.told))
-        names = (words[x.a.number].name, words[x.b.number].name)
-        writer.writerow([*who, x.verdict, formula, core, x.reason, evidence, *names])
-    return out.getvalue()
+def sheet_of(verdicts: Sequence[PairVerdict], words: Called) -> Sheet[PairVerdict]:
+    """An entry for each pair; parts of a core are separated by semicolons."""
+    return Sheet(
+        (
+            Column("a", lambda x: x.a),
+            Column("b", lambda x: x.b),
+            Column("set_a", lambda x: x.a.set_name, "csv"),
+            Column("set_b", lambda x: x.b.set_name, "csv"),
+            Column("verdict", lambda x: x.verdict),
+            Column("formula", lambda x: "" if x.query is None else x.query.text, "csv"),
+            Column("core", _core, "csv"),
+            Column("reason", lambda x: x.reason),
+            Column("evidence", _evidence, "csv"),
+            Column("name_a", lambda x: words[x.a.number].name, "csv"),
+            Column("name_b", lambda x: words[x.b.number].name, "csv"),
+            Column("seconds", lambda x: x.seconds, "frame"),
+        ),
+        verdicts,
+    )
+
+
+def _core(pair: PairVerdict) -> str:
+    return "; ".join(dict.fromkeys(part for core in pair.cores for part in core.told))
+
+
+def _evidence(pair: PairVerdict) -> str:
+    """The name of the file that shows the verdict."""
+    name = name_of(pair.a, pair.b)
+    return f"impossible-{name}.json" if pair.certificate else f"drive-{name}.json" if pair.drive else ""
 
 
 def draw_overlap(

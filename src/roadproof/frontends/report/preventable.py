@@ -1,20 +1,20 @@
 """Plates to look at: which initial values a driver prevents a collision from, as text, CSV and pictures."""
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import product
 from math import ceil
 from textwrap import wrap
-from typing import Any
+from typing import Any, TypeAlias
 
 from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable, Shown
-from roadproof.drivers.lines import Line
+from roadproof.drivers.lines import End, Line
 from roadproof.drivers.manoeuvres import Quantity
 from roadproof.drivers.models import MODELS, parts_of
 from roadproof.drivers.words import legend
 from roadproof.frontends.report.figures import as_bytes, make_page
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.world.units import UNITS
 
 COLOURS: Mapping[str, str] = {
@@ -118,25 +118,30 @@ def _some(lines: Sequence[Line]) -> Sequence[Line]:
     return [lines[round(k * (len(lines) - 1) / (_TOLD - 1))] for k in range(_TOLD)]
 
 
-def as_csv(study: Preventable, plates: Sequence[Plate]) -> str:
-    """A row for each span of each line: SI units, ends as numbers and exactly."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    fixed = list(dict.fromkeys(name for plate in plates for name in plate.fixed))
+Entry: TypeAlias = tuple[Plate, Line, tuple[End, End]]
+"""A span of a line of a plate."""
+
+
+def sheet_of(study: Preventable, plates: Sequence[Plate]) -> Sheet[Entry]:
+    """An entry for each span of each line: SI units, ends as numbers and in CSV also exactly."""
+    fixed = dict.fromkeys(name for plate in plates for name in plate.fixed)
     along, across = study.manoeuvre.line, study.manoeuvre.across
-    ends = [f"{along}_from", f"{along}_to", f"{along}_from_exact", f"{along}_to_exact"]
-    writer.writerow(["model", *fixed, across, *ends, "note"])
-    for plate in plates:
-        for line in plate.lines:
-            begins = [plate.model, *(_si(plate.fixed[name]) for name in fixed), _si(line.at)]
-            for a, b in line.spans:
-                exact = ("", "") if plate.stepped else (a.exact, b.exact)
-                writer.writerow([*begins, a.near, b.near, *exact, plate.stepped or plate.motion])
-    return out.getvalue()
+    columns: tuple[Column[Entry], ...] = (
+        Column("model", lambda x: x[0].model),
+        *(Column(name, partial(_fixed, name)) for name in fixed),
+        Column(across, lambda x: x[1].at),
+        Column(f"{along}_from", lambda x: x[2][0].near),
+        Column(f"{along}_to", lambda x: x[2][1].near),
+        Column(f"{along}_from_exact", lambda x: "" if x[0].stepped else x[2][0].exact, "csv"),
+        Column(f"{along}_to_exact", lambda x: "" if x[0].stepped else x[2][1].exact, "csv"),
+        Column("note", lambda x: x[0].stepped or x[0].motion, "csv"),
+    )
+    every = [(plate, line, span) for plate in plates for line in plate.lines for span in line.spans]
+    return Sheet(columns, every)
 
 
-def _si(value: Fraction) -> str:
-    return f"{float(value):.10g}"
+def _fixed(name: str, entry: Entry) -> Fraction:
+    return entry[0].fixed[name]
 
 
 def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:

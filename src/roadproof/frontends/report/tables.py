@@ -1,9 +1,9 @@
 """A table as text, Markdown, CSV and LaTeX: one content, four looks."""
 
-import csv
-import io
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+
+from roadproof.frontends.report.sheet import csv_text
 
 _LATEX = {
     "\\": r"\textbackslash{}",
@@ -67,11 +67,7 @@ def as_markdown(table: Table) -> str:
 
 def as_csv(table: Table) -> str:
     """Header and rows; title and notes are left out, so that programs can read it."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(table.columns)
-    writer.writerows(table.rows)
-    return out.getvalue()
+    return csv_text(table.columns, table.rows)
 
 
 def as_latex(table: Table) -> str:
