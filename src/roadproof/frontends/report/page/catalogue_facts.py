@@ -57,12 +57,12 @@ def _start(x: KeptDecision) -> str:
     return ", ".join(f"{name} {value:.3g}" for name, value in x.start.items() if name not in _SIZES)
 
 
-def provenance(data: Index, book: PageContext) -> list[Content]:
+def provenance(data: Index, context: PageContext) -> list[Content]:
     """How the answer was made: command, version, definitions, parameters, and digests of tests."""
     if data.request is None:
         return []
     request = Request(**vars(data.request))
-    home = book.library.select(request.sets[0], data.options)
+    home = context.library.select(request.sets[0], data.options)
     values = {name: Fraction(value) for name, value in data.parameters.items()}
     command = request.command(further_options(home, values, data.scenarios))
     readings = ", ".join(f"{k} = {v}" for k, v in data.options.items())

@@ -28,7 +28,7 @@ from roadproof.library.scenarios import danger_comes, number_in, roles
 MOST_FORMULAS = 6
 
 
-def catalogue(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def catalogue(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """What tests show: a row for each situation, a matrix of tests, and what is odd about them."""
     data = read(Index, result.data, result.name)
     gaps, wanted, tests, facts = data.gaps, data.targets, data.tests, data.facts
@@ -62,11 +62,11 @@ def catalogue(result: Result, book: PageContext, words: Mapping[int, str]) -> Ma
     parts += _ranges(data.ranges)
     parts += [tag("h3", "The tests")] if tests else []
     for k, x in enumerate(tests):
-        parts.append(_test(result, data, k, [y for y in facts if y.test == x.id], book))
+        parts.append(_test(result, data, k, [y for y in facts if y.test == x.id], context))
     known = {x.id for x in tests}
-    parts += [_fact(x, result, book) for x in facts if x.test not in known]
-    parts += [_gap(x, result, book) for x in gaps.classes]
-    return joined([*parts, *provenance(data, book)])
+    parts += [_fact(x, result, context) for x in facts if x.test not in known]
+    parts += [_gap(x, result, context) for x in gaps.classes]
+    return joined([*parts, *provenance(data, context)])
 
 
 def _remarks(data: Index) -> dict[str, list[str]]:
@@ -133,7 +133,7 @@ def _row(
     return cells
 
 
-def _test(result: Result, data: Index, place: int, facts: Sequence[KeptFact], book: PageContext) -> Markup:
+def _test(result: Result, data: Index, place: int, facts: Sequence[KeptFact], context: PageContext) -> Markup:
     """One test: what it is and claims; its drive with what it shows, or what is proved of its formula."""
     x = data.tests[place]
     summary = (tag("b", x.id), f" {x.title}" if x.title else "")
@@ -145,11 +145,11 @@ def _test(result: Result, data: Index, place: int, facts: Sequence[KeptFact], bo
         inside += [tag("pre", x.fault, class_="wrong")] if x.fault else []
         shown = [(y.what, ", ".join(y.vehicles), y.lane, y.at) for y in x.shown]
         inside += [table(("shows", "vehicles", "L", "from (s)"), shown)] if shown else []
-        inside += [] if x.fault else [_drive(data, x, book)]
-    return folded(summary, *inside, *(_fact(y, result, book) for y in facts), id=_id(result, place))
+        inside += [] if x.fault else [_drive(data, x, context)]
+    return folded(summary, *inside, *(_fact(y, result, context) for y in facts), id=_id(result, place))
 
 
-def _drive(data: Index, x: ConcreteTest, book: PageContext) -> Markup:
+def _drive(data: Index, x: ConcreteTest, context: PageContext) -> Markup:
     """The drive of a test with the scenarios that it is said to show, judged for the page."""
     path = Path(x.file)
     if not x.dense:
@@ -175,31 +175,31 @@ def _drive(data: Index, x: ConcreteTest, book: PageContext) -> Markup:
         text = f"{y.what}({first}, {group}, {lanes[y.lane]})"
         asked.append(ShownFormula("watch" if k else "question", text))
     if not asked:
-        home = book.library.select(set_name)
+        home = context.library.select(set_name)
         asked, since = [ShownFormula("question", danger_comes(home, *roles(2)).text)], []
-    return book.drive(path, put=put, asked=asked, since=since)
+    return context.drive(path, put=put, asked=asked, since=since)
 
 
-def _fact(x: KeptFact, result: Result, book: PageContext) -> Markup:
+def _fact(x: KeptFact, result: Result, context: PageContext) -> Markup:
     told = f" {x.test} {_RELATIONS.get(x.relation, x.relation)} {x.other} ".replace("  ", " ")
     inside: list[Content] = [tag("p", x.reason)] if x.reason else []
     return folded(
         (verdict(x.verdict), told, tag("code", short(x.formula))),
         *inside,
-        *evidence_of(result, book, x.drive, x.certificate),
+        *evidence_of(result, context, x.drive, x.certificate),
     )
 
 
 _RELATIONS = {"runs": "can be run", "empty": "can never be run", "reaches": "reaches", "open": "is open:"}
 
 
-def _gap(x: KeptClass, result: Result, book: PageContext) -> Markup:
+def _gap(x: KeptClass, result: Result, context: PageContext) -> Markup:
     """A class of gaps that no test shows: a drive of it, or a proof that there is none."""
     inside: list[Content] = [tag("p", tag("code", x.claim))] if x.claim else []
     inside += [tag("p", x.reason)] if x.reason else []
-    inside += [part for y in x.gaps for part in evidence_of(result, book, y.drive)]
+    inside += [part for y in x.gaps for part in evidence_of(result, context, y.drive)]
     summary = (verdict(x.verdict), f" gap, scenario {x.scenario}: {x.description}")
-    return folded(summary, *inside, *evidence_of(result, book, None, x.certificate))
+    return folded(summary, *inside, *evidence_of(result, context, None, x.certificate))
 
 
 def _ranges(found: Sequence[Range]) -> list[Content]:

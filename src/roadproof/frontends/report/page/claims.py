@@ -17,7 +17,7 @@ from roadproof.library.motion import statement
 from roadproof.verdict import Verdict
 
 
-def evidence(findings: Sequence[Finding], book: PageContext, solver: str) -> Markup:
+def evidence(findings: Sequence[Finding], context: PageContext, solver: str) -> Markup:
     """Evidence with what was found of it: certificates in a table, each drive with its viewer."""
     accepted = [x for x in findings if x.outcome is Acceptance.ACCEPTED]
     wrong = [(str(x.outcome), x.label, x.where, x.reason) for x in findings if x not in accepted]
@@ -29,10 +29,10 @@ def evidence(findings: Sequence[Finding], book: PageContext, solver: str) -> Mar
     parts: list[Content] = [tag("p", told, kinds)]
     parts += [table(("", "what", "where", "why"), wrong, class_="wrong")] if wrong else []
     parts += [filtered(table(("verdict", "what", "claim", "checked"), rows))] if rows else []
-    paths = {id(finding): path for path, finding in book.findings.items()}
+    paths = {id(finding): path for path, finding in context.findings.items()}
     for x in accepted:
         if x.kind == "drive" and id(x) in paths:
-            shown, title = book.drive(paths[id(x)]), book.documents[-1]["title"]
+            shown, title = context.drive(paths[id(x)]), context.documents[-1]["title"]
             called = tag("b", f"{title} ({x.label.rpartition(' ')[2]})" if x.label else title)
             summary = (verdict(x.verdict), " ", called, " ", tag("code", x.claim))
             parts.append(folded(summary, tag("p", _notes(x), class_="faint"), shown))
@@ -46,22 +46,24 @@ def _notes(finding: Finding) -> str:
     return "; ".join([*finding.checked, *([unchecked] if unchecked else [])])
 
 
-def claims(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def claims(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """An index of claims, or the answer of ``prove --json``."""
     entries = [*_entries_of(result)]
     rows: list[tuple[Content, ...]] = []
     refuted: list[Markup] = []
     accepted = 0
     for number, x in enumerate(entries, 1):
-        finding = book.finding(result.folder, x.evidence if isinstance(x, Claim) else x.certificate)
+        finding = context.finding(result.folder, x.evidence if isinstance(x, Claim) else x.certificate)
         if finding is None and result.folder is not None:
-            finding = book.inside.get(f"{result.folder / INDEX}, claim {number}")
+            finding = context.inside.get(f"{result.folder / INDEX}, claim {number}")
         accepted += finding is not None and finding.outcome is Acceptance.ACCEPTED
         claim = tag("code", statement(x.assuming, x.claim))
         outcome = "" if finding is None else str(finding.outcome)
         rows.append((verdict(x.verdict), _label(x), x.set, claim, outcome))
         if x.verdict is Verdict.REFUTED:
-            refuted.append(folded((verdict("REFUTED"), f" {_label(x)} ", claim), _against(x, result, book)))
+            refuted.append(
+                folded((verdict("REFUTED"), f" {_label(x)} ", claim), _against(x, result, context))
+            )
     told = f"; the evidence of {accepted} was accepted when this page was made" if accepted else ""
     head = ("verdict", "property", "set", "claim", "evidence")
     line = tag(
@@ -86,15 +88,15 @@ def _label(claim: Claim | ClaimAnswer) -> str:
     return f"{claim.property}{f'-{claim.part}' if claim.part else ''}{scenario}"
 
 
-def _against(claim: Claim | ClaimAnswer, result: Result, book: PageContext) -> Markup:
+def _against(claim: Claim | ClaimAnswer, result: Result, context: PageContext) -> Markup:
     if isinstance(claim, ClaimAnswer) and claim.refuted_by == "drive":
-        return book.drive(claim.counterexample["drive"])
+        return context.drive(claim.counterexample["drive"])
     if isinstance(claim, Claim) and claim.evidence is not None and result.folder is not None:
-        return book.drive(result.folder / claim.evidence)
+        return context.drive(result.folder / claim.evidence)
     return tag("p", "Refuted by a trace over points in time, which may jump; it is in the result.")
 
 
-def witnesses(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def witnesses(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """The answer of ``witness --json``."""
     made = []
     outcomes = read(drives.Answer, result.data, result.name).verdicts
@@ -103,7 +105,7 @@ def witnesses(result: Result, book: PageContext, words: Mapping[int, str]) -> Ma
         summary = (verdict(x.verdict), " ", tag("b", called), tag("code", x.formula))
         inside = [tag("p", x.reason)] if x.reason else []
         inside += [core(x.core)] if x.core else []
-        made.append(folded(summary, *inside, *(book.drive(y) for y in x.drives)))
+        made.append(folded(summary, *inside, *(context.drive(y) for y in x.drives)))
     return joined([tag("p", counts(x.verdict for x in outcomes)), *made])
 
 
@@ -116,7 +118,7 @@ _RELATIONS: Mapping[comparisons.Relation, str] = {
 }
 
 
-def comparison(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def comparison(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """The answer of ``compare --json``."""
     answer = read(comparisons.Answer, result.data, result.name)
     one, two = answer.first, answer.second
@@ -127,6 +129,6 @@ def comparison(result: Result, book: PageContext, words: Mapping[int, str]) -> M
     ]
     both = (("first implies second", answer.forward), ("second implies first", answer.backward))
     for name, x in both:
-        shown = [] if x.drive is None else [book.drive(x.drive)]
+        shown = [] if x.drive is None else [context.drive(x.drive)]
         parts.append(folded((verdict(x.verdict), f" {name}"), tag("p", x.reason), *shown))
     return joined(parts)

@@ -12,14 +12,14 @@ from roadproof.frontends.report.page.pieces import cell, counts, evidence_of, fo
 from roadproof.frontends.report.page.results import Result
 
 
-def explored(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def explored(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """Every exploration: its values, where they change, and the extremes of measures."""
     every = read(Index, result.data, result.name).explored
-    return joined([_exploration(f"{result.id}-{k}", x, result, book, words) for k, x in enumerate(every)])
+    return joined([_exploration(f"{result.id}-{k}", x, result, context, words) for k, x in enumerate(every)])
 
 
 def _exploration(
-    place: str, x: Exploration, result: Result, book: PageContext, words: Mapping[int, str]
+    place: str, x: Exploration, result: Result, context: PageContext, words: Mapping[int, str]
 ) -> Markup:
     called = "" if x.scenario is None else f"scenario {x.scenario} {words.get(x.scenario, '')}".rstrip()
     parts: list[Content] = [tag("h3", called, " ", tag("code", x.formula))]
@@ -28,18 +28,18 @@ def _exploration(
         parts += [tag("p", counted), _values(place, x.vary, x.values), *_told_boundaries(x)]
     parts += [_extremes(place, x.extremes, x.vary)] if x.extremes else []
     for k, one in enumerate(x.values):
-        parts.append(_behind(f"value-{place}-{k}", _at(one, x.vary), one, result, book))
+        parts.append(_behind(f"value-{place}-{k}", _at(one, x.vary), one, result, context))
     for k, boundary in enumerate(x.boundaries):
         sides = {"held": boundary.held, "missed": boundary.missed, "surely": boundary.surely}
         for name, found in sides.items():
             if found and found not in x.values:
-                parts.append(_behind(f"{name}-{place}-{k}", _at(found, x.vary), found, result, book))
+                parts.append(_behind(f"{name}-{place}-{k}", _at(found, x.vary), found, result, context))
     for k, extreme in enumerate(x.extremes):
         for name, found in extreme.sides.items():
             if found:
                 where = "".join(f", {y}" for y in _values_at(extreme.point, x.vary))
                 said = f"{extreme.sense} {extreme.measure} = {_measured(found, extreme)}{where}"
-                parts.append(_behind(f"{name}-{place}-x{k}", said, found, result, book))
+                parts.append(_behind(f"{name}-{place}-x{k}", said, found, result, context))
     return joined(parts)
 
 
@@ -88,10 +88,10 @@ def _measured(found: Finding, extreme: Extreme) -> str:
     return _number(found.at[0], extreme.unit) if found.at else "no value"
 
 
-def _behind(target: str, said: str, found: Finding, result: Result, book: PageContext) -> Markup:
+def _behind(target: str, said: str, found: Finding, result: Result, context: PageContext) -> Markup:
     inside: list[Content] = [tag("p", tag("code", found.formula))]
     inside += [tag("p", found.reason)] if found.reason else []
-    shown = evidence_of(result, book, found.drive, found.certificate)
+    shown = evidence_of(result, context, found.drive, found.certificate)
     return folded((verdict(found.verdict), f" {said}"), *inside, *shown, id=target)
 
 

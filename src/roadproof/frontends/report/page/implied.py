@@ -19,7 +19,7 @@ from roadproof.frontends.report.page.pieces import (
 from roadproof.frontends.report.page.results import Result
 
 
-def order(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def order(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """A matrix of who implies whom: behind each cell the proof, or a drive on which that is false."""
     index = read(implications.Index, result.data, result.name)
     edges = {(x.above, x.below) for x in index.edges}
@@ -50,13 +50,13 @@ def order(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup
     for k, proof in enumerate(index.proved):
         told = "" if (proof.above, proof.below) in edges else " (it follows from others)"
         summary = (verdict("PROVED"), " ", tag("b", f"{proof.above} implies {proof.below}"), told)
-        shown = evidence_of(result, book, certificate=proof.certificate)
+        shown = evidence_of(result, context, certificate=proof.certificate)
         parts.append(
             folded(summary, tag("p", tag("code", proof.claim)), *shown, id=f"implied-{result.id}-{k}")
         )
     for drive in index.drives:
         title = (tag("b", f"{drive.holds} without {', '.join(drive.fails)}"),)
-        shown = evidence_of(result, book, drive.drive)
+        shown = evidence_of(result, context, drive.drive)
         parts.append(folded(title, *shown, id=f"against-{result.id}-{drive.number}"))
     parts += [
         tag("p", verdict("UNKNOWN"), f" {one} implies {two}: {why}") for (one, two), why in doubts.items()
@@ -86,7 +86,7 @@ def _scenario(name: str, words: Mapping[int, str], scope: str) -> Markup:
     return tag("th", name, scope=scope, title=words.get(_number(name)))
 
 
-def redundancy(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def redundancy(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """The parts of scenarios: which could be left out, by proof, and drives that need the others."""
     every = read(parts_of_scenarios.Index, result.data, result.name).verdicts
     entries = sorted(every, key=lambda x: x.redundant is False)
@@ -108,7 +108,9 @@ def redundancy(result: Result, book: PageContext, words: Mapping[int, str]) -> M
             inside.append(
                 tag("p", "Refuted by a trace over points in time, which may jump; it is in the result.")
             )
-        shown.append(folded(summary, *inside, *evidence_of(result, book, x.drive, x.certificate), id=target))
+        shown.append(
+            folded(summary, *inside, *evidence_of(result, context, x.drive, x.certificate), id=target)
+        )
     head = ("", "scenario", "where", "part", "put in its place", "where it is assumed that")
     counted = counts(x.verdict for x in entries)
     return joined([tag("p", told, " ", counted), filtered(table(head, rows)), *shown])

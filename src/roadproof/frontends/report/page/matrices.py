@@ -14,7 +14,7 @@ from roadproof.frontends.report.page.results import Result
 End: TypeAlias = tuple[int, str]
 
 
-def overlap(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def overlap(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """Every pair of scenarios: a cell each, and behind it the drive or the clash."""
     pairs = read(Index, result.data, result.name).verdicts
     several = len({x for pair in pairs for x in (pair.set_a, pair.set_b)}) > 1
@@ -38,7 +38,7 @@ def overlap(result: Result, book: PageContext, words: Mapping[int, str]) -> Mark
             tag("p", counts(x.verdict for x in pairs), ". Each cell leads to its drive, or to what clashes."),
             matrix(columns, rows),
             folded(("What the scenarios are called",), table(("", ""), called)) if called else None,
-            *(_pair(result, k, x, book, words) for k, x in enumerate(pairs)),
+            *(_pair(result, k, x, context, words) for k, x in enumerate(pairs)),
         ]
     )
 
@@ -55,16 +55,16 @@ def _id(result: Result, what: str, place: object) -> str:
     return f"{what}-{result.id}-{place}"
 
 
-def _pair(result: Result, place: int, pair: Pair, book: PageContext, words: Mapping[int, str]) -> Markup:
+def _pair(result: Result, place: int, pair: Pair, context: PageContext, words: Mapping[int, str]) -> Markup:
     one, two = (tag("b", f"{x} {words.get(x, '')}".strip()) for x in (pair.a, pair.b))
     inside: list[Content] = [tag("p", tag("code", pair.formula))]
     inside += [tag("p", pair.reason)] if pair.reason else []
     cores = [(x.formula, x.parts) for x in pair.cores]
-    inside += evidence_of(result, book, pair.drive, pair.certificate, cores)
+    inside += evidence_of(result, context, pair.drive, pair.certificate, cores)
     return folded((verdict(pair.verdict), " ", one, " and ", two), *inside, id=_id(result, "pair", place))
 
 
-def coverage(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def coverage(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """Which disturbances a set misses: classes of gaps by scenario, and behind each cell a drive."""
     index = read(gaps.Index, result.data, result.name)
     count = len(index.gaps)
@@ -77,26 +77,26 @@ def coverage(result: Result, book: PageContext, words: Mapping[int, str]) -> Mar
     for claim in index.claims:
         inside: list[Content] = [tag("p", claim.reason)] if claim.reason else []
         summary = (verdict(claim.verdict), " ", tag("code", claim.claim))
-        parts.append(folded(summary, *inside, *evidence_of(result, book, certificate=claim.certificate)))
+        parts.append(folded(summary, *inside, *evidence_of(result, context, certificate=claim.certificate)))
     parts += [_classes(result, index.classes, words)] if index.classes else []
     for gap in index.gaps:
         where = f" on {short(gap.road)}, caught by {short(gap.caught_by)}"
-        inside = [tag("p", tag("code", gap.formula)), *evidence_of(result, book, gap.drive)]
+        inside = [tag("p", tag("code", gap.formula)), *evidence_of(result, context, gap.drive)]
         title = (tag("b", f"gap {gap.number}"), where)
         parts.append(folded(title, *inside, id=_id(result, "gap", gap.number)))
     notes = [(x.scenario, x.description, x.reason) for x in index.classes if x.reason and x.gaps]
     parts += [table(("scenario", "what", "note"), notes)] if notes else []
-    parts += [_no_gap(result, k, x, book) for k, x in enumerate(index.classes) if not x.gaps]
+    parts += [_no_gap(result, k, x, context) for k, x in enumerate(index.classes) if not x.gaps]
     return joined(parts)
 
 
-def _no_gap(result: Result, place: int, x: gaps.CountedClass, book: PageContext) -> Markup:
+def _no_gap(result: Result, place: int, x: gaps.CountedClass, context: PageContext) -> Markup:
     """A class without a drive: what was proved of it, or why it is not known."""
     told = f" scenario {x.scenario}, {x.component}: " if x.scenario is not None else " "
     inside: list[Content] = [tag("p", tag("code", x.claim))] if x.claim else []
     inside += [tag("p", x.reason)] if x.reason else []
     summary = (verdict(x.verdict), told, x.condition or x.description)
-    shown = evidence_of(result, book, certificate=x.certificate)
+    shown = evidence_of(result, context, certificate=x.certificate)
     return folded(summary, *inside, *shown, id=_id(result, "class", place))
 
 

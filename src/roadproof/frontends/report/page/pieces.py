@@ -84,16 +84,16 @@ def core(parts: object) -> Markup:
     return joined([tag("p", "No drive: these parts clash."), tag("ul", *items)])
 
 
-def behind(entry: Mapping[str, Any], result: Result, book: PageContext) -> list[Content]:
+def behind(entry: Mapping[str, Any], result: Result, context: PageContext) -> list[Content]:
     """As ``evidence_of``, of an answer as plain data."""
     cores = entry.get("cores") or ([{"parts": entry["core"]}] if entry.get("core") else [])
     clashes = [(x.get("formula", ""), x.get("parts", ())) for x in cores]
-    return evidence_of(result, book, entry.get("drive"), entry.get("certificate"), clashes)
+    return evidence_of(result, context, entry.get("drive"), entry.get("certificate"), clashes)
 
 
 def evidence_of(
     result: Result,
-    book: PageContext,
+    context: PageContext,
     drive: object = None,
     certificate: object = None,
     cores: Sequence[tuple[str, Sequence[str]]] = (),
@@ -105,11 +105,11 @@ def evidence_of(
         found.append(core(parts))
     for name in (drive, certificate):
         if isinstance(name, str):
-            found.append(book.checked(book.finding(result.folder, name)))
+            found.append(context.checked(context.finding(result.folder, name)))
     if isinstance(drive, Mapping):
-        found.append(book.drive(drive))
+        found.append(context.drive(drive))
     elif isinstance(drive, str) and result.folder is not None:
-        found.append(book.drive(result.folder / drive))
+        found.append(context.drive(result.folder / drive))
     return found
 
 

@@ -19,7 +19,7 @@ from roadproof.world.units import UNITS
 _WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and the room for its numbers
 
 
-def plates(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def plates(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """Each choice of fixed values as a picture with all its models, then plates and lemmas with evidence."""
     index = read(Index, result.data, result.name)
     found, along, across = index.plates, index.along, index.across
@@ -43,10 +43,10 @@ def plates(result: Result, book: PageContext, words: Mapping[int, str]) -> Marku
     fixed = {name for x in found for name in x.fixed}
     symbols = [x for name, x in known.items() if name in {along[0], across[0], *fixed}]
     parts.append(tag("p", f"{legend(symbols)}.", class_="faint"))
-    parts += [_plate(x, known, result, book) for x in found]
+    parts += [_plate(x, known, result, context) for x in found]
     for lemma in index.lemmas:
         inside: list[Content] = [tag("p", lemma.title), tag("p", tag("code", lemma.claim))]
-        inside += evidence_of(result, book, certificate=lemma.certificate)
+        inside += evidence_of(result, context, certificate=lemma.certificate)
         parts.append(folded((verdict(lemma.verdict), " lemma ", tag("b", lemma.name)), *inside))
     return joined(parts)
 
@@ -153,7 +153,7 @@ def _number(
     return tag("text", f"{value / _unit(known, name)[1]:.4g}", x=x, y=y, text_anchor=anchor)
 
 
-def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, book: PageContext) -> Markup:
+def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, context: PageContext) -> Markup:
     """A plate: its formula, some of what it says in words, a drive on each side."""
     fixed = _told(known, x.fixed)
     inside: list[Content] = [tag("p", tag("code", x.formula))]
@@ -167,7 +167,7 @@ def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, book: PageCo
         said = _told(known, {k: v for k, v in y.at.items() if k in known})
         inner: list[Content] = [tag("p", y.reason)] if y.reason else []
         inner += [tag("p", tag("code", y.formula))]
-        inner += evidence_of(result, book, y.drive)
+        inner += evidence_of(result, context, y.drive)
         inside.append(folded((verdict(y.verdict), f" {y.side}: {said}"), *inner))
     name = f" {_title(x.model)}{fixed and f'; {fixed}'}"
     return folded((verdict(x.verdict), tag("b", name)), *inside)

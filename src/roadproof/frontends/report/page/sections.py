@@ -26,25 +26,25 @@ _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters"
 _EMPTY: tuple[object, ...] = (None, "", [], {})
 
 
-def section(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def section(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """A result of any kind; ``words`` are what scenarios are called. Raises ``InputError``."""
     title, made = _SECTIONS.get(result.kind, (_TITLES.get(result.kind, result.kind), _plain))
     of_set = result.data.get("set")
     told = f"{title}: {result.name}" + (f" (set {of_set})" if isinstance(of_set, str) else "")
     try:
-        shown = made(result, book, words)
+        shown = made(result, context, words)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         reason = f"{type(error).__name__}: {error}"[:200]
         raise InputError(
             f"{result.name}: it is no result that can be shown: what it says is not of the form of "
             f"{result.schema} ({reason}); make it again"
         ) from None
-    return tag("section", tag("h2", told), _rejection(result, book), shown, id=f"result-{result.id}")
+    return tag("section", tag("h2", told), _rejection(result, context), shown, id=f"result-{result.id}")
 
 
-def _rejection(result: Result, book: PageContext) -> Markup | None:
+def _rejection(result: Result, context: PageContext) -> Markup | None:
     """In red, above all else, what is wrong with the answer as a whole."""
-    reasons = () if result.folder is None else book.rejected.get(str(result.folder / "index.json"), ())
+    reasons = () if result.folder is None else context.rejected.get(str(result.folder / "index.json"), ())
     if not reasons:
         return None
     listed = tag("ul", *(tag("li", x) for x in reasons[:MOST_REASONS]))
@@ -52,12 +52,12 @@ def _rejection(result: Result, book: PageContext) -> Markup | None:
     return tag("div", tag("p", f"roadproof check rejects this answer{more}:"), listed, class_="wrong")
 
 
-def evidence_section(findings: Sequence[Finding], book: PageContext, solver: str) -> Markup:
+def evidence_section(findings: Sequence[Finding], context: PageContext, solver: str) -> Markup:
     """Evidence that no result names."""
-    return tag("section", tag("h2", "Evidence"), claims.evidence(findings, book, solver))
+    return tag("section", tag("h2", "Evidence"), claims.evidence(findings, context, solver))
 
 
-def _plain(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def _plain(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """Each list of entries as a table, with the drives that they name below it; what is left in lines."""
     parts: list[Content] = []
     for key, value in result.data.items():
@@ -71,7 +71,7 @@ def _plain(result: Result, book: PageContext, words: Mapping[int, str]) -> Marku
             if isinstance(x.get("drive"), str | Mapping):
                 said = short(x.get("claim") or x.get("formula") or f"drive {x.get('number', '')}")
                 word = (verdict(x["verdict"]), " ") if x.get("verdict") else ()
-                parts.append(folded((*word, tag("code", said)), *behind(x, result, book)))
+                parts.append(folded((*word, tag("code", said)), *behind(x, result, context)))
     return joined(parts)
 
 

@@ -14,7 +14,7 @@ from roadproof.frontends.report.page.pieces import bar, evidence_of, folded, sho
 from roadproof.frontends.report.page.results import Result
 
 
-def classes(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def classes(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """Classes that exclude each other: the share of each, a drive for each, and what is proved of them."""
     index = read(Index, result.data, result.name)
     totals: Counter[int] = Counter()  # situations by how many vehicles they have
@@ -34,7 +34,7 @@ def classes(result: Result, book: PageContext, words: Mapping[int, str]) -> Mark
     file = folded(("The classes as a specification file",), tag("pre", index.text)) if index.text else None
     drives = []
     for x in index.classes:
-        inside = (tag("p", tag("code", x.formula)), *evidence_of(result, book, x.drive))
+        inside = (tag("p", tag("code", x.formula)), *evidence_of(result, context, x.drive))
         drives.append(folded((verdict(x.verdict), " ", tag("b", x.name)), *inside))
     head = ("verdict", "class", "what happens", *_SHARES[: 2 * counted_at_all])
     return joined([tag("p", told), table(head, rows), file, *drives])
@@ -43,7 +43,7 @@ def classes(result: Result, book: PageContext, words: Mapping[int, str]) -> Mark
 _SHARES = ("traces", "share of situations with as many vehicles")
 
 
-def traffic(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def traffic(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """The results table of recordings, with recall as bars, and what detectors of earlier works report."""
     answer = read(Answer, result.data, result.name)
     facts = {

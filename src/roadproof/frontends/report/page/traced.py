@@ -12,7 +12,7 @@ from roadproof.frontends.report.page.results import Result
 _SIGNS = {"true": ("✓", "proof"), "false": ("✗", "against")}
 
 
-def monitored(result: Result, book: PageContext, words: Mapping[int, str]) -> Markup:
+def monitored(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
     """The answer of ``monitor --json``, which holds no trace: what was said of it, and on what."""
     answer = read(Answer, result.data, result.name)
     sign, kind = _SIGNS.get(answer.verdict, ("?", "doubt"))
