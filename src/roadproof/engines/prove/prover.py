@@ -96,8 +96,7 @@ def prove(
     above zero, roads, and signals as functions of time; a value that is ``assumed``, or that the claim's own
     premise demands, is put in first. A proof counts only once its certificate, derived apart, has been
     answered unsat. Where motion is ``assumed`` nothing is refuted: a trace that has it at finitely many
-    instants need be no motion. Raises ``BudgetExceeded`` after the
-    timeout, ``InputError`` for assumptions that are not allowed.
+    instants need be no motion. Raises ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
     """
     begun = now()
     meter = (effort or Effort()).meter()
@@ -106,8 +105,7 @@ def prove(
     pinned = value_texts(specification, demanded)
     values = {**here, **demanded}
     states = _states(specification, values)
-    atoms = states.atoms
-    premise, claim = goal_of(specification, query, assumed, atoms, pinned)
+    premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
     attempt = _Attempt(query, states, meter, is_moving(assumed.said))
 
     def result(verdict: ClaimVerdict, reason: str = "", certificate: Certificate | None = None) -> Result:
@@ -118,7 +116,7 @@ def prove(
     for goal in conjuncts(claim):
         found = attempt.decide(f.implication(premise, goal), names)
         if isinstance(found, Countermodel):
-            return replace(result(Verdict.REFUTED), countermodel=with_truths(found, atoms))
+            return replace(result(Verdict.REFUTED), countermodel=with_truths(found, states.atoms))
         if isinstance(found, GaveUp):
             return replace(result(Verdict.UNKNOWN, found.reason), stop=found.stop)
         proofs.append(found)
