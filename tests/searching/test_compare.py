@@ -10,7 +10,7 @@ from roadproof.engines.search.compare import compare
 from roadproof.engines.search.question import SearchOptions
 from roadproof.evidence.judged import judge_file
 from roadproof.library.compose import taken_from
-from roadproof.library.scenarios import read_query
+from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import bundled_library
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import Verdict

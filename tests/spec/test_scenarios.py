@@ -4,11 +4,13 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.errors import InputError, TextError
+from roadproof.errors import InputError, TextError, UsageError
+from roadproof.library import scenario_references as references
 from roadproof.library import scenarios
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import Source, Specification, build_library, bundled_library
+from roadproof.library.words import called
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names
 
@@ -96,7 +98,7 @@ def test_a_moment_of_danger_may_be_any_fraction() -> None:
     ],
 )
 def test_a_scenario_is_named_by_its_number(text: str, number: int | None, means: str) -> None:
-    found, query = scenarios.read_query(BASE, text)
+    found, query = references.read_query(BASE, text)
     assert found == number
     assert query.formula == read_claim(BASE, means).formula
     assert query.text == means
@@ -104,15 +106,15 @@ def test_a_scenario_is_named_by_its_number(text: str, number: int | None, means:
 
 def test_a_number_of_no_scenario_is_refused() -> None:
     with pytest.raises(TextError, match="scenario_99"):
-        scenarios.read_query(BASE, "99")
+        references.read_query(BASE, "99")
 
 
 def test_a_scenario_that_is_applied_is_read_from_a_tree() -> None:
-    def read(text: str) -> scenarios.Application | None:
-        return scenarios.application_in(BASE, parse_claim(text).body)
+    def read(text: str) -> references.Application | None:
+        return references.application_in(BASE, parse_claim(text).body)
 
-    assert read("scenario_4(SV, POV, L)") == scenarios.Application(Scenario(4, "base"), ("SV", "POV", "L"))
-    assert read("scenario_12@ext( A,B , M )") == scenarios.Application(Scenario(12, "ext"), ("A", "B", "M"))
+    assert read("scenario_4(SV, POV, L)") == references.Application(Scenario(4, "base"), ("SV", "POV", "L"))
+    assert read("scenario_12@ext( A,B , M )") == references.Application(Scenario(12, "ext"), ("A", "B", "M"))
     for other in (
         "scenario_2_initSafe_POV1(SV, POV, POV2, L)",
         "danger(SV, POV)",
@@ -139,3 +141,30 @@ def test_detectors_are_definitions_about_a_pair_and_a_lane() -> None:
     for name in scenarios.COMPARISON:
         assert signature(BASE, name) == (*scenarios.PAIR, scenarios.LANE)
     assert scenarios.beside_lane(BASE, "POV", "L1").text == "some M in adjacentLanes(L1): atLane(POV, M)"
+
+
+def test_a_name_in_the_words_of_iso_34502_stands_for_scenarios() -> None:
+    assert references.read_numbers(BASE, "cut-in") == (1, 5, 9, 13, 17, 21)
+    assert references.read_numbers(BASE, "Cut-In, lane change, merge zone") == (13,)
+    assert references.read_numbers(BASE, "cut-out, lane change (SV leaves its lane), main road") == (6,)
+    assert references.read_numbers(BASE, "cut-in,7") == (1, 5, 7, 9, 13, 17, 21)
+    assert references.read_query(BASE, "cut-in, lane keep, main road")[0] == 1
+    assert references.claimed(BASE, "deceleration ahead, lane keep, main road", "here") == "scenario_4"
+
+
+def test_every_scenario_is_found_by_its_own_name() -> None:
+    for number, words in called(BASE).items():
+        assert references.read_numbers(BASE, words.name) == (number,)
+
+
+def test_a_name_that_several_scenarios_have_is_refused_with_the_choices() -> None:
+    with pytest.raises(UsageError, match="names 6 scenarios") as refused:
+        references.read_query(BASE, "cut-in")
+    assert "\n  13: cut-in, lane change (SV leaves its lane), merge zone" in str(refused.value)
+    with pytest.raises(InputError, match="names 6 scenarios"):
+        references.claimed(BASE, "cut-in", "here")
+
+
+@pytest.mark.parametrize("text", ["cut", "cutIn", "danger", "cut-in, moon", "", ",", "main"])
+def test_what_names_no_scenario_is_left_to_formulas(text: str) -> None:
+    assert references.numbers_called(BASE, text) == ()

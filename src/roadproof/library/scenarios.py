@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.errors import InputError, UsageError
+from roadproof.errors import InputError
 from roadproof.library.compose import both, either, eventually
 from roadproof.library.elaborate import apply_definition, elaborate, read_claim, signature
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.query import Query
-from roadproof.library.specification import Specification, source_of, unknown
+from roadproof.library.specification import Specification, source_of
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula, transform
@@ -32,7 +32,6 @@ _ZONES: dict[Zone, str] = {"main": "onMainRoad", "merge": "inMergeZone", "depart
 _SCENARIO = re.compile(r"scenario_(\d{1,6})")
 _NAMED = re.compile(r"\bscenario_(\d{1,6})\b")
 _NUMBERS = re.compile(r"(scenario_)?\d[\d,\s-]*")
-_RANGE = re.compile(r"\s*(\d{1,4})\s*(?:-\s*(\d{1,4})\s*)?")
 _BEHAVIOURS = ("behaviourSV", "behaviourPOV")
 _COMPONENTS = (*_BEHAVIOURS, "initialCondition")
 
@@ -68,19 +67,9 @@ def numbers_named(text: str) -> set[int]:
     return {int(number) for number in _NAMED.findall(text)}
 
 
-def read_numbers(specification: Specification, text: str) -> tuple[int, ...]:
-    """``1-8,12`` as numbers, ``scenario_12`` too. Raises ``UsageError``, ``InputError`` for unknown ones."""
-    numbers: set[int] = set()
-    for piece in text.split(","):
-        number = number_in(piece.strip())
-        read = _RANGE.fullmatch(piece if number is None else str(number))
-        if read is None:
-            raise UsageError(f"'{piece[:40]}' is no range of scenarios; write 1-8 or 1,3-8")
-        numbers |= set(range(int(read[1]), int(read[2] or read[1]) + 1))
-    known = numbers_of(specification)
-    for number in sorted(numbers - set(known)):
-        raise InputError(unknown("scenario", str(number), map(str, known)))
-    return tuple(sorted(numbers))
+def are_numbers(text: str) -> bool:
+    """Whether a text is meant as numbers of scenarios, and not as a name or a formula."""
+    return _NUMBERS.fullmatch(text) is not None
 
 
 def name_of(number: int) -> str:
@@ -119,18 +108,6 @@ def applied(
         known = apply_definition(specification, name, (*roles, lane), walk)
         specification.worked_out["applied", scenario, roles, lane] = known
     return known
-
-
-def read_query(specification: Specification, text: str, source: str = "claim") -> tuple[int | None, Query]:
-    """A scenario by its number, ``4`` or ``scenario_4``, applied to its own arguments, or else a formula.
-
-    The number comes first, None for a formula. Raises ``TextError``.
-    """
-    word = text.strip()
-    number = int(word) if word.isdecimal() and word.isascii() and len(word) < 7 else number_in(word)
-    if number is None:
-        return None, read_claim(specification, text, source)
-    return number, apply_definition(specification, name_of(number))
 
 
 def scenario_number(query: Query) -> int | None:
@@ -382,50 +359,6 @@ def _happening(specification: Specification, number: int) -> tuple[Definition, .
 def _words(specification: Specification, name: str) -> str:
     definition = specification.definitions.get(name)
     return "" if definition is None else specification.describe(definition)
-
-
-# --- scenarios in what is written ----------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Application:
-    """A scenario applied to the names of vehicles and a lane."""
-
-    scenario: Scenario
-    arguments: tuple[str, ...]
-
-
-def application_in(specification: Specification, said: syntax.Expression) -> Application | None:
-    """The scenario that an expression applies to names; None where it is anything else."""
-    if not isinstance(said, syntax.Call):
-        return None
-    name, _, set_name = said.name.partition("@")
-    number = number_in(name)
-    arguments = tuple(x.name for x in said.arguments if isinstance(x, syntax.Name))
-    if number is None or len(arguments) < len(said.arguments):
-        return None
-    return Application(Scenario(number, set_name or specification.set_name), arguments)
-
-
-def claimed(specification: Specification, said: int | str, where: str) -> str:
-    """What a test is said to show, as the name of a definition: a scenario by number, or a name as it is.
-
-    Raises ``InputError`` for a scenario that there is not, and for what is no name.
-    """
-    text = str(said).strip()
-    if are_numbers(text):
-        numbers = read_numbers(specification, text)
-        if len(numbers) != 1:
-            raise InputError(f"{where}: '{text}' names {len(numbers)} scenarios; name each by itself")
-        return name_of(numbers[0])
-    if not text.isidentifier():
-        raise InputError(f"{where}: '{text[:40]}' is no number of a scenario and no name")
-    return text
-
-
-def are_numbers(text: str) -> bool:
-    """Whether a text is meant as numbers of scenarios, for ``read_numbers``, and not as a formula."""
-    return _NUMBERS.fullmatch(text) is not None
 
 
 # --- scenarios in recordings ---------------------------------------------------------------------

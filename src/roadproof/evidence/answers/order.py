@@ -27,15 +27,8 @@ from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, implication, negation
-from roadproof.library.scenarios import (
-    LANE,
-    SUBJECT,
-    Application,
-    Scenario,
-    application_in,
-    applied,
-    vehicles_of,
-)
+from roadproof.library.scenario_references import Application, application_in
+from roadproof.library.scenarios import LANE, SUBJECT, Scenario, applied, vehicles_of
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim

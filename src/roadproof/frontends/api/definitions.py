@@ -12,7 +12,7 @@ from roadproof.library.bind import values_with
 from roadproof.library.diagnose import checked_library
 from roadproof.library.elaborate import read_claim
 from roadproof.library.query import Query
-from roadproof.library.scenarios import read_numbers, read_query
+from roadproof.library.scenario_references import read_numbers, read_query
 from roadproof.library.specification import Library, Source, Specification, unknown
 from roadproof.library.values import Number, exact
 from roadproof.library.words import Words, words_of

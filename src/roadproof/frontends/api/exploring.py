@@ -26,7 +26,7 @@ from roadproof.frontends.report import explore as report
 from roadproof.frontends.settings.keywords import ExploreKeywords
 from roadproof.frontends.settings.questions import Explore
 from roadproof.frontends.settings.signatures import takes
-from roadproof.library.scenarios import are_numbers
+from roadproof.library.scenario_references import names_scenarios
 from roadproof.library.values import Number
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -135,7 +135,7 @@ def explorables(
     when = given.when
     for search in searches_of(home, what, setting(home, given), search_options):
         here = replace(home, specification=search.specification)
-        if when is None or (isinstance(when, str) and not are_numbers(when)):
+        if when is None or (isinstance(when, str) and not names_scenarios(here.specification, when)):
             moment = when or ""
         else:
             moment = here.read(when).text

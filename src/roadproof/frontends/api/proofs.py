@@ -28,7 +28,7 @@ from roadproof.frontends.settings.groups import SearchPlace
 from roadproof.frontends.settings.value_types import RoadLike, Vehicles
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split
-from roadproof.library.scenarios import are_numbers, read_numbers
+from roadproof.library.scenario_references import names_scenarios, read_numbers
 from roadproof.library.specification import Specification
 from roadproof.library.values import Number
 from roadproof.runtime.executors import Jobs, hands_of
@@ -322,7 +322,11 @@ def claims_of(
     for x in what:
         if isinstance(x, str) and _PROPERTY.fullmatch(x):
             named.append(x)
-        elif isinstance(x, int | str) and not isinstance(x, bool) and are_numbers(str(x)):
+        elif (
+            isinstance(x, int | str)
+            and not isinstance(x, bool)
+            and names_scenarios(home.specification, str(x))
+        ):
             numbers |= {*read_numbers(home.specification, str(x))}
         else:
             own.append(assumed.of(home, _read(home, x)))

@@ -13,6 +13,7 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.frontends.cli.options import add_specification_options, select_specification, write_json
 from roadproof.library.elaborate import read_claim, signature
+from roadproof.library.scenario_references import numbers_called, one_called
 from roadproof.library.scenarios import name_of, number_in
 from roadproof.library.specification import Specification, unknown
 from roadproof.library.uses import definitions_used, parameters_used
@@ -34,6 +35,7 @@ _NAME = re.compile(r"([A-Za-z_]\w*)(?:@([A-Za-z_]\w*))?")
 _EXAMPLES = """\
 examples:
   roadproof show 4                                scenario 4, deceleration ahead, and its definitions
+  roadproof show cut-in                           the six scenarios with a cut-in, by its ISO 34502 name
   roadproof show cutIn --set ext                  a definition as spec set ext has it
   roadproof show 4 --expand                       scenario_4 as one formula without definitions
   roadproof show 'scenario_8(SV,POV,L) -> F danger(SV,POV)' --format latex
@@ -63,19 +65,26 @@ class Exhibit:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    parser.add_argument("what", metavar="WHAT", help="a scenario's number, a definition's name, or a formula")
+    parser.add_argument(
+        "what", metavar="WHAT", help="a scenario's number or name, a definition's name, or a formula"
+    )
     add_specification_options(parser)
     parser.add_argument("--expand", action="store_true", help="write every definition out, as one formula")
     parser.add_argument("--format", choices=("text", "latex", "json"), default="text", help="default: text")
 
 
 def run(args: argparse.Namespace) -> int:
-    specification = select_specification(args)
-    exhibit = _find(specification, args.what.strip(), args.expand)
+    specification, what = select_specification(args), args.what.strip()
     if args.format == "json":
-        write_json(_as_json(exhibit, specification), "-")
+        one_called(specification, what)  # refuses a name of several: JSON shows one thing
+    exhibits = [
+        _find(specification, x, args.expand) for x in map(str, numbers_called(specification, what) or (what,))
+    ]
+    if args.format == "json":
+        write_json(_as_json(exhibits[0], specification), "-")
     else:
-        print(_as_latex(exhibit) if args.format == "latex" else _as_text(exhibit))
+        show = _as_latex if args.format == "latex" else _as_text
+        print("\n\n".join(map(show, exhibits)))
     return ExitCode.AS_EXPECTED
 
 

@@ -7,7 +7,9 @@ from roadproof.errors import UsageError
 
 def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
     """Scenarios and formulas by position, and ``--all``, of which ``every`` is the help."""
-    parser.add_argument("what", metavar="N|FORMULA", nargs="*", help="a scenario's number, or a formula")
+    parser.add_argument(
+        "what", metavar="N|FORMULA", nargs="*", help="a scenario's number or name, or a formula"
+    )
     parser.add_argument("--all", action="store_true", help=every)
 
 

@@ -9,7 +9,8 @@ from roadproof.evidence.strict import Fields
 from roadproof.frontends.api.drafting import mistakes
 from roadproof.frontends.studio.requests import draft_of, set_of, text_of
 from roadproof.library.elaborate import read_claim, signature
-from roadproof.library.scenarios import number_in, read_query, scenario_number
+from roadproof.library.scenario_references import read_query
+from roadproof.library.scenarios import number_in, scenario_number
 from roadproof.library.specification import Specification, source_of
 from roadproof.library.words import words_of
 from roadproof.logic.show import as_syntax, decimal, text
