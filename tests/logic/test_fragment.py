@@ -10,7 +10,7 @@ from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import Sizes, horizon, is_affine, is_bounded, signal_degree, sizes
+from roadproof.logic.fragment import Sizes, horizon, signal_degree, sizes
 from roadproof.logic.rewrite import with_values
 
 BASE = bundled_library().select()
@@ -38,12 +38,10 @@ def formula(text: str) -> Formula:
 )
 def test_horizon(text: str, seconds: Fraction | None) -> None:
     assert horizon(formula(text)) == seconds
-    assert is_bounded(formula(text)) == (seconds is not None)
 
 
 def test_a_horizon_needs_values() -> None:
     symbolic = read_claim(BASE, "danger(SV, POV)").formula
-    assert is_bounded(symbolic)
     with pytest.raises(ValueError, match="parameter"):
         horizon(symbolic)
 
@@ -69,14 +67,6 @@ def test_a_horizon_needs_values() -> None:
 )
 def test_degree(term: t.Term, degree: int | None) -> None:
     assert signal_degree(term) == degree
-
-
-@pytest.mark.parametrize(
-    ("text", "affine"),
-    [("aheadOf(SV, POV)", True), ("laneKeep(SV, L)", True), ("rssViolation(SV, POV)", False)],
-)
-def test_affine(text: str, affine: bool) -> None:
-    assert is_affine(formula(text)) is affine
 
 
 def test_sizes_count_distinct_parts_without_names() -> None:

@@ -51,19 +51,9 @@ def _latest(times: list[Seconds | None]) -> Seconds | None:
     return latest
 
 
-def is_bounded(formula: Formula) -> bool:
-    """Whether no temporal operator in ``formula`` looks ahead for ever; bounds may hold parameters."""
-    return all(interval.high is not None for interval in intervals_of(formula))
-
-
 def intervals_of(formula: Formula) -> list[Interval]:
     """The intervals of its temporal operators."""
     return [interval for current in f.subformulas(formula) for interval in f.intervals(current)]
-
-
-def is_affine(formula: Formula) -> bool:
-    """Whether every atom compares terms that are affine in the signals (parameters count as constants)."""
-    return all(degree is not None and degree <= 1 for degree in map(signal_degree, terms_of(formula)))
 
 
 def signal_degree(term: Term) -> int | None:

@@ -29,7 +29,6 @@ from roadproof.verdict import ClaimVerdict, Verdict
 SCHEMA: Final = "roadproof/preventable/1"
 Name: TypeAlias = Annotated[str, Rule(least=1)]
 Values: TypeAlias = Annotated[Mapping[str, Rational], Doc("Initial values by name, in SI units.")]
-LineCount: TypeAlias = Annotated[str, Rule(pattern="^[0-9]{1,6}$", called="number of lines")]
 SideVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.UNKNOWN]
 
 

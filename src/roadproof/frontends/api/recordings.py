@@ -15,7 +15,7 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import one_of
-from roadproof.frontends.report.answers import answer_questions
+from roadproof.frontends.report.answers import facts
 from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.frontends.report.traffic_figures import draw_figures
@@ -161,12 +161,11 @@ class Evaluation:
             drivers_table(self.totals),
         ]
         lines = [as_text(table) for table in tables if table is not None]
-        section = answer_questions(self.totals, self.failed).partition("## Facts")[2].partition("\n\n")[2]
-        facts = section.partition("\n\n")[0].splitlines()
-        lines += facts[:MOST_FACTS]
-        if len(facts) > MOST_FACTS:
+        known = facts(self.totals)
+        lines += [f"- {fact}" for fact in known[:MOST_FACTS]]
+        if len(known) > MOST_FACTS:
             where = "" if self.folder is None else f" in {self.folder / 'answers.md'}"
-            lines.append(f"… {len(facts) - MOST_FACTS} more{where}")
+            lines.append(f"… {len(known) - MOST_FACTS} more{where}")
         broken = [*self.totals.broken, *self.denied]
         if broken:
             counts = f"{len(self.totals.broken)} facts violated, {len(self.denied)} answers denied"

@@ -34,7 +34,7 @@ def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) ->
         "## RQ4: does minDanger matter?\n\n" + _min_danger(totals),
         "## RQ5: beside earlier definitions\n\n" + _earlier(totals),
         *_other_sectors(totals),
-        "## Facts checked on this run\n\n" + _facts(totals),
+        "## Facts checked on this run\n\n" + _listed(facts(totals)),
         *_notes(totals),
     ]
     return "\n\n".join(parts) + "\n"
@@ -173,10 +173,11 @@ def _notes(totals: Totals) -> Iterator[str]:
         yield "## What is odd in the recordings\n\n" + _listed(each)
 
 
-def _facts(totals: Totals) -> str:
+def facts(totals: Totals) -> list[str]:
+    """The relations that were checked on a run (docs/explanation/semantics.md, section 6), a line each."""
     sets = " ⊆ ".join(name for name in ("base", "extA", "ext") if name in totals.settings.sets)
     verdict = f"{len(totals.broken)} violations: CROSSCHECK-FAILED" if totals.broken else "no violation"
-    lines = [
+    return [
         f"{sets} for each pair and scenario, s3 = s4 in base, every match a disturbance: {verdict}.",
         *totals.broken,
         f"{len({entry[:3] for entry in totals.unequal_3_4})} pairs match only one of scenarios 3 and 4 in "
@@ -187,7 +188,6 @@ def _facts(totals: Totals) -> str:
             for recording, one, other, danger in totals.unequal_3_4
         ),
     ]
-    return _listed(lines)
 
 
 def decimal_of(text: str) -> str:
