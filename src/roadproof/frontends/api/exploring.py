@@ -131,7 +131,7 @@ def explorables(
     work = work_of(given.effort, given.timeout)
     search_options = SearchOptions(engine=given.engine, solver=given.solver, effort=work)
     measures: dict[Sense, Term | None] = {"least": given.least, "greatest": given.greatest}
-    wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None and x != ""]
+    wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None]
     when = given.when
     for search in searches_of(home, what, setting(home, given), search_options):
         here = replace(home, specification=search.specification)

@@ -19,7 +19,7 @@ from roadproof.frontends.settings.groups import (
     pictures_of,
 )
 from roadproof.frontends.settings.option import option
-from roadproof.frontends.settings.readers import whole
+from roadproof.frontends.settings.readers import text_or_none, whole
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -68,8 +68,10 @@ class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Listeners):
     steps: int | None = option(
         None, "--steps", "K", help="values of each (default: 11; of two: 6)", read=whole("--steps", 2)
     )
-    least: Term | None = option(None, "--least", "TERM", help="the least value of a term")
-    greatest: Term | None = option(None, "--greatest", "TERM", help="the greatest value of a term")
+    least: Term | None = option(None, "--least", "TERM", help="the least value of a term", read=text_or_none)
+    greatest: Term | None = option(
+        None, "--greatest", "TERM", help="the greatest value of a term", read=text_or_none
+    )
     when: What | None = option(
         None, "--when", "FORMULA", help="measure at a moment at which this holds, not at 0"
     )

@@ -64,3 +64,8 @@ def named(usual: str) -> Callable[[str], tuple[str, str]]:
         return (name if equals else usual), value
 
     return read
+
+
+def text_or_none(text: str) -> str | None:
+    """The text, or None where it is empty."""
+    return text or None
