@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Unpack
 
 from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.classify.classes import plan_of
@@ -20,7 +20,6 @@ from roadproof.analysis.classify.study import (
 )
 from roadproof.analysis.classify.text import ClassClaim, claims_text
 from roadproof.analysis.study.frame import StudyResult
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
@@ -30,14 +29,15 @@ from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import classify as report
-from roadproof.frontends.settings.value_types import Vehicles
+from roadproof.frontends.settings import questions as settings
+from roadproof.frontends.settings.keywords import ClassifyKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
@@ -132,20 +132,9 @@ class Classifications(StudyAnswers[Classification, Example | ProofResult[ClassCl
         return "\n".join([*table, *report.summary(found)])
 
 
+@takes(settings.Classify)
 def classify(
-    among: Among = None,
-    using: Definitions | None = None,
-    on: str | Path | None = None,
-    shares: bool = True,
-    preventable: str | None = None,
-    unpreventable: str | None = None,
-    vehicles: Vehicles = None,
-    effort: float = 60.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
+    among: Among = None, using: Definitions | None = None, **options: Unpack[ClassifyKeywords]
 ) -> Classifications:
     """Divide scenarios into classes that exclude each other, and show a drive for each.
 
@@ -155,25 +144,28 @@ def classify(
     which answers are kept as they come. Raises ``InputError``, ``UsageError``.
     """
     begun = time.monotonic()
-    home = restricted(using or load(), preventable, unpreventable, among)
-    basis = basis_of(home, effort, timeout, vehicles)
+    given = settings.Classify.of(options)
+    home = restricted(using or load(), given.preventable, given.unpreventable, among)
+    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
     plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
-    folder = None if out is None else Path(out)
+    folder = None if given.out is None else Path(given.out)
     if folder is not None:
         make_folder(folder)
-    source, recordings = _recordings(on)
-    division = divide(basis, plan, jobs, progress)
+    source, recordings = _recordings(given.on)
+    division = divide(basis, plan, given.jobs, given.progress)
     study = classification_of(basis, division)
     if division.cut_off:
         folder = None  # what earlier runs have found stays
     if folder is not None:
         make_room(folder, study.question)
     counted = None
-    if shares and not division.cut_off:
+    if given.shares and not division.cut_off:
         about, values = study.basis.specification, study.basis.all_values()
         counted = count_shares(study.classes, about, values, recordings, source=source)
     more = {"shares": counted}
-    return Classifications.asked(study, folder, jobs, progress, say, more=lambda: more, begun=begun)
+    return Classifications.asked(
+        study, folder, given.jobs, given.progress, given.say, more=lambda: more, begun=begun
+    )
 
 
 def _recordings(on: str | Path | None) -> tuple[str, Iterator[Recording]]:

@@ -1,12 +1,12 @@
 """Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes."""
 
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Unpack
 
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.claims import sets_between
@@ -28,7 +28,9 @@ from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import coverage as report
-from roadproof.frontends.settings.value_types import RoadLike, Vehicles
+from roadproof.frontends.settings import questions as settings
+from roadproof.frontends.settings.keywords import CoverageKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.words import Called, called
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_if_any
@@ -137,22 +139,9 @@ def _name(answer: ClassAnswer) -> str:
     return part.component + (f": {part.condition}" if part.condition else "")
 
 
+@takes(settings.Coverage)
 def coverage(
-    using: Definitions | None = None,
-    wider: str | None = None,
-    roads: Iterable[RoadLike] = ROADS,
-    needed: bool = False,
-    on: str | Path | None = None,
-    preventable: str | None = None,
-    unpreventable: str | None = None,
-    vehicles: Vehicles = None,
-    effort: float = 10.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
-    tell: Say | None = None,
+    using: Definitions | None = None, *, tell: Say | None = None, **options: Unpack[CoverageKeywords]
 ) -> Coverages:
     """Which disturbances between two vehicles the spec set of ``using`` misses, in classes.
 
@@ -164,24 +153,26 @@ def coverage(
     answers are kept as they come. Raises ``InputError``, ``UsageError``.
     """
     begun = time.monotonic()
-    home = restricted(using or load(), preventable, unpreventable, about="drives")
+    given = settings.Coverage.of(options)
+    wider = given.wider
+    home = restricted(using or load(), given.preventable, given.unpreventable, about="drives")
     check_drives(home.specification.options)
-    basis = basis_of(home, effort, timeout, vehicles)
+    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
     name = home.alone.set_name
     if wider is not None:
         home.specification.in_set(wider)
     between = sets_between(home.library, name, wider or COMPLETE)
     if wider is not None and not between:
         raise UsageError(f"--wider {wider} does not extend --set {name}: name a set that extends it")
-    where = tuple(as_road(road) for road in dict.fromkeys(roads))
-    study = Coverage(GapSurvey(basis, between, where, tuple(map(as_road, ELSEWHERE))), needed)
-    recordings = None if on is None else recordings_in(Path(on))
+    where = tuple(as_road(road) for road in dict.fromkeys(ROADS if given.roads is None else given.roads))
+    study = Coverage(GapSurvey(basis, between, where, tuple(map(as_road, ELSEWHERE))), given.needed)
+    recordings = None if given.on is None else recordings_in(Path(given.on))
 
     def count() -> dict[str, GapTraffic]:
         if recordings is None:
             return {}
         return {"traffic": count_in_traffic(basis, recordings, tell or (lambda line: None))}
 
-    folder = None if out is None else Path(out)
-    with hold_if_any(folder, shared=hands_of(jobs).shard is not None):
-        return Coverages.asked(study, folder, jobs, progress, say, more=count, begun=begun)
+    folder = None if given.out is None else Path(given.out)
+    with hold_if_any(folder, shared=hands_of(given.jobs).shard is not None):
+        return Coverages.asked(study, folder, given.jobs, given.progress, given.say, more=count, begun=begun)

@@ -3,15 +3,13 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
-from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Unpack
 
 from roadproof.analysis.order.deciding import Decisions, kinds_of
 from roadproof.analysis.order.study import Order, Ordering
 from roadproof.analysis.overlap import Meeting, Overlap, PairVerdict, pairs_of
 from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import order as order_answers
 from roadproof.evidence.answers import overlap as overlap_answers
@@ -21,20 +19,18 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import basis_of, one_of, positive
+from roadproof.frontends.api.settings import basis_of, positive
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
 from roadproof.frontends.report.sheet import Sheet, as_csv, as_rows
-from roadproof.frontends.settings.value_types import Vehicles
+from roadproof.frontends.settings import questions as settings
+from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords, RedundancyKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import numbers_of
-from roadproof.library.values import Number
 from roadproof.library.words import Called, called, called_in
-from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict, exit_code
-
-_Same: TypeAlias = Literal["same", "any"]
 
 
 class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
@@ -96,22 +92,9 @@ class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
         return f"{overlap_report.as_text(self.pairs, self.across, self.words)}\n{count}"
 
 
+@takes(settings.Overlap)
 def overlap(
-    among: Among = None,
-    using: Definitions | None = None,
-    lanes: _Same = "same",
-    roles: _Same = "same",
-    start: _Same = "same",
-    horizon: Number | None = None,
-    preventable: str | None = None,
-    unpreventable: str | None = None,
-    vehicles: Vehicles = None,
-    effort: float = 60.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
+    among: Among = None, using: Definitions | None = None, **options: Unpack[OverlapKeywords]
 ) -> Overlaps:
     """Which scenarios of one spec set can hold together, or those of one set with those of another.
 
@@ -121,23 +104,23 @@ def overlap(
     which answers are kept as they come; ``say`` is told of kept ones that do not count. Raises
     ``InputError``, ``UsageError``.
     """
-    for word, value in (("lanes", lanes), ("roles", roles), ("start", start)):
-        one_of(word, value, _Same)
-    home = restricted(using or load(), preventable, unpreventable, among)
+    given = settings.Overlap.of(options)
+    home = restricted(using or load(), given.preventable, given.unpreventable, among)
     if len(home.sets) > 2:
         raise UsageError(f"{', '.join(home.sets)}: name one spec set, or two different ones")
     # What happens one after the other takes longer than what happens at once.
-    usual = 9 if start == "any" else 6
-    found = positive("horizon", usual if horizon is None else horizon, "s")
-    basis = replace(basis_of(home, effort, timeout, vehicles), horizon=found)
+    usual = 9 if given.start == "any" else 6
+    horizon = positive("horizon", usual if given.horizon is None else given.horizon, "s")
+    basis = replace(basis_of(home, given.effort, given.timeout, given.vehicles), horizon=horizon)
     pairs = pairs_of(basis, home.among(among))
     if not pairs:
         raise UsageError(f"--among {among} leaves no pair: name at least two scenarios")
-    if pool.are_forked(pairs, jobs):
+    if pool.are_forked(pairs, given.jobs):
         from roadproof.engines.solve.milp import prepare
 
         prepare()  # what every worker needs is imported once, before they are forked
-    return Overlaps.asked(Overlap(basis, pairs, Meeting(lanes, roles, start)), out, jobs, progress, say)
+    study = Overlap(basis, pairs, Meeting(given.lanes, given.roles, given.start))
+    return Overlaps.asked(study, given.out, given.jobs, given.progress, given.say)
 
 
 class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):
@@ -187,22 +170,14 @@ class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):
         return order_report.as_text(self.order, round(self.seconds, 1), self.words)
 
 
-def order(
-    among: Among = None,
-    using: Definitions | None = None,
-    vehicles: Vehicles = None,
-    effort: float = 120.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
-) -> Orders:
+@takes(settings.Order)
+def order(among: Among = None, using: Definitions | None = None, **options: Unpack[OrderKeywords]) -> Orders:
     """Which scenarios imply which, in the sets of ``using`` (base, extA and ext). Raises as ``overlap``."""
+    given = settings.Order.of(options)
     home = using or load("base", "extA", "ext")
-    basis = basis_of(home, effort, timeout, vehicles)
+    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
     kinds = kinds_of(basis.specification, basis.set_names, home.among(among))
-    return Orders.asked(Ordering(basis, kinds), out, jobs, progress, say)
+    return Orders.asked(Ordering(basis, kinds), given.out, given.jobs, given.progress, given.say)
 
 
 class Redundancies(StudyAnswers[Redundancy, ChangeFindings, redundancy_answers.Record]):
@@ -253,23 +228,17 @@ class Redundancies(StudyAnswers[Redundancy, ChangeFindings, redundancy_answers.R
         return redundancy_report.as_text(self.findings, self.seconds, self.words)
 
 
+@takes(settings.Redundancy)
 def redundancy(
-    among: Among = None,
-    using: Definitions | None = None,
-    whole: bool = False,
-    vehicles: Vehicles = None,
-    effort: float = 20.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
+    among: Among = None, using: Definitions | None = None, **options: Unpack[RedundancyKeywords]
 ) -> Redundancies:
     """Which parts of scenarios could be left out; with ``whole`` also those of simple predicates.
 
     Raises as ``overlap``.
     """
+    given = settings.Redundancy.of(options)
     home = using or load()
     every = numbers_of(home.alone)
-    basis = basis_of(home, effort, timeout, vehicles)
-    return Redundancies.asked(Redundancy(basis, home.among(among) or every, whole), out, jobs, progress, say)
+    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
+    study = Redundancy(basis, home.among(among) or every, given.whole)
+    return Redundancies.asked(study, given.out, given.jobs, given.progress, given.say)

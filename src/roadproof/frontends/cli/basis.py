@@ -11,6 +11,8 @@ from roadproof.frontends.cli.numbers import read_hands
 from roadproof.frontends.cli.options import chosen_options, given_values, load_library_of, write_json
 from roadproof.frontends.cli.progress import Counter, warn
 from roadproof.frontends.cli.search_options import named
+from roadproof.frontends.settings.flags import read_keywords
+from roadproof.frontends.settings.option import Settings
 
 if TYPE_CHECKING:
     from roadproof.analysis.study.pool import Progress, Say
@@ -76,6 +78,12 @@ def asking(args: argparse.Namespace, folder: Path | None) -> RunOptions:
         "progress": Counter(),
         "say": warn,
     }
+
+
+def study_keywords(args: argparse.Namespace, settings: type[Settings], folder: Path | None) -> Any:
+    """The keyword arguments of a long question; its evidence goes to ``folder``."""
+    told = {"out": folder, "jobs": read_hands(args), "progress": Counter(), "say": warn}
+    return read_keywords(args, settings) | told
 
 
 def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[str, A], None]:

@@ -1,18 +1,12 @@
 """``roadproof coverage``: which disturbances a spec set misses, or a proof that it misses none."""
 
 import argparse
-from pathlib import Path
 
-from roadproof.frontends.cli.basis import asking, hand_over, read_definitions, restricting
-from roadproof.frontends.cli.numbers import add_effort_options, add_sharing_options, add_working_options
-from roadproof.frontends.cli.options import (
-    add_json_option,
-    add_parameter_option,
-    add_prevention_options,
-    add_specification_options,
-)
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.options import add_definition_options, add_json_option
 from roadproof.frontends.cli.progress import Counter, tell
-from roadproof.frontends.cli.search_options import add_models_option
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.questions import Coverage
 
 SUMMARY = "which disturbances a spec set misses, by drives in classes; or a proof that it misses none"
 
@@ -37,42 +31,16 @@ Exit code 0 where coverage is proved, 10 where there are gaps, 20 where neither 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_specification_options(parser)
-    add_parameter_option(parser)
-    parser.add_argument(
-        "--wider", metavar="S", help="the set that catches all (default: complete, where it extends the set)"
-    )
-    parser.add_argument(
-        "--road",
-        dest="roads",
-        metavar="R",
-        action="append",
-        help="where to look for drives; may be repeated (default: main-2, then main-3)",
-    )
-    add_prevention_options(parser, "drives")
-    add_models_option(parser)
-    add_effort_options(parser, 10.0, "a search, half of it for one more that another set catches")
-    parser.add_argument(
-        "--needed", action="store_true", help="of a set that covers: a drive for each definition it needs"
-    )
-    parser.add_argument(
-        "--on", type=Path, metavar="DIR", help="count the classes in recordings, as roadproof simulate makes"
-    )
-    add_working_options(parser)
-    add_sharing_options(parser)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives and pictures")
-    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    add_definition_options(parser)
+    add_flags(parser, Coverage)
     add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.covering import ROADS, coverage
+    from roadproof.frontends.api.covering import coverage
 
     home = read_definitions(args, [args.set_name])
-    more = asking(args, args.out)
-    found = coverage(
-        home, args.wider, args.roads or ROADS, args.needed, args.on, **restricting(args), **more, tell=tell
-    )
-    if args.out is not None and not args.no_pictures:
+    found = coverage(home, tell=tell, **study_keywords(args, Coverage, args.out))
+    if args.out is not None and args.pictures:
         found.draw_beside(args.jobs, Counter())
     return hand_over(args, found)

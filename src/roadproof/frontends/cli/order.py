@@ -1,17 +1,11 @@
 """``roadproof order``: which scenarios imply which, with a certificate or a drive for every answer."""
 
 import argparse
-from pathlib import Path
 
-from roadproof.frontends.cli.basis import asking, hand_over, read_definitions
-from roadproof.frontends.cli.numbers import add_effort_options, add_sharing_options, add_working_options
-from roadproof.frontends.cli.options import (
-    add_json_option,
-    add_parameter_option,
-    add_specification_options,
-    chosen_sets,
-)
-from roadproof.frontends.cli.search_options import add_models_option
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.questions import Order
 
 SUMMARY = "which scenarios imply which: proofs for the implications, drives against the others"
 
@@ -28,15 +22,8 @@ A run with --out that was broken off goes on where it was.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_specification_options(parser, "base, extA, ext", several=True)
-    add_parameter_option(parser)
-    parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1,3-8")
-    add_models_option(parser)
-    add_effort_options(parser, 120.0, "a drive")
-    add_working_options(parser)
-    add_sharing_options(parser)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write certificates, drives, DOT and SVG")
-    parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
+    add_definition_options(parser, "base, extA, ext", several=True)
+    add_flags(parser, Order)
     add_json_option(parser)
 
 
@@ -44,4 +31,6 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import order
 
     sets = list(dict.fromkeys(chosen_sets(args, "base,extA,ext")))
-    return hand_over(args, order(args.among, read_definitions(args, sets), **asking(args, args.out)))
+    return hand_over(
+        args, order(args.among, read_definitions(args, sets), **study_keywords(args, Order, args.out))
+    )

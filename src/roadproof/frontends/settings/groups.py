@@ -45,6 +45,16 @@ def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
     return option(None, f"--{side}", "MODEL", help=text)
 
 
+def scenarios_such_as(example: str = "1,3-8") -> Any:
+    """``--among``, which is the first argument in Python."""
+    return option(None, "--among", "N-M", help=f"only these scenarios, such as {example}", keyword=False)
+
+
+def same_or_any(flag: str, what: str) -> Any:
+    """A choice between the same for both scenarios, and any."""
+    return option("same", flag, help=f"{what} (default: same)", choices=("same", "any"))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Models(Settings):
     """Vehicle models."""
@@ -203,3 +213,10 @@ class Prevention(Settings):
 
     preventable: str | None = driver_model("preventable", "prevents")
     unpreventable: str | None = driver_model("unpreventable", "cannot prevent")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Survey(Models, Budget, Sharing, Listeners):
+    """Options of every question about several scenarios."""
+
+    out: str | Path | None = folder_for("certificates and drives")

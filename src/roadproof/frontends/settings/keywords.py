@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from roadproof.analysis.study.pool import Progress, Say
     from roadproof.engines.search.question import Engine, Objective
     from roadproof.frontends.api.definitions import What
     from roadproof.frontends.api.phrases import Term
-    from roadproof.frontends.settings.value_types import RoadLike, Vehicles
+    from roadproof.frontends.settings.value_types import RoadLike, Same, Vehicles
     from roadproof.library.values import Number
     from roadproof.runtime.executors import Jobs
 
@@ -79,3 +79,70 @@ class ExploreKeywords(TypedDict, total=False):
     when: What | None
     precision: Number | None
     out: str | Path | None
+
+
+class OverlapKeywords(TypedDict, total=False):
+    preventable: str | None
+    unpreventable: str | None
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
+    out: str | Path | None
+    lanes: Same
+    roles: Same
+    start: Same
+    horizon: Number | None
+
+
+class OrderKeywords(TypedDict, total=False):
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
+    out: str | Path | None
+
+
+class RedundancyKeywords(TypedDict, total=False):
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
+    out: str | Path | None
+    whole: bool
+
+
+class CoverageKeywords(TypedDict, total=False):
+    preventable: str | None
+    unpreventable: str | None
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
+    out: str | Path | None
+    wider: str | None
+    roads: Iterable[RoadLike] | None
+    needed: bool
+    on: str | Path | None
+
+
+class ClassifyKeywords(TypedDict, total=False):
+    preventable: str | None
+    unpreventable: str | None
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
+    out: str | Path | None
+    on: str | Path | None
+    shares: bool

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
@@ -11,3 +11,6 @@ RoadLike: TypeAlias = Road | str | Path
 VehicleLike: TypeAlias = Vehicle | str | Path
 Vehicles: TypeAlias = VehicleLike | Mapping[str, VehicleLike] | None
 """A model for all vehicles, or models by name."""
+
+Same: TypeAlias = Literal["same", "any"]
+"""Whether two scenarios have the same lanes, roles or start, or any."""
