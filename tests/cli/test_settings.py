@@ -18,7 +18,8 @@ def test_the_file_of_keyword_arguments_follows_the_definitions() -> None:
 
 @pytest.mark.parametrize("question", keywords_file.all_questions(), ids=lambda x: x.__name__)
 def test_a_function_shows_its_options(question: type) -> None:
-    shown = inspect.signature(getattr(rp, question.__name__.lower())).parameters
+    parameters = inspect.signature(getattr(rp, question.__name__.lower())).parameters
+    shown = {name: x for name, x in parameters.items() if x.kind is x.KEYWORD_ONLY}
     for name, option in question.options().items():
         assert (name in shown) == option.keyword
         if option.keyword:
