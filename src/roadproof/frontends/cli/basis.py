@@ -10,7 +10,6 @@ from roadproof.errors import UsageError
 from roadproof.frontends.cli.numbers import read_hands
 from roadproof.frontends.cli.options import chosen_options, given_values, load_library_of, write_json
 from roadproof.frontends.cli.progress import Counter, warn
-from roadproof.frontends.cli.search_options import named
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.option import Settings
 
@@ -74,7 +73,7 @@ def asking(args: argparse.Namespace, folder: Path | None) -> RunOptions:
         "timeout": args.timeout,
         "jobs": read_hands(args),
         "out": folder,
-        "vehicles": dict(named(getattr(args, "vehicles", ()), "")),
+        "vehicles": dict(getattr(args, "vehicles", None) or ()),
         "progress": Counter(),
         "say": warn,
     }

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import asking, evidence_folder, hand_over, read_definitions, restricting
-from roadproof.frontends.cli.numbers import add_effort_options, add_working_options, whole
+from roadproof.frontends.cli.numbers import add_effort_options
 from roadproof.frontends.cli.options import (
     add_json_option,
     add_parameter_option,
@@ -14,7 +14,9 @@ from roadproof.frontends.cli.options import (
     chosen_sets,
 )
 from roadproof.frontends.cli.progress import Counter
-from roadproof.frontends.cli.search_options import add_models_option
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Models, Workers
+from roadproof.frontends.settings.readers import whole
 
 SUMMARY = "what a catalogue of tests shows, which scenarios and classes nobody tests, drives for these"
 
@@ -108,9 +110,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="MODELS",
         help="driver models that are asked what becomes of tests: careful,r157, or none (default: all)",
     )
-    add_models_option(parser)
+    add_flags(parser, Models)
     add_effort_options(parser, 60.0, "a drive")
-    add_working_options(parser)
+    add_flags(parser, Workers)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write matrix, JUnit, picture, evidence")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
     add_json_option(parser)

@@ -5,9 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.numbers import add_effort_options, add_working_options
+from roadproof.frontends.cli.numbers import add_effort_options
 from roadproof.frontends.cli.options import add_json_option, add_spec_option, write_json
 from roadproof.frontends.cli.progress import Counter
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Workers
 from roadproof.verdict import ExitCode
 
 SUMMARY = "check certificates and drive files again, without the programs that made them"
@@ -55,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_effort_options(parser, each="a query")
     add_spec_option(parser, "a specification file that the claims were made with")
-    add_working_options(parser)
+    add_flags(parser, Workers)
     add_json_option(parser)
 
 

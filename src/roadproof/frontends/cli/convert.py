@@ -3,8 +3,9 @@
 import argparse
 from pathlib import Path
 
-from roadproof.frontends.cli.numbers import add_working_options
 from roadproof.frontends.cli.progress import Counter
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Workers
 from roadproof.verdict import ExitCode
 
 SUMMARY = "keep recordings as Parquet, checked once, for quicker reading"
@@ -25,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
     parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the data set goes")
-    add_working_options(parser)
+    add_flags(parser, Workers)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -9,16 +9,18 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.numbers import add_sharing_options, add_working_options, read_hands
+from roadproof.frontends.cli.numbers import read_hands
 from roadproof.frontends.cli.options import (
     add_json_option,
     add_parameter_option,
     add_specification_options,
     chosen_sets,
-    read_seconds,
     write_json,
 )
 from roadproof.frontends.cli.progress import note
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Sharing
+from roadproof.frontends.settings.readers import read_seconds
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
@@ -77,8 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "manoeuvre of a match begins: of scenarios 1, 2, 4 and the like on other road sectors",
     )
     add_parameter_option(parser)
-    add_working_options(parser)
-    add_sharing_options(parser)
+    add_flags(parser, Sharing)
     parser.add_argument("--keep-going", action="store_true", help="leave out recordings that cannot be used")
     parser.add_argument("--check", action="store_true", help="ask the plain recursive evaluator again (slow)")
     parser.add_argument("--no-detectors", action="store_true", help="leave out those of earlier works")

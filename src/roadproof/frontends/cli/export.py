@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from roadproof.frontends.cli.numbers import whole
 from roadproof.frontends.cli.options import add_spec_option
+from roadproof.frontends.settings.readers import whole
 from roadproof.verdict import ExitCode
 
 SUMMARY = "write drives for other tools: OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV"

@@ -11,10 +11,9 @@ from roadproof.frontends.cli.options import (
     add_json_option,
     add_parameter_option,
     add_specification_options,
-    read_seconds,
     write_json,
 )
-from roadproof.frontends.cli.search_options import named
+from roadproof.frontends.settings.readers import named, read_seconds
 
 SUMMARY = "say where a formula holds on one trace: a drive, samples, or vehicles of a recording"
 
@@ -87,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
         args.formula,
         args.trace,
         read_definitions(args, [args.set_name or "base"]),
-        dict(named(args.lanes, LANE)),
+        dict(map(named(LANE), args.lanes)),
         args.road,
         args.view,
         read_seconds("--dt", args.dt),

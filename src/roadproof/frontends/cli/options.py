@@ -89,11 +89,6 @@ def add_prevention_options(parser: argparse.ArgumentParser, what: str = "scenari
         )
 
 
-def add_quiet_option(parser: argparse.ArgumentParser) -> None:
-    """``--quiet``, which the command line sees to for all sub-commands."""
-    parser.add_argument("--quiet", action="store_true", help="no word about how far it is")
-
-
 def add_json_option(parser: argparse.ArgumentParser) -> None:
     """``--json FILE``, where - is stdout; see ``write_json``."""
     parser.add_argument(
@@ -138,18 +133,6 @@ def given_values(args: argparse.Namespace, library: "Library") -> dict[str, Frac
     from roadproof.frontends.api.definitions import values_of
 
     return values_of(library, dict(_assignments("--param", args.params)), "--param ")
-
-
-def read_seconds(option: str, text: str, or_zero: bool = False) -> Fraction:
-    """A time in seconds, greater than 0 (or 0 too). Raises ``UsageError``."""
-    try:
-        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
-    except (ValueError, ZeroDivisionError):
-        value = None
-    if value is None or value < 0 or (value == 0 and not or_zero):
-        least = "seconds, 0 or more" if or_zero else "a number greater than 0"
-        raise UsageError(f"{option} {text[:40]}: write {least}, such as 6, 0.6 or 3/5")
-    return value
 
 
 def _assignments(option: str, texts: Iterable[str]) -> list[tuple[str, str]]:

@@ -5,13 +5,11 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import asking, hand_over, read_definitions
-from roadproof.frontends.cli.numbers import (
-    add_effort_options,
-    add_sharing_options,
-    add_working_options,
-    whole,
-)
+from roadproof.frontends.cli.numbers import add_effort_options
 from roadproof.frontends.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Sharing
+from roadproof.frontends.settings.readers import whole
 
 SUMMARY = "which initial values a driver model prevents a collision from: exact boundaries, drives, proofs"
 
@@ -62,8 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_specification_options(parser)
     add_parameter_option(parser)
     add_effort_options(parser, 60.0, "a lemma")
-    add_working_options(parser)
-    add_sharing_options(parser)
+    add_flags(parser, Sharing)
     parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, CSV, pictures")
     parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
     add_json_option(parser)

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import in_order, read_definitions
-from roadproof.frontends.cli.numbers import add_effort_options, add_working_options, read_effort
+from roadproof.frontends.cli.numbers import add_effort_options, read_effort
 from roadproof.frontends.cli.options import (
     add_json_option,
     add_parameter_option,
     add_specification_options,
-    read_seconds,
     write_json,
 )
 from roadproof.frontends.cli.progress import Counter, clear, tell_stage, warn
-from roadproof.frontends.cli.search_options import named
 from roadproof.frontends.cli.streams import print_at_once
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Workers
+from roadproof.frontends.settings.readers import named, read_seconds
 from roadproof.runtime.progress import listening
 from roadproof.verdict import Verdict
 
@@ -101,7 +102,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--kernel", choices=("coq",), help="put each proof to the kernel of Coq, too, with coqc"
     )
-    add_working_options(parser)
+    add_flags(parser, Workers)
     parser.add_argument(
         "--no-drive", action="store_true", help="do not look for a drive that refutes a claim"
     )
@@ -151,7 +152,7 @@ def _asked(args: argparse.Namespace) -> "Claims":
         raise UsageError(f"{args.file} holds no claim: write one a paragraph")
     what = [*args.claims, *(read_under(home.specification, claim) for claim in written)]
     values = values_put_in(home, args.declared) if args.engine == "dense" else {}
-    models = dict(named(args.vehicles, ""))
+    models = dict(map(named(""), args.vehicles))
     said = assuming(args.assume, models if args.engine == "dense" else None, values)
     asked = claims_of(home, what, args.set_name, claim_verdict(args.expect), said)
     asked = replace(asked, effort=read_effort(args), seek_drive=not args.no_drive)

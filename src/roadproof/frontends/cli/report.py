@@ -3,9 +3,10 @@
 import argparse
 from pathlib import Path
 
-from roadproof.frontends.cli.numbers import add_working_options
 from roadproof.frontends.cli.options import add_spec_option
 from roadproof.frontends.cli.progress import Counter, clear
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Workers
 
 SUMMARY = "one page about results: drives, proofs, matrices, tables; it needs no network"
 
@@ -33,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--title", metavar="TEXT", help="what the page is called")
     parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who checks (default: z3)")
     add_spec_option(parser, "a specification file that the results were made with")
-    add_working_options(parser)
+    add_flags(parser, Workers)
 
 
 def run(args: argparse.Namespace) -> int:

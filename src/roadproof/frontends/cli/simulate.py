@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.errors import InputError, UsageError
-from roadproof.frontends.cli.numbers import LARGEST_SEED, add_working_options, decimal, whole
 from roadproof.frontends.cli.progress import note
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Workers
+from roadproof.frontends.settings.readers import LARGEST_SEED, decimal, whole
 from roadproof.verdict import ExitCode
 
 _NUMBERS = re.compile(r"\d{1,2}(-\d{1,2})?(,\d{1,2}(-\d{1,2})?)*")
@@ -94,7 +96,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--plant-set", metavar="S", default="base", help="spec set of --plant N,N (default: base)"
     )
-    add_working_options(parser)
+    add_flags(parser, Workers)
 
 
 def run(args: argparse.Namespace) -> int:
