@@ -1,4 +1,4 @@
-"""What CONTRIBUTING.md says about a new signal and a new survey is carried out on a copy of the source."""
+"""The examples of CONTRIBUTING.md (a signal, an option, a survey) are carried out on a copy of the source."""
 
 import json
 import os
@@ -13,6 +13,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text()
 CHANGES = re.findall(r"```diff\n(.*?)```", TEXT, re.DOTALL)
+OPTION = re.findall(r"```diff option\n(.*?)```", TEXT, re.DOTALL)
 SURVEY = dict(re.findall(r"`(src/roadproof/\S+\.py)`[^\n]*\n\n```python\n(.*?)```", TEXT, re.DOTALL))
 NEW_NODE = ("Temporal: TypeAlias = Until | Eventually | Always", "@node\nclass Application:")
 READERS_OF_NODES = {
@@ -73,6 +74,23 @@ def roadproof(copy, code, line):
 
 def files_in(changes):
     return set(re.findall(r"^\+\+\+ b/src/roadproof/(\S+)", "\n".join(changes), re.MULTILINE))
+
+
+def test_an_option_touches_two_files(copy):
+    assert len(files_in(OPTION)) == 2
+    before = roadproof(copy, 0, "witness 4").splitlines()
+    apply(copy, OPTION)
+    after = roadproof(copy, 0, "witness 4 --brief").splitlines()
+    assert len(before) == 2
+    assert len(after) == 1
+    assert after[0].split()[:4] == before[0].split()[:4] == ["scenario", "4", "base", "WITNESSED"]
+    assert re.search(
+        r"^output:\n(?:  .*\n)*  --brief  +one line for each answer$",
+        roadproof(copy, 0, "witness --help"),
+        re.M,
+    )
+    remade = run(copy, "from roadproof.frontends.settings import keywords_file as k; print(k.text(), end='')")
+    assert "\n".join(remade) + "\n" == (copy / "src/roadproof/frontends/settings/keywords.py").read_text()
 
 
 def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
