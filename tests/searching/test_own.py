@@ -77,7 +77,7 @@ def test_a_changed_drive_is_rejected(found, name):
         (lambda data: course(data, "red")[0].update({"from": "1"}), "their times must ascend from 0"),
         (lambda data: data["signals"].append(data["signals"][0]), "is given twice"),
         (lambda data: data["signals"][0].update(vehicle="X"), "which the drive does not have"),
-        (lambda data: data["vehicles"]["SV"].update(kind="lorry"), "kinds are car, truck"),
+        (lambda data: data["vehicles"]["SV"].update(kind="lorry"), "is none of car, truck"),
     ],
 )
 def test_what_is_no_course_cannot_be_read(found, change, told):
