@@ -219,6 +219,7 @@ def trace_data(countermodel: Countermodel) -> dict[str, Any]:
     road, loop = countermodel.road, countermodel.loop
     return write(
         kept.Trace(
+            kind="trace",
             between=_BETWEEN[countermodel.held],
             parameters=_sorted(countermodel.parameters),
             road=None if road is None else road_said(road),

@@ -41,7 +41,7 @@ class Instant:
 class Trace:
     """A trace over points in time on which a claim is judged false, where no drive was found."""
 
-    kind: Annotated[Literal["trace"], Remedy("a drive is a file beside the index")] = "trace"
+    kind: Annotated[Literal["trace"], Remedy("a drive is a file beside the index")]
     between: Annotated[Between, Doc("What holds between two instants.")]
     parameters: Annotated[
         Mapping[str, Fraction], Doc("Values of parameters by name, in SI units (s, m, m/s, m/s^2).")
@@ -64,7 +64,7 @@ class Trace:
 class RefutingDrive:
     """A judged drive on which the claim is false."""
 
-    kind: Literal["drive"] = "drive"
+    kind: Literal["drive"]
     drive: Annotated[Any, Whole("drive.json")]
 
 
