@@ -6,20 +6,6 @@ from findings.figures import Figures, Picture, Statement
 from findings.results import ROOT
 
 FINDINGS, PERFORMANCE = "docs/explanation/findings.md", "docs/explanation/performance.md"
-FRONT_DOOR = "docs/adr/0023-one-front-door.md"
-FRONT_DOOR_ROWS = (
-    "lines of cli",
-    "lines of api",
-    "lines of report",
-    "lines of analysis",
-    "lines of all Python",
-    "`dict/Mapping[str, Any]` in cli",
-    "`dict/Mapping[str, Any]` in report",
-    "`dict/Mapping[str, Any]` in analysis",
-    "`overlap --among 4,5,8`: claims parsed, libraries loaded",
-    "`classify --among 4,8`: claims parsed, libraries loaded",
-    "`evaluate` of a recording: calls of `read_claim`",
-)
 
 SESSIONS = (
     Sessions("README.md"),
@@ -544,11 +530,6 @@ MEASURED = (
             ),
             Figures("**overlap** in {} frames, by up to {} m", r.overlap_of_two_vehicles),
         ),
-    ),
-    Statement(
-        FRONT_DOOR,
-        ("python benchmarks/front_door.py b754a35 065e57a",),
-        tuple(Figures(f"| {row} | {{}} | {{}} |", f"| {row} | {{}} | {{}} |") for row in FRONT_DOOR_ROWS),
     ),
     Statement(
         US101,
