@@ -1,5 +1,4 @@
-"""Labels of two published grids of cut-ins, by reading of the regulation and by clock: the tables of
-docs/explanation/preventable.md.
+"""Labels of two published grids of cut-ins, by reading of the regulation and by clock: docs/data/labels.csv.
 
     python benchmarks/preventable.py
 
@@ -7,6 +6,7 @@ The grids are those of the public JRC-FSM repository: gaps, lateral and longitud
 cars of 4.3 m by 1.9 m that begin 1.6 m apart across. Only grids are taken from there.
 """
 
+import csv
 import sys
 from fractions import Fraction
 from itertools import product
@@ -20,6 +20,7 @@ from preventing.labels import labels
 from preventing.read import boundary
 from roadproof.drivers.manoeuvres import CUT_IN
 
+TABLE = Path(__file__).parents[1] / "docs/data/labels.csv"
 KMH = float(Fraction(5, 18))
 READINGS = {
     "perception by time": {},
@@ -56,21 +57,25 @@ def stepped(x: dict[str, np.ndarray], rate: int) -> np.ndarray:
     return stepping.step_cut_in(x["Ve0"], w, x["dx0"], lengths, x["dy0"], x["Vy"], drive, rate, 30).collided
 
 
-def table(name: str, x: dict[str, np.ndarray]) -> None:
-    cases = len(x["dx0"])
+def columns(x: dict[str, np.ndarray]) -> dict[str, list[str]]:
+    """Three cells for each reading: cases that are unpreventable, their share, other labels than by time."""
     formulas = {what: boundary("cut-in", "careful", **options) for what, options in READINGS.items()}
     formulas |= {what: boundary("cut-in", model) for model, what in MODELS.items()}
     found = labels(CUT_IN, formulas, x)
     for rate in (1000, 100, 10):
         found[f"perception by time, stepped at {rate} Hz"] = stepped(x, rate)
     usual = found["perception by time"]
-    print(f"| {name}: {cases:,} cases | unpreventable | | other label than by time |")
-    print("|---|---:|---:|---:|")
-    for what, is_hit in found.items():
-        print(f"| {what} | {is_hit.sum():,} | {100 * is_hit.mean():.1f} % | {(is_hit != usual).sum():,} |")
-    print()
+    return {
+        what: [f"{hit.sum():,}", f"{100 * hit.mean():.1f} %", f"{(hit != usual).sum():,}"]
+        for what, hit in found.items()
+    }
 
 
 if __name__ == "__main__":
-    table("low speeds", grid(range(1, 60), range(10, 61, 10), 10))
-    table("high speeds", grid(range(1, 120, 2), range(70, 131, 20), 30))
+    low = columns(grid(range(1, 60), range(10, 61, 10), 10))
+    high = columns(grid(range(1, 120, 2), range(70, 131, 20), 30))
+    head = ["reading"]
+    for speeds in ("low", "high"):
+        head += [f"unpreventable, {speeds} speeds", "share", "other label than by time"]
+    with TABLE.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([head, *([x, *low[x], *high[x]] for x in low)])

@@ -1,5 +1,6 @@
 """Hooks of mkdocs (mkdocs.yml): generated pages, list of decision records, links out of docs/."""
 
+import csv
 import re
 import sys
 from pathlib import Path
@@ -18,6 +19,7 @@ from documents.reference import PAGES  # noqa: E402
 _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)]*)?\)")
 _FOR_DEVELOPERS = ("tests", "map")
 _SHIM = "https://unpkg.com/iframe-worker/shim"
+_DATA = re.compile(r"^\[([^\]]+)\]\(([^)\s]+\.csv)\)$", re.M)
 _FILE_BLOCK = re.compile(r"^```file (\S+)$", re.M)
 
 
@@ -40,7 +42,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Name files outside docs/ instead of linking to them, and give blocks of files their titles."""
+    """Show data as tables, name files outside docs/ instead of linking to them, give blocks of files titles."""
     here = Path(config.docs_dir, page.file.src_uri).parent
     if here.name == "adr" or page.file.name in _FOR_DEVELOPERS:
         page.meta["search"] = {"boost": 0.2}  # the search lists guides for users first
@@ -55,7 +57,18 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         name = path.relative_to(ROOT).as_posix()
         return label if name in label.replace("`", "") else f"{label} (`{name}`)"
 
-    return _LINK.sub(outside, _FILE_BLOCK.sub(r'```text title="\1"', markdown))
+    shown = _DATA.sub(lambda x: table(x[1], here / x[2]), markdown)
+    return _LINK.sub(outside, _FILE_BLOCK.sub(r'```text title="\1"', shown))
+
+
+def table(title: str, path: Path) -> str:
+    """A CSV file as a table; cells are Markdown, and columns of numbers are aligned to the right."""
+    with path.open(encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    columns = zip(*rows, strict=True)
+    sides = ["---:" if all(re.match(r"[\d.<-]|$", x) for x in column) else "---" for column in columns]
+    lines = (f"| {' | '.join(cells)} |" for cells in (head, sides, *rows))
+    return "\n".join([f"**{title}**", "", *lines])
 
 
 def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:

@@ -133,3 +133,20 @@ def test_every_option_is_in_the_reference() -> None:
         section = page.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
         for action in parser._actions:
             assert all(f"`{option}" in section for option in action.option_strings), (name, action)
+
+
+@needs_mkdocs
+def test_data_becomes_a_table(tmp_path: Path) -> None:
+    from documents.hooks import table
+
+    path = tmp_path / "times.csv"
+    path.write_text('question,s\n"`overlap`, all",4.5\n', "utf-8")
+    assert table("Times", path) == "**Times**\n\n| question | s |\n| --- | ---: |\n| `overlap`, all | 4.5 |"
+
+
+@needs_mkdocs
+def test_every_table_of_data_is_on_a_page(site: Path) -> None:
+    pages = "".join(path.read_text("utf-8") for path in site.glob("*/*.html"))
+    for path in ROOT.glob("docs/data/**/*.csv"):
+        assert f"/{path.name})" in "".join(x.read_text("utf-8") for x in ROOT.glob("docs/*/*.md")), path
+    assert "perception by distance" in pages

@@ -5,7 +5,7 @@ from findings.checking import Sessions
 from findings.figures import Figures, Picture, Statement
 from findings.results import ROOT
 
-FINDINGS, PERFORMANCE = "docs/explanation/findings.md", "docs/explanation/performance.md"
+FINDINGS, PERFORMANCE = "docs/explanation/findings.md", "docs/data/performance/analyses.csv"
 
 SESSIONS = (
     Sessions("README.md"),
