@@ -75,7 +75,7 @@ def test_limits_are_explained_in_one_way(capsys):
     explained = set()
     for command in SEARCHING:
         with pytest.raises(SystemExit):
-            main([command, "--help"])
+            main([command, "--help-all"])
         words = " ".join(capsys.readouterr().out.split())
         assert "counted, so the answer is the same on every machine" in words
         explained.add(words[words.index("--timeout S seconds") :].split(")")[0])

@@ -5,13 +5,12 @@ import json
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from importlib import import_module
 from inspect import isclass, isfunction
 from pathlib import Path
 from typing import Any
 
 import roadproof
-from roadproof.frontends.cli.main import COMMANDS
+from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification, bundled_library
 from roadproof.library.uses import definitions_used
@@ -40,23 +39,25 @@ def commands() -> str:
     lines = [
         "# Commands and options",
         "",
-        "Each section is generated from the parser of the command. `roadproof COMMAND --help` prints the "
-        "same in a terminal. All commands share their [exit codes](exit-codes.md).",
+        "Each section is generated from the parser of the command. `roadproof COMMAND --help-all` prints the "
+        "same in a terminal, and `--help` the usual options. All commands share their "
+        "[exit codes](exit-codes.md).",
         "",
-        "| command | purpose |",
-        "|---|---|",
-        *(f"| [{name}](#{name}) | {_cell(summary)} |" for name, summary in COMMANDS.items()),
+        "| job | command | purpose |",
+        "|---|---|---|",
     ]
+    for job, names in jobs().items():
+        for name in names:
+            lines.append(
+                f"| {job if name == names[0] else ''} | [{name}](#{name}) | {_cell(COMMANDS[name])} |"
+            )
     for name, summary in COMMANDS.items():
-        lines += ["", f"## {name}", "", f"{summary[0].upper()}{summary[1:]}.", "", *_options(name, summary)]
+        lines += ["", f"## {name}", "", f"{summary[0].upper()}{summary[1:]}.", "", *_options(name)]
     return "\n".join(lines) + "\n"
 
 
-def _options(name: str, summary: str) -> Iterator[str]:
-    parser = argparse.ArgumentParser(
-        prog=f"roadproof {name}", description=summary, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    import_module(f"roadproof.frontends.cli.{name}").add_arguments(parser)
+def _options(name: str) -> Iterator[str]:
+    parser = command_parser(name)
     for group in parser._action_groups:
         actions = group._group_actions  # rare ones too, which --help may leave out
         if not actions:

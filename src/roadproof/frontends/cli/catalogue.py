@@ -18,7 +18,7 @@ from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.groups import Models, Workers
 from roadproof.frontends.settings.readers import whole
 
-SUMMARY = "what a catalogue of tests shows, which scenarios and classes nobody tests, drives for these"
+SUMMARY = "list which scenarios a catalogue of tests covers, and complete it"
 
 _EXAMPLES = """\
 tests:

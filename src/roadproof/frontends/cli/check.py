@@ -12,7 +12,7 @@ from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.groups import Workers
 from roadproof.verdict import ExitCode
 
-SUMMARY = "check certificates and drive files again, without the programs that made them"
+SUMMARY = "check certificates and drive files again, independently"
 
 _EXAMPLES = """\
 examples:

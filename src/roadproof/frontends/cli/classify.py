@@ -8,7 +8,7 @@ from roadproof.frontends.cli.options import add_definition_options, add_json_opt
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Classify
 
-SUMMARY = "classes of scenarios, proved to exclude each other and to cover the same, with their shares"
+SUMMARY = "partition scenarios into exclusive classes, and count them"
 
 _EXAMPLES = """\
 examples:

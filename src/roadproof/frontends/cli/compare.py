@@ -15,7 +15,7 @@ from roadproof.runtime.progress import listening
 if TYPE_CHECKING:
     from roadproof.engines.search.compare import Direction
 
-SUMMARY = "compare two formulas: equivalent, stronger, weaker or incomparable"
+SUMMARY = "compare two formulas: equivalent, stronger, weaker, incomparable"
 
 _EXAMPLES = """\
 examples:

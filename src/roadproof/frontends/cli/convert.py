@@ -8,7 +8,7 @@ from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.groups import Workers
 from roadproof.verdict import ExitCode
 
-SUMMARY = "keep recordings as Parquet, checked once, for quicker reading"
+SUMMARY = "convert recordings to Parquet, checked, for quicker reading"
 
 _EXAMPLES = """\
 PATH is a folder of recordings in one format, or the file of one. Each is read with all checks, written as

@@ -8,7 +8,7 @@ from roadproof.frontends.cli.progress import Counter, tell
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Coverage
 
-SUMMARY = "which disturbances a spec set misses, by drives in classes; or a proof that it misses none"
+SUMMARY = "find disturbances that a spec set misses, or prove it has no gap"
 
 _EXAMPLES = """\
 examples:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.definitions import Definitions
     from roadproof.recordings.evaluate.totals import Totals
 
-SUMMARY = "find disturbances in recorded traffic and match them with the scenarios"
+SUMMARY = "find disturbances in recordings and match them with scenarios"
 
 SETS = "base,extA,ext"
 MOST_NOTES = 12

@@ -11,7 +11,7 @@ from roadproof.frontends.cli.what import add_what_arguments, some_or_all
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.questions import Explore
 
-SUMMARY = "for which values of parameters and limits a scenario has a drive, and how far a measure can go"
+SUMMARY = "find the parameter values for which a scenario has a drive"
 
 _EXAMPLES = """\
 examples:

@@ -7,7 +7,7 @@ from roadproof.frontends.cli.options import add_spec_option
 from roadproof.frontends.settings.readers import whole
 from roadproof.verdict import ExitCode
 
-SUMMARY = "write drives for other tools: OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV"
+SUMMARY = "write drives as OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV"
 
 _EXAMPLES = """\
 formats:

@@ -4,8 +4,6 @@ A sub-command is a module in this folder with ``SUMMARY: str`` (a plain literal)
 and ``run(args) -> int``, where the integer is the exit code. Only the one that is asked for is imported.
 """
 
-import argparse
-import ast
 import contextlib
 import errno
 import os
@@ -13,74 +11,15 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import NoReturn
 
 from roadproof.errors import RoadproofError, UsageError
+from roadproof.frontends.cli.help import COMMANDS, PACKAGE, CommandParser, command_parser, overview
 from roadproof.frontends.cli.progress import be_quiet, clear
 from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_lenient
 from roadproof.frontends.cli.supervising import supervise
 from roadproof.verdict import ExitCode
 
-_PACKAGE = "roadproof.frontends.cli"
-# What --help shows first; other sub-commands follow by name.
-_FIRST = (
-    *(
-        "list",
-        "show",
-        "studio",
-        "prove",
-        "check",
-        "witness",
-        "compare",
-        "monitor",
-        "evaluate",
-        "simulate",
-        "export",
-        "report",
-    ),
-    *("overlap", "order", "redundancy", "coverage", "classify", "explore", "catalogue"),
-)
-
-
-def _summary(file: Path) -> str | None:
-    """The literal ``SUMMARY`` of a module, one line, None where it has none.
-
-    It is read without importing the module: --help has to be quick.
-    """
-    for line in file.read_text("utf-8").splitlines():
-        if line.startswith("SUMMARY = "):
-            text: str = ast.literal_eval(line.partition("=")[2].strip())
-            return text
-    return None
-
-
-def _find_commands(folder: Path) -> dict[str, str]:
-    """The sub-commands with their summaries: the modules in a folder that have one."""
-    found = {x.stem: text for x in folder.glob("[a-z]*.py") if (text := _summary(x)) is not None}
-    places = {name: place for place, name in enumerate(_FIRST)}
-    return {name: found[name] for name in sorted(found, key=lambda x: (places.get(x, len(places)), x))}
-
-
-COMMANDS = _find_commands(Path(__file__).parent)
 TRACEBACK = "ROADPROOF_TRACEBACK"
-
-_EXAMPLES = """\
-examples:
-  roadproof list                          what there is: scenarios, spec sets, options, parameters
-  roadproof show 4                        scenario 4, deceleration ahead, and the definitions it uses
-  roadproof show 4 --set ext --expand     the same as one formula
-  roadproof show 'F danger(SV,POV)' --format latex
-
-exit codes: 0 as expected, 10 refuted or unexpected, 20 unknown, 30 cross-check failed,
-            2 usage, 3 bad input, 4 missing solver, 70 our fault, 130 interrupted, 143 ended
-"""
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser whose mistakes are errors like all others."""
-
-    def error(self, message: str) -> NoReturn:
-        raise UsageError(f"{message}; see {self.prog} --help")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -122,36 +61,27 @@ def answer(arguments: list[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
-    parser = _Parser(
-        prog="roadproof",
-        description="Compiles driving scenarios to proofs, witnesses and monitors.",
-        epilog=_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("--version", action="store_true", help="print the version and exit")
-    asked = next((a for a in arguments if not a.startswith("-")), None)
-    if asked is not None and asked not in COMMANDS:
+    at = next((i for i, word in enumerate(arguments) if not word.startswith("-")), len(arguments))
+    parser = CommandParser(prog="roadproof", add_help=False)
+    parser.add_argument("-h", "--help", "--help-all", action="store_true")
+    parser.add_argument("--version", action="store_true")
+    first = parser.parse_args(arguments[:at])
+    if first.help:
+        print(overview(), end="")
+        parser.exit()
+    if first.version:
+        return _print_version()
+    if at == len(arguments):
+        raise UsageError("name a sub-command; see roadproof --help")
+    name = arguments[at]
+    if name not in COMMANDS:
         from roadproof.library.specification import unknown
 
-        raise UsageError(f"{unknown('sub-command', asked, COMMANDS)}\nSee roadproof --help.")
-    commands = parser.add_subparsers(dest="command", metavar="SUBCOMMAND", parser_class=_Parser)
-    for name, summary in COMMANDS.items():
-        command = commands.add_parser(
-            name,
-            help=summary,
-            description=summary,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
-        if name == asked:
-            import_module(f"{_PACKAGE}.{name}").add_arguments(command)
-    parsed = parser.parse_args(arguments)
-    if parsed.version:
-        return _print_version()
-    if parsed.command is None:
-        raise UsageError("name a sub-command; see roadproof --help")
+        raise UsageError(f"{unknown('sub-command', name, COMMANDS)}\nSee roadproof --help.")
+    parsed = command_parser(name).parse_args(arguments[at + 1 :])
     be_quiet(getattr(parsed, "quiet", False))
     _try_paths(getattr(parsed, "json", None), getattr(parsed, "out", None))
-    code: int = import_module(f"{_PACKAGE}.{parsed.command}").run(parsed)
+    code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
     return code
 
 

@@ -15,7 +15,7 @@ from roadproof.frontends.cli.options import (
 )
 from roadproof.frontends.settings.readers import named, read_seconds
 
-SUMMARY = "say where a formula holds on one trace: a drive, samples, or vehicles of a recording"
+SUMMARY = "evaluate a formula on one trace: a drive, samples, a recording"
 
 _EXAMPLES = """\
 FORMULA is a formula or a scenario's number. TRACE is one of

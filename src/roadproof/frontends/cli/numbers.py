@@ -4,6 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
+from roadproof.frontends.settings.flags import mark_rare
 from roadproof.frontends.settings.readers import decimal
 
 if TYPE_CHECKING:
@@ -20,15 +21,17 @@ def add_effort_options(
         type=decimal("--effort"),
         default=units,
         metavar="N",
-        help=f"units of work for {each}, each about a second of a solver; counted, so the answer is the same "
-        f"on every machine (default: {units:g})",
+        help=f"about N solver seconds for {each} (default: {units:g}); counted, so the answer is the same on "
+        "every machine",
     )
-    parser.add_argument(
-        "--timeout",
-        type=decimal("--timeout"),
-        metavar="S",
-        help="seconds after which the clock cuts one search off, whatever work is left; the answer then says "
-        "so (default: 60 a unit of work, at least 600)",
+    mark_rare(
+        parser.add_argument(
+            "--timeout",
+            type=decimal("--timeout"),
+            metavar="S",
+            help="seconds after which the clock ends a search, whatever work is left; the answer then says "
+            "so (default: 60 for each unit of --effort, at least 600)",
+        )
     )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.streams import takes_everything
+from roadproof.frontends.settings.flags import mark_rare, section
 from roadproof.runtime.files import whole_file
 
 if TYPE_CHECKING:
@@ -25,11 +26,15 @@ def add_specification_options(
     """
     default = f" (default: {set_name})" if set_name else ""
     if several:
-        text = f"spec set{default}; may be repeated, or have commas"
-        parser.add_argument("--set", dest="set_names", metavar="S", action="append", help=text)
+        text = f"spec set{default}; may be repeated"
+        section(parser, "definitions").add_argument(
+            "--set", dest="set_names", metavar="S", action="append", help=text
+        )
     else:
         text = f"spec set{default}"
-        parser.add_argument("--set", dest="set_name", metavar="S", default=set_name, help=text)
+        section(parser, "definitions").add_argument(
+            "--set", dest="set_name", metavar="S", default=set_name, help=text
+        )
     add_reading_options(parser)
 
 
@@ -43,20 +48,22 @@ def add_definition_options(
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
     """``--option`` and ``--spec``: which readings, and which files on top of the library."""
-    parser.add_argument(
-        "--option",
-        dest="options",
-        metavar="NAME=VALUE",
-        action="append",
-        default=[],
-        help="choose a reading, such as lateral_sign=literal; may be repeated",
+    mark_rare(
+        section(parser, "definitions").add_argument(
+            "--option",
+            dest="options",
+            metavar="NAME=VALUE",
+            action="append",
+            default=[],
+            help="choose a reading, such as lateral_sign=literal; may be repeated",
+        )
     )
-    add_spec_option(parser, "a specification file of yours, on top of the library")
+    add_spec_option(parser, "specification file to add")
 
 
 def add_spec_option(parser: argparse.ArgumentParser, text: str) -> None:
     """``--spec FILE``, which may be repeated; ``text`` says what the files are."""
-    parser.add_argument(
+    section(parser, "definitions").add_argument(
         "--spec",
         dest="specs",
         metavar="FILE",
@@ -69,13 +76,13 @@ def add_spec_option(parser: argparse.ArgumentParser, text: str) -> None:
 
 def add_parameter_option(parser: argparse.ArgumentParser) -> None:
     """``--param``, whose values ``given_values`` reads."""
-    parser.add_argument(
+    section(parser, "definitions").add_argument(
         "--param",
         dest="params",
         metavar="NAME=VALUE",
         action="append",
         default=[],
-        help="value of a parameter, such as minDanger=0, rho=3/5 or 'rho=600 ms'; may be repeated",
+        help="set a parameter, such as rho=3/5; may be repeated",
     )
 
 
@@ -85,14 +92,14 @@ def add_prevention_options(parser: argparse.ArgumentParser, what: str = "scenari
         parser.add_argument(
             f"--{side}",
             metavar="MODEL",
-            help=f"only {what} that begin with a manoeuvre whose collision a driver (careful) {does}",
+            help=f"only {what} whose first collision a driver model (careful) {does}",
         )
 
 
 def add_json_option(parser: argparse.ArgumentParser) -> None:
     """``--json FILE``, where - is stdout; see ``write_json``."""
-    parser.add_argument(
-        "--json", metavar="FILE", type=_file_name, help="write the answer as JSON to FILE, or - for stdout"
+    section(parser, "output").add_argument(
+        "--json", metavar="FILE", type=_file_name, help="write JSON to FILE, or to stdout if FILE is -"
     )
 
 

@@ -7,7 +7,7 @@ from roadproof.frontends.cli.options import add_definition_options, add_json_opt
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Order
 
-SUMMARY = "which scenarios imply which: proofs for the implications, drives against the others"
+SUMMARY = "decide which scenarios imply which"
 
 _EXAMPLES = """\
 examples:

@@ -7,7 +7,7 @@ from roadproof.frontends.cli.options import add_definition_options, add_json_opt
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Overlap
 
-SUMMARY = "which scenarios can hold together: for every pair a drive, or a proof that there is none"
+SUMMARY = "decide for each pair of scenarios whether both can hold at once"
 
 _EXAMPLES = """\
 examples:

@@ -11,7 +11,7 @@ from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.groups import Sharing
 from roadproof.frontends.settings.readers import whole
 
-SUMMARY = "which initial values a driver model prevents a collision from: exact boundaries, drives, proofs"
+SUMMARY = "map the initial values from which a driver prevents a collision"
 
 _EXAMPLES = """\
 examples:

@@ -25,7 +25,7 @@ from roadproof.verdict import Verdict
 if TYPE_CHECKING:
     from roadproof.analysis.claims import ClaimResult, Claims
 
-SUMMARY = "prove claims for all time, or refute them; without a claim, the template properties"
+SUMMARY = "prove claims for all time, or refute them"
 
 _EXAMPLES = """\
 examples:

@@ -7,7 +7,7 @@ from roadproof.frontends.cli.options import add_definition_options, add_json_opt
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Redundancy
 
-SUMMARY = "which parts of scenarios are redundant, by proof; drives that show the others needed"
+SUMMARY = "find the parts of scenarios that can be left out"
 
 _EXAMPLES = """\
 examples:

@@ -8,7 +8,7 @@ from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.groups import Workers
 
-SUMMARY = "one page about results: drives, proofs, matrices, tables; it needs no network"
+SUMMARY = "make one HTML page from results, to be read without a network"
 
 _EXAMPLES = """\
 examples:

@@ -20,7 +20,7 @@ _NUMBERS = re.compile(r"\d{1,2}(-\d{1,2})?(,\d{1,2}(-\d{1,2})?)*")
 if TYPE_CHECKING:
     from roadproof.evidence.drive_file import DriveFile
 
-SUMMARY = "make recordings in the highD format from simulated traffic"
+SUMMARY = "simulate traffic and write recordings in the highD format"
 
 _EXAMPLES = """\
 Car following is IDM (Treiber et al. 2000), lane changes are MOBIL (Kesting et al. 2007). The same seed

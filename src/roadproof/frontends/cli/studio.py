@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-SUMMARY = "write formulas and see what they mean, on a page in the browser"
+SUMMARY = "write and try formulas on a page in the browser"
 
 _EXAMPLES = """\
 examples:

@@ -3,14 +3,16 @@
 import argparse
 
 from roadproof.errors import UsageError
+from roadproof.frontends.settings.flags import section
 
 
 def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
     """Scenarios and formulas by position, and ``--all``, of which ``every`` is the help."""
-    parser.add_argument(
-        "what", metavar="N|FORMULA", nargs="*", help="a scenario's number or name, or a formula"
+    question = section(parser, "question")
+    question.add_argument(
+        "what", metavar="N|FORMULA", nargs="*", help="number or name of a scenario, or a formula"
     )
-    parser.add_argument("--all", action="store_true", help=every)
+    question.add_argument("--all", action="store_true", help=every)
 
 
 def some_or_all(args: argparse.Namespace) -> list[str]:

@@ -9,14 +9,14 @@ from roadproof.frontends.cli.options import add_definition_options, add_json_opt
 from roadproof.frontends.cli.progress import Counter, clear, tell_stage, warn
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.cli.what import add_what_arguments, some_or_all
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import add_flags, mark_rare, read_keywords, section
 from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
     from roadproof.engines.search.ask import Outcome
 
-SUMMARY = "find a drive on which a scenario or a formula holds, and judge it exactly"
+SUMMARY = "find a drive on which a scenario or a formula holds"
 
 _EXAMPLES = """\
 examples:
@@ -37,7 +37,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_what_arguments(parser, "all 24 scenarios, in each --set")
     add_definition_options(parser, several=True)
     add_flags(parser, Witness)
-    parser.add_argument("--verbose", action="store_true", help="print sizes and seconds by stage")
+    mark_rare(
+        section(parser, "output").add_argument(
+            "--verbose", action="store_true", help="print sizes and seconds by stage"
+        )
+    )
     add_json_option(parser)
 
 

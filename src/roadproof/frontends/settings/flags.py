@@ -7,23 +7,42 @@ from roadproof.frontends.settings.option import Group, Option, Settings
 
 TITLES: dict[Group, str] = {
     "question": "question",
+    "definitions": "definitions",
     "search": "search",
     "effort": "limits of work",
     "work": "parallel work",
     "output": "output",
 }
+_RARE = "rare"
 
 
 def add_flags(parser: argparse.ArgumentParser, settings: type[Settings]) -> None:
     """The flags of a question, in groups."""
-    options = settings.options()
-    for group, title in TITLES.items():
-        section = parser.add_argument_group(title)
-        for name, option in options.items():
-            if option.group == group and option.flag is not None:
-                section.add_argument(
-                    option.flag, dest=name, help=option.help, **_rules(settings, name, option)
-                )
+    for name, option in settings.options().items():
+        if option.flag is not None:
+            rules = {"dest": name, "help": option.help, **_rules(settings, name, option)}
+            flag = section(parser, option.group).add_argument(option.flag, **rules)
+            if option.rare:
+                mark_rare(flag)
+
+
+def section(parser: argparse.ArgumentParser, group: Group) -> argparse._ArgumentGroup:
+    """The group of flags in the help of a command. Groups come in the order of ``TITLES``."""
+    found = {x.title: x for x in parser._action_groups}
+    for title in TITLES.values():
+        if title not in found:
+            found[title] = parser.add_argument_group(title)
+    return found[TITLES[group]]
+
+
+def mark_rare(flag: argparse.Action) -> None:
+    """Leave a flag out of ``--help``; ``--help-all`` shows it."""
+    vars(flag)[_RARE] = True
+
+
+def is_rare(flag: argparse.Action) -> bool:
+    """Whether only ``--help-all`` shows a flag."""
+    return _RARE in vars(flag)
 
 
 def _rules(settings: type[Settings], name: str, option: Option) -> dict[str, Any]:

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 def effort_for(what: str, units: float) -> Any:
     """``effort`` of a question that gives so many units of work to each ``what``."""
-    text = f"units of work for {what}, each about a second of a solver; counted, so the answer is the same "
-    text += f"on every machine (default: {units:g})"
+    text = f"about N solver seconds for {what} (default: {units:g}); counted, so the answer is the same on "
+    text += "every machine"
     return option(units, "--effort", "N", help=text, group="effort", read=decimal("--effort"))
 
 
@@ -36,13 +36,13 @@ def folder_for(what: str, command_line_only: bool = False) -> Any:
 def pictures_of(what: str = "pictures", command_line_only: bool = False) -> Any:
     """``pictures`` of a question that draws ``what``."""
     keyword = not command_line_only
-    return option(True, "--no-pictures", help=f"with --out: no {what}", group="output", keyword=keyword)
+    return option(True, "--no-pictures", help=f"draw no {what}", group="output", keyword=keyword, rare=True)
 
 
 def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
     """A driver model that restricts ``what`` to those whose first collision it prevents, or cannot."""
-    text = f"only {what} that begin with a manoeuvre whose collision a driver (careful) {does}"
-    return option(None, f"--{side}", "MODEL", help=text)
+    text = f"only {what} whose first collision a driver model (careful) {does}"
+    return option(None, f"--{side}", "MODEL", help=text, rare=True)
 
 
 def scenarios_such_as(example: str = "1,3-8") -> Any:
@@ -63,7 +63,7 @@ class Models(Settings):
         None,
         "--vehicle",
         "[NAME=]MODEL",
-        help="a vehicle model or a .toml file, for all vehicles or for one (default: car)",
+        help="vehicle model, or .toml file (default: car)",
         group="search",
         read=named(""),
         gather=dict,
@@ -78,14 +78,14 @@ class SearchPlace(Models):
         None,
         "--road",
         "R",
-        help="a reference road, or a .toml or .xodr file (default: by the formula)",
+        help="road, or .toml or .xodr file (default: by formula)",
         group="search",
     )
     lanes: Mapping[str, str] | None = option(
         None,
         "--lane",
         "[L=]LANE",
-        help="the lane that L stands for (default: any that works, from the right)",
+        help="lane that L means (default: any, from the right)",
         group="search",
         read=named("L"),
         gather=dict,
@@ -94,7 +94,7 @@ class SearchPlace(Models):
         Fraction(6),
         "--horizon",
         "S",
-        help="seconds that are searched (default: 6)",
+        help="seconds to search (default: 6)",
         group="search",
         read=seconds("--horizon"),
     )
@@ -105,25 +105,41 @@ class SearchPlace(Models):
         help="seconds between samples (default: the coarsest that fits, at most 3/5)",
         group="search",
         read=seconds("--dt"),
+        rare=True,
     )
     reach: Number = option(
         Fraction(80),
         "--reach",
         "M",
-        help="how far apart vehicles may start (default: 80)",
+        help="largest distance of vehicles at the start in metres (default: 80)",
         group="search",
         read=seconds("--reach"),
+        rare=True,
     )
-    collisions: bool = option(False, "--allow-collisions", help="boxes may overlap", group="search")
+    collisions: bool = option(
+        False, "--allow-collisions", help="allow vehicles to overlap", group="search", rare=True
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Solver(Settings):
     """By whom drives are looked for."""
 
-    engine: Engine = option("milp", "--engine", help="default: milp", group="search", choices=("milp", "smt"))
+    engine: Engine = option(
+        "milp",
+        "--engine",
+        help="method of the search (default: milp)",
+        group="search",
+        choices=("milp", "smt"),
+        rare=True,
+    )
     solver: str = option(
-        "highs", "--solver", help="a mixed-integer solver for milp (default: highs)", group="search"
+        "highs",
+        "--solver",
+        "NAME",
+        help="mixed-integer solver of --engine milp (default: highs)",
+        group="search",
+        rare=True,
     )
 
 
@@ -136,10 +152,11 @@ class Budget(Settings):
         None,
         "--timeout",
         "S",
-        help="seconds after which the clock cuts one search off, whatever work is left; the answer then says "
-        "so (default: 60 a unit of work, at least 600)",
+        help="seconds after which the clock ends a search, whatever work is left; the answer then says so "
+        "(default: 60 for each unit of --effort, at least 600)",
         group="effort",
         read=decimal("--timeout"),
+        rare=True,
     )
 
 
@@ -148,9 +165,14 @@ class Workers(Settings):
     """How many processes do the work."""
 
     jobs: Jobs = option(
-        None, "--jobs", "N", help="processes (default: one a core)", group="work", read=whole("--jobs", 1)
+        None,
+        "--jobs",
+        "N",
+        help="number of processes (default: one per core)",
+        group="work",
+        read=whole("--jobs", 1),
     )
-    quiet: bool = option(False, "--quiet", help="no word about how far it is", group="output", keyword=False)
+    quiet: bool = option(False, "--quiet", help="suppress progress output", group="output", keyword=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,41 +183,46 @@ class Sharing(Workers):
         None,
         "--shard",
         "K/N",
-        help="the K-th of N shares, of runs that share --out; when all are done, ask once more without",
+        help="process shard K of N: start N runs with the same --out, then run once without --shard to merge",
         group="work",
         keyword=False,
+        rare=True,
     )
     cluster: str | None = option(
         None,
         "--cluster",
         "SCHEDULER|local:N",
-        help="work on a cluster of dask, such as tcp://host:8786; or on one of N processes here",
+        help="work on a Dask cluster, such as tcp://host:8786, or on a local one of N processes",
         group="work",
         keyword=False,
+        rare=True,
     )
     tls_ca: str | None = option(
         None,
         "--tls-ca",
         "FILE",
-        help="authority, for a cluster that is spoken to with TLS",
+        help="certificate of the authority (CA) that signed the certificate of the scheduler",
         group="work",
         keyword=False,
+        rare=True,
     )
     tls_cert: str | None = option(
         None,
         "--tls-cert",
         "FILE",
-        help="our certificate, for a cluster that is spoken to with TLS",
+        help="certificate of this client, if the scheduler asks for one",
         group="work",
         keyword=False,
+        rare=True,
     )
     tls_key: str | None = option(
         None,
         "--tls-key",
         "FILE",
-        help="its key, for a cluster that is spoken to with TLS",
+        help="private key of --tls-cert",
         group="work",
         keyword=False,
+        rare=True,
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any, Literal, Self, TypeAlias
 
 from roadproof.errors import UsageError
 
-Group: TypeAlias = Literal["question", "search", "effort", "work", "output"]
+Group: TypeAlias = Literal["question", "definitions", "search", "effort", "work", "output"]
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,8 @@ class Option:
     choices: tuple[str, ...] | None
     least: int | None
     keyword: bool
+    rare: bool
+    """Only ``--help-all`` shows the flag."""
 
     def check(self, name: str, value: object) -> None:
         """Raises ``UsageError`` where a Python caller gives a value that is not allowed."""
@@ -45,8 +47,8 @@ def option(
     gather: Callable[[list[Any]], object] | None = None,
     **more: Any,
 ) -> Any:
-    """A field of a settings class; ``more``: ``choices``, ``least`` or ``keyword`` of its ``Option``."""
-    rules = {"choices": None, "least": None, "keyword": True, **more}
+    """A field of a settings class; ``more``: other fields of its ``Option``."""
+    rules = {"choices": None, "least": None, "keyword": True, "rare": False, **more}
     found = Option(flag, help, metavar, group, read, gather, **rules)
     return dataclasses.field(default=default, metadata={"option": found})
 

@@ -49,11 +49,17 @@ class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Listeners):
     objective: Objective = option(
         "smooth",
         "--objective",
-        help="what the drive should be like (default: smooth)",
+        "KIND",
+        help="any, smooth (default), margin, mild, severe or short",
         choices=("any", "smooth", "margin", "mild", "severe", "short"),
     )
     count: int = option(
-        1, "--count", "K", help="K clearly different drives", read=whole("--count", 1), least=1
+        1,
+        "--count",
+        "K",
+        help="find K clearly different drives (default: 1)",
+        read=whole("--count", 1),
+        least=1,
     )
     out: str | Path | None = folder_for("drive files, CSV and pictures")
     pictures: bool = pictures_of()
@@ -67,24 +73,30 @@ class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Listeners):
         None,
         "--vary",
         "NAME=LOW:HIGH",
-        help="a parameter, or a limit such as POV.a_lon.min; may be given twice",
+        help="vary a parameter, or a limit such as POV.a_lon.min; may be given twice",
         gather=list,
     )
     steps: int | None = option(
-        None, "--steps", "K", help="values of each (default: 11; of two: 6)", read=whole("--steps", 2)
+        None,
+        "--steps",
+        "K",
+        help="number of values (default: 11; 6 for each of two)",
+        read=whole("--steps", 2),
     )
-    least: Term | None = option(None, "--least", "TERM", help="the least value of a term", read=text_or_none)
+    least: Term | None = option(
+        None, "--least", "TERM", help="find the least value of a term", read=text_or_none
+    )
     greatest: Term | None = option(
-        None, "--greatest", "TERM", help="the greatest value of a term", read=text_or_none
+        None, "--greatest", "TERM", help="find the greatest value of a term", read=text_or_none
     )
     when: What | None = option(
-        None, "--when", "FORMULA", help="measure at a moment at which this holds, not at 0"
+        None, "--when", "FORMULA", help="measure the term when FORMULA holds, not at time 0"
     )
     precision: Number | None = option(
         None,
         "--precision",
         "P",
-        help="width of a bracket, in SI units (default: range/60; of a measure 0.1)",
+        help="width of a bracket in SI units (default: range/60; 0.1 for a term)",
     )
     effort: float = effort_for("a question", 6.0)
     out: str | Path | None = folder_for("drives, certificates, JSON, pictures")
@@ -96,14 +108,14 @@ class Overlap(Survey, Prevention):
     """Options of ``overlap``."""
 
     among: str | None = scenarios_such_as()
-    lanes: Same = same_or_any("--lanes", "both speak of one lane, or each of its own")
-    roles: Same = same_or_any("--roles", "vehicles play the same parts in both, or any")
-    start: Same = same_or_any("--start", "both start at 0, or one then or later")
+    lanes: Same = same_or_any("--lanes", "L is the same lane in both scenarios, or any")
+    roles: Same = same_or_any("--roles", "vehicles have the same roles in both, or any")
+    start: Same = same_or_any("--start", "both start at time 0, or one at any later time")
     horizon: Number | None = option(
         None,
         "--horizon",
         "S",
-        help="seconds of driving searched (default: 6; 9 with --start any)",
+        help="seconds to search (default: 6; 9 with --start any)",
         group="search",
         read=seconds("--horizon"),
     )
@@ -127,7 +139,7 @@ class Redundancy(Survey):
     """Options of ``redundancy``."""
 
     among: str | None = scenarios_such_as()
-    whole: bool = option(False, "--whole", help="also the parts of simple predicates")
+    whole: bool = option(False, "--whole", help="include the parts of simple predicates")
     effort: float = effort_for("a drive", 20.0)
 
 
@@ -141,27 +153,27 @@ class Coverage(Survey, Prevention):
         None,
         "--wider",
         "S",
-        help="the set that catches all (default: complete, where it extends the set)",
+        help="set that misses nothing (default: complete, if it extends the set)",
     )
     roads: Iterable[RoadLike] | None = option(
         None,
         "--road",
         "R",
-        help="where to look for drives; may be repeated (default: main-2, then main-3)",
+        help="road to search; may be repeated (default: main-2, then main-3)",
         group="search",
         gather=list,
     )
     needed: bool = option(
-        False, "--needed", help="of a set that covers: a drive for each definition it needs"
+        False, "--needed", help="if the set has no gap: find a drive for each definition that it needs"
     )
     on: str | Path | None = option(
         None,
         "--on",
         "DIR",
-        help="count the classes in recordings, as roadproof simulate makes",
+        help="count the classes of gaps in these recordings",
         read=Path,
     )
-    effort: float = effort_for("a search, half of it for one more that another set catches", 10.0)
+    effort: float = effort_for("a search", 10.0)
     out: str | Path | None = folder_for("certificates, drives and pictures")
     pictures: bool = pictures_of(command_line_only=True)
 
@@ -172,9 +184,9 @@ class Classify(Survey, Prevention):
 
     among: str | None = scenarios_such_as("1-8")
     on: str | Path | None = option(
-        None, "--on", "DIR", help="recordings (default: simulated for this)", read=Path
+        None, "--on", "DIR", help="recordings for the shares (default: simulated traffic)", read=Path
     )
-    shares: bool = option(True, "--no-shares", help="no recordings, so no shares")
+    shares: bool = option(True, "--no-shares", help="compute no shares")
     effort: float = effort_for("a drive or a proof", 60.0)
     out: str | Path | None = folder_for("classes.spec, claims, evidence, picture")
     pictures: bool = pictures_of("picture", command_line_only=True)
