@@ -1,10 +1,11 @@
 """Counts the figures of docs/explanation/tests.md in the repository: ``python -m tally`` writes them.
 
-Each stands between ``<!-- tally: NAME -->`` and ``<!-- end -->``. Nothing is run for them but pytest's
-collection, and that only to count planted faults.
+Each is a table of docs/data/tests. Nothing is run for them but pytest's collection, and that only to count
+planted faults.
 """
 
 import ast
+import csv
 import json
 import re
 import subprocess
@@ -18,40 +19,36 @@ from mutants import journal
 from mutants.choose import folder_of
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs/explanation/tests.md"
+FOLDER = ROOT / "docs/data/tests"
 PLANTED = ("fault", "planted", "mutant", "noticed")
 """A test case with one of these words in its name plants a fault in the program and asks to be told of it."""
 
 
+Table = list[list[str]]
+"""Rows of cells, the heading first."""
+
+
 def main() -> int:
-    text = PAGE.read_text("utf-8")
     for name, table in {**TABLES, "planted": planted}.items():
-        text = put(text, name, table())
-    PAGE.write_text(text, "utf-8")
+        write(FOLDER / f"{name}.csv", table())
     return 0
 
 
-def put(page: str, name: str, table: str) -> str:
-    """``page`` with what stands at a mark replaced."""
-    begin, end = re.escape(f"<!-- tally: {name} -->"), re.escape("<!-- end -->")
-    found, times = re.subn(f"({begin}\n).*?({end})", lambda m: f"{m[1]}{table}{m[2]}", page, flags=re.S)
-    assert times == 1, f"{PAGE.name} has the mark '{name}' {times} times"
-    return found
+def write(path: Path, table: Table) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(table)
 
 
-def told(page: str, name: str) -> str:
-    """What stands at a mark of ``page``."""
-    found = re.search(f"<!-- tally: {name} -->\n(.*?)<!-- end -->", page, re.S)
-    assert found, name
-    return found[1]
+def read(path: Path) -> Table:
+    with path.open(encoding="utf-8", newline="") as file:
+        return [*csv.reader(file)]
 
 
-def rows(head: Iterable[object], body: Iterable[Iterable[object]]) -> str:
-    lines = [head, ["---"] * len(list(head)), *body]
-    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
+def rows(head: Iterable[object], body: Iterable[Iterable[object]]) -> Table:
+    return [[*map(str, line)] for line in (head, *body)]
 
 
-def attacks() -> str:
+def attacks() -> Table:
     """A row for each page of attacks: questions, and commands that are run."""
     found = []
     for path in sorted((ROOT / "tests/attacks").glob("*.md")):
@@ -64,7 +61,7 @@ def attacks() -> str:
     return rows(("page", "questions", "commands run by the tests"), [*found, total])
 
 
-def fuzz() -> str:
+def fuzz() -> Table:
     """A row for each reader: pairs, seeds, disagreements."""
     kept = json.loads((ROOT / "tests/fuzz/results.json").read_text("utf-8"))
     by_reader: dict[str, list[dict[str, int]]] = {}
@@ -82,7 +79,7 @@ def fuzz() -> str:
     return rows(("reader", "pairs", "disagreements", "seeds"), body)
 
 
-def mutants() -> str:
+def mutants() -> Table:
     """A row for each folder: faults tried and what became of them."""
     counted: dict[str, Counter[str]] = {}
     equivalent = journal.equivalents()
@@ -95,7 +92,7 @@ def mutants() -> str:
     return rows(("folder", "tried", "caught", "by hanging", "equivalent", "survived", "run by no test"), body)
 
 
-def planted() -> str:
+def planted() -> Table:
     """A row for each folder: test cases that plant a fault."""
     command = [sys.executable, "-m", "pytest", "tests", "--collect-only", "-q", "-p", "no:xdist"]
     done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, check=True)

@@ -62,7 +62,7 @@ HOLD_TOGETHER = (
         FINDINGS,
         (OVERLAP,),
         (
-            Figures("Of the {} pairs of `base`", "{} pairs in "),
+            Figures("All {} pairs of `base`", "{} pairs in "),
             Figures(
                 "of the main road exactly {} are compatible; the other {} are proved impossible",
                 r.pairs_of_a_sector,
@@ -72,12 +72,12 @@ HOLD_TOGETHER = (
     Statement(
         FINDINGS,
         ("roadproof overlap --among 1-8",),
-        (Figures("Scenario 2 is compatible with {}, no other disturbance", r.partners_of_2),),
+        (Figures("Scenario 2 is compatible with {}**, no other disturbance", r.partners_of_2),),
     ),
     Statement(
         FINDINGS,
         ("roadproof overlap --among 4,12,20",),
-        (Figures("are compatible: {} have drives", "3 WITNESSED: {}\n"),),
+        (Figures("is in two sectors: {} have drives", "3 WITNESSED: {}\n"),),
         quick=True,
     ),
     Statement(
@@ -132,7 +132,7 @@ CLASSIFIED = (
                 "jointly equivalent to the scenarios ({} claims)",
                 lambda x: len(r.read(x, "classes/index.json")["claims"]),
             ),
-            Figures("The behaviour is one of {}**: {} alone, {}. Of the pairwise", r.happenings),
+            Figures("The behaviour is one of {}**: {} alone, {}.\n", r.happenings),
             Figures(
                 "names its scenarios**: {} situations", "{} situations with a scenario, each in exactly one"
             ),
@@ -151,7 +151,7 @@ CLASSIFIED = (
             (f"roadproof classify --set {name}",),
             (
                 Figures("`extA` and `ext` have the same {} classes**", r.all_witnessed),
-                Figures("The behaviour is one of {}**: {} alone, {}. Of the pairwise", r.happenings),
+                Figures("The behaviour is one of {}**: {} alone, {}.\n", r.happenings),
                 Figures(situations, "{} situations with a scenario, each in exactly one"),
                 Figures(traces, "traces, {} ("),
             ),
@@ -181,7 +181,7 @@ CLASSIFIED = (
     Statement(
         FINDINGS,
         ("roadproof classify --among 1-8 --out classes",),
-        (Figures("pairwise compatible choices, {} does not occur", "do not occur: {} PROVED"),),
+        (Figures("{} pairwise compatible choice does not occur", "do not occur: {} PROVED"),),
     ),
     Statement(
         FINDINGS,
@@ -239,11 +239,11 @@ LEFT_OUT = (
         (REDUNDANCY,),
         (
             Figures(
-                "decided**: of {} changes to the 24 scenarios {} are proved redundant, {} more for motion, {} are refuted "
-                "by a judged drive, and {} by a judged trace",
+                "decided**: of {} changes to the 24 scenarios {} are proved redundant and {} more for motion. A judged "
+                "drive refutes {}, and a judged trace over points in time refutes {};",
                 "{} changes: {} redundant, {} more for motion, {} told apart by a drive, {} by a trace, 0 in doubt",
             ),
-            Figures("over points in time; {} is in doubt", "by a trace, {} in doubt"),
+            Figures("refutes 9; {} is in doubt", "by a trace, {} in doubt"),
         ),
     ),
     Statement(
@@ -269,7 +269,7 @@ LEFT_OUT = (
 )
 
 EMPTY = Figures(
-    "`base` and `extA`: of {} classes {} have a drive and {} are proved empty",
+    "in `base` and `extA`, of {} classes {} have a drive and {} are proved empty",
     "of {} classes {} have a judged drive, {} are proved empty, 0 are undecided",
 )
 NO_SINGLE = "in every scenario two or more are false {}"
@@ -285,7 +285,7 @@ MISSED = (
                     "In `base` and `extA` there is {}: two vehicles with fronts level", r.gaps_of_no_condition
                 ),
                 Figures(missed, "disturbances in traffic {} are missed"),
-                Figures("Of {} disturbances in 120 s", "of {} disturbances in traffic"),
+                Figures("of {} disturbances in 120 s", "of {} disturbances in traffic"),
             ),
         )
         for name, missed in (("base", "three lanes `base` misses {}, `extA`"), ("extA", ", `extA` {}, `ext`"))
@@ -295,7 +295,7 @@ MISSED = (
         (RECORDINGS, COVERAGE["ext"]),
         (
             Figures(
-                "`ext`: of {} classes {} have a drive and {} are proved empty",
+                "in `ext`, of {} classes {} have a drive and {} are proved empty",
                 "of {} classes {} have a judged drive, {} are proved empty, 0 are undecided",
             ),
             Figures("one condition of one scenario is missing", NO_SINGLE.format("IMPOSSIBLE")),
@@ -344,7 +344,7 @@ IMPLIED = (
                 ),
             ),
             Figures(
-                "the other {} are refuted by {} drives, and {} is in doubt",
+                "other {} are refuted by {} drives, and {} is in doubt",
                 "{} implications refuted by {} drives, {} in doubt",
             ),
             Figures("edges are proved, {} in each road sector", r.edges_of_a_sector),
@@ -386,7 +386,7 @@ VALUES = (
         (
             Figures("scenario 4 has drives up to `minSafe` = {} s", lambda x: r.boundaries(x)[4]),
             Figures(
-                "the others up to {} s (1), {} s (3), {} s (5), {} s (6), {} s (7) and {} s (8)",
+                "for the others up to {} s (1), {} s (3), {} s (5), {} s (6), {} s (7) and {} s (8)",
                 lambda x: tuple(r.boundaries(x)[k] for k in (1, 3, 5, 6, 7, 8)),
             ),
         ),
@@ -407,7 +407,7 @@ VALUES = (
             (f"roadproof explore {a} {b} --least '{measure}'",),
             (
                 Figures(said, lambda x, a=a, b=b: (r.measures(x)[a, "least"], r.measures(x)[b, "least"])),
-                Figures("that it is never 0 is proved", "at 0 m/s IMPOSSIBLE"),
+                Figures("proved that it is never 0", "at 0 m/s IMPOSSIBLE"),
             ),
         )
         for a, b, measure, said in (

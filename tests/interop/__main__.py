@@ -2,7 +2,7 @@
 
 Every client runs in an environment of its own (environments.py) and is asked about every file of its format;
 its complaints are counted, and it has to refuse damaged copies. What cannot be installed is skipped, with a
-reason. The table goes into docs/how-to/interop.md where all were asked.
+reason. The table goes into docs/data/interop.csv where all were asked.
 """
 
 import argparse
@@ -20,10 +20,10 @@ from interop.expected import expected
 from roadproof.evidence.drive_file import load_drive
 from roadproof.frontends.api.exporting import export
 from roadproof.frontends.cli.main import main as roadproof
-from tally import put, rows
+from tally import rows, write
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "how-to" / "interop.md"
+TABLE = ROOT / "docs/data/interop.csv"
 EACH = 2
 """So many files are damaged in each way."""
 _ALL = 6
@@ -140,8 +140,7 @@ def main() -> int:
             print(f"  a damaged copy is accepted: {text}")
     if not args.only and not any(x.skipped for x in outcomes):
         heading = ("client", "what it is asked", "files", "issues", "damaged copies refused")
-        made = put(PAGE.read_text("utf-8"), "interop", rows(heading, [x.row for x in outcomes]))
-        PAGE.write_text(made, "utf-8")
+        write(TABLE, rows(heading, [x.row for x in outcomes]))
     return int(any(x.issues or x.accepted for x in outcomes))
 
 
