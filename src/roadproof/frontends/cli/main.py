@@ -17,6 +17,7 @@ from roadproof.frontends.cli.help import COMMANDS, PACKAGE, CommandParser, comma
 from roadproof.frontends.cli.progress import be_quiet, clear
 from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_lenient
 from roadproof.frontends.cli.supervising import supervise
+from roadproof.frontends.cli.terminal import dress_output
 from roadproof.verdict import ExitCode
 
 TRACEBACK = "ROADPROOF_TRACEBACK"
@@ -81,6 +82,8 @@ def _run(arguments: list[str]) -> int:
     parsed = command_parser(name).parse_args(arguments[at + 1 :])
     be_quiet(getattr(parsed, "quiet", False))
     _try_paths(getattr(parsed, "json", None), getattr(parsed, "out", None))
+    if getattr(parsed, "json", None) != "-" and getattr(parsed, "format", "text") == "text":
+        dress_output()
     code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
     return code
 

@@ -6,6 +6,7 @@ they come also while a solver keeps this one busy.
 
 import contextlib
 import os
+import shutil
 import sys
 import time
 from typing import TYPE_CHECKING
@@ -45,7 +46,8 @@ def tell(text: str, last: bool = False) -> None:
         return
     _report(text)
     if _is_terminal():
-        print(f"\r\033[K{text}", end="\n" if last else "", file=sys.stderr, flush=True)
+        columns = shutil.get_terminal_size().columns
+        print(f"\r\033[K{text[: columns - 1]}", end="\n" if last else "", file=sys.stderr, flush=True)
 
 
 def note(line: str) -> None:

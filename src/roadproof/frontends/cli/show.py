@@ -12,6 +12,7 @@ from roadproof.evidence.answers import show as kept
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.frontends.cli.options import add_specification_options, select_specification, write_json
+from roadproof.frontends.cli.terminal import width_of_terminal
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenario_references import numbers_called, one_called
 from roadproof.library.scenarios import name_of, number_in
@@ -30,7 +31,7 @@ from roadproof.verdict import ExitCode
 
 SUMMARY = "show a scenario, a definition or a formula"
 
-_WIDTH = 100
+_WIDTH = 100  # of a line, or less on a narrow terminal
 _NAME = re.compile(r"([A-Za-z_]\w*)(?:@([A-Za-z_]\w*))?")
 _EXAMPLES = """\
 examples:
@@ -161,10 +162,11 @@ def _is_number(specification: Specification, claim: Claim) -> bool:
 
 
 def _as_text(exhibit: Exhibit) -> str:
+    width = min(_WIDTH, width_of_terminal() or _WIDTH)
     blocks = [
         "\n".join(f"# {line}" for line in _said(exhibit.about)),
-        "" if exhibit.claim is None else text(exhibit.claim, _WIDTH),
-        "\n".join(text(definition, _WIDTH) for definition in exhibit.definitions),
+        "" if exhibit.claim is None else text(exhibit.claim, width),
+        "\n".join(text(definition, width) for definition in exhibit.definitions),
         "\n".join(_declaration(parameter) for parameter in exhibit.parameters),
     ]
     return "\n\n".join(block for block in blocks if block)
