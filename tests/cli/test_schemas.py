@@ -362,7 +362,7 @@ def test_what_a_command_says_is_what_its_schema_says(
 
 def test_every_command_is_asked() -> None:
     assert {*COMMANDS} - {*ASKED} == {
-        *("simulate", "export", "convert", "report", "studio")  # which have no JSON
+        *("simulate", "export", "convert", "report", "studio", "completion")  # which have no JSON
     }
 
 

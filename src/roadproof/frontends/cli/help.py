@@ -20,6 +20,7 @@ _JOBS: Mapping[str, Sequence[str]] = {
     ),
     "work with recordings": ("monitor", "evaluate", "simulate", "convert"),
     "show and share results": ("report", "export", "studio"),
+    "set up the shell": ("completion",),
 }
 _OTHERS = "other commands"
 _HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."
@@ -76,15 +77,20 @@ def overview() -> str:
 
 
 def command_parser(name: str) -> "CommandParser":
-    """The parser of a sub-command, whose module is imported."""
+    """The parser of a sub-command."""
     parser = CommandParser(
         prog=f"roadproof {name}", description=COMMANDS[name], formatter_class=_UsualHelp, add_help=False
     )
+    fill(parser, name)
+    return parser
+
+
+def fill(parser: argparse.ArgumentParser, name: str) -> None:
+    """Add the arguments and options of a sub-command, whose module is imported."""
     import_module(f"{PACKAGE}.{name}").add_arguments(parser)
     output = section(parser, "output")
     output.add_argument("-h", "--help", action="help", help="print this text and exit")
     output.add_argument("--help-all", action=_HelpAll, nargs=0, help="print this text with all options")
-    return parser
 
 
 class CommandParser(argparse.ArgumentParser):

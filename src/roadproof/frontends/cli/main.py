@@ -29,6 +29,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     Without ``argv`` it is that of this process, which then watches over a child that does the work.
     """
     if argv is None:
+        if "_ARGCOMPLETE" in os.environ:  # a completion script asks
+            from roadproof.frontends.cli.completion import complete
+
+            complete()
         return supervise(lambda: answer(sys.argv[1:]))
     return answer(list(argv))
 

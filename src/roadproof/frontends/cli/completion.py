@@ -1,0 +1,168 @@
+"""``roadproof completion``: commands, options and their values on Tab, in bash, zsh and fish."""
+
+import argparse
+import os
+import re
+from collections.abc import Callable, Iterable, Mapping
+from typing import TypeAlias
+
+from roadproof.frontends.cli.help import COMMANDS, CommandParser, fill
+from roadproof.verdict import ExitCode
+
+SUMMARY = "print the script with which a shell completes roadproof on Tab"
+
+_EXAMPLES = """\
+examples:
+  eval "$(roadproof completion bash)"      in ~/.bashrc
+  eval "$(roadproof completion zsh)"       in ~/.zshrc, after compinit
+  roadproof completion fish > ~/.config/fish/completions/roadproof.fish
+"""
+
+Values: TypeAlias = Mapping[str, str]
+"""Words that complete a value, each with its description, which zsh and fish show."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = _EXAMPLES
+    parser.add_argument("shell", metavar="SHELL", choices=("bash", "zsh", "fish"), help="bash, zsh or fish")
+
+
+def run(args: argparse.Namespace) -> int:
+    from argcomplete.shell_integration import shellcode
+
+    print(shellcode(["roadproof"], shell=args.shell), end="")
+    return ExitCode.AS_EXPECTED
+
+
+def complete() -> None:
+    """Answer the request of a completion script, and end the process."""
+    import argcomplete
+
+    words = os.environ["COMP_LINE"].split()[1:]
+    asked = next((word for word in words if not word.startswith("-")), "")
+    parser = CommandParser(prog="roadproof")
+    commands = parser.add_subparsers()
+    for name, summary in COMMANDS.items():
+        command = commands.add_parser(name, help=summary, add_help=False)
+        if name == asked:
+            fill(command, name)
+            for action in command._actions:
+                _attach(action)
+    argcomplete.autocomplete(parser, always_complete_options=False)
+
+
+def _attach(action: argparse.Action) -> None:
+    """Say how the value of an option or argument is completed: by a list, by file names, or not at all."""
+    from argcomplete.completers import FilesCompleter, SuppressCompleter
+
+    metavar = action.metavar if isinstance(action.metavar, str) else ""
+    known = next((_VALUES[x] for x in (*action.option_strings, metavar) if x in _VALUES), None)
+    completer: object = FilesCompleter() if _FILES.search(metavar) or metavar == "R" else SuppressCompleter()
+    if known is not None:
+        completer = _completer(known, files=metavar in _OR_FILES)
+    if action.choices is None:
+        vars(action)["completer"] = completer
+
+
+def _completer(values: Callable[[str], Values], files: bool) -> Callable[..., Values]:
+    def complete_value(prefix: str, **_: object) -> Values:
+        from argcomplete.completers import FilesCompleter
+
+        found = {word: about for word, about in values(prefix).items() if word.startswith(prefix)}
+        return found | dict.fromkeys(FilesCompleter()(prefix), "") if files else found
+
+    return complete_value
+
+
+def _scenarios(prefix: str) -> Values:
+    """Numbers, also behind a comma; names of ISO 34502 where a letter was typed."""
+    from roadproof.library.specification import bundled_library
+    from roadproof.library.words import called
+
+    known = called(bundled_library().select())
+    head = prefix[: prefix.rfind(",") + 1] if re.match(r"[\d,-]", prefix) else ""
+    if head or not prefix or prefix[0].isdigit():
+        return {f"{head}{number}": words.name for number, words in known.items()}
+    names = {part: "" for words in known.values() for part in (words.title.partition(",")[0], words.sector)}
+    return names | {_BRACKETS.sub("", x.name): f"scenario {number}" for number, x in known.items()}
+
+
+def _claims(prefix: str) -> Values:
+    from roadproof.engines.prove.properties import template_properties
+
+    labels = {task.id: "template property" for task in template_properties()}
+    return {**_scenarios(prefix), **labels}
+
+
+def _sets(prefix: str) -> Values:
+    from roadproof.library.specification import bundled_library
+
+    head = prefix[: prefix.rfind(",") + 1]
+    return {f"{head}{name}": block.doc for name, block in bundled_library().sets.items()}
+
+
+def _readings(prefix: str) -> Values:
+    from roadproof.library.specification import bundled_library
+
+    options = bundled_library().options.values()
+    return {f"{option.name}={value}": option.doc for option in options for value in option.values}
+
+
+def _parameters(prefix: str) -> Values:
+    from roadproof.library.specification import bundled_library
+
+    return {f"{name}=": declared.doc for name, declared in bundled_library().parameters.items()}
+
+
+def _drivers(prefix: str) -> Values:
+    from roadproof.drivers.models import MODELS
+
+    head = prefix[: prefix.rfind(",") + 1]
+    return {f"{head}{name}": model.title for name, model in MODELS.items()}
+
+
+def _formats(prefix: str) -> Values:
+    from roadproof.recordings.export.registry import FORMATS
+
+    head = prefix[: prefix.rfind(",") + 1]
+    return dict.fromkeys((f"{head}{name}" for name in FORMATS), "")
+
+
+def _models(kind: str) -> Callable[[str], Values]:
+    def values(prefix: str) -> Values:
+        from roadproof.world.models import names_of
+
+        head = prefix[: prefix.rfind("=") + 1]
+        return dict.fromkeys((f"{head}{name}" for name in names_of(kind)), "")
+
+    return values
+
+
+def _files_on_request(prefix: str) -> Values:
+    from roadproof.library.specification import on_request
+
+    return dict.fromkeys(on_request(), "shipped with roadproof")
+
+
+_BRACKETS = re.compile(r" \([^()]*\)")
+_FILES = re.compile(r"FILE|DIR|PATH|TRACE|DRIVE|RESULT")
+_OR_FILES = ("FILE", "R", "[NAME=]MODEL", "PATH|N,N")
+
+
+def _by(values: Callable[[str], Values], names: Iterable[str]) -> dict[str, Callable[[str], Values]]:
+    return dict.fromkeys(names, values)
+
+
+_VALUES = {
+    **_by(_scenarios, ("N|FORMULA", "FORMULA", "F1", "F2", "WHAT", "MANOEUVRE", "--among", "--plant")),
+    **_by(_claims, ("CLAIM",)),
+    **_by(_sets, ("--set", "--plant-set", "--wider")),
+    **_by(_readings, ("--option",)),
+    **_by(_parameters, ("--param", "--vary")),
+    **_by(_drivers, ("--preventable", "--unpreventable", "--drivers", "--model")),
+    **_by(_formats, ("--to", "--format")),
+    **_by(_models("roads"), ("--road",)),
+    **_by(_models("vehicles"), ("--vehicle",)),
+    **_by(_files_on_request, ("--spec",)),
+}
+"""How values are completed, by flag or by the name of the value in help."""
