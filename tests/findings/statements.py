@@ -24,7 +24,10 @@ OVERLAP = "roadproof overlap --out overlap"
 CLASSES = "roadproof classify --out classes"
 REDUNDANCY = "roadproof redundancy --out redundant"
 ORDER = "roadproof order --out order"
-OVERTAKING = "roadproof witness 'scenario_1(SV,POV,L) and s(POV) < s(SV) - length(SV)' --out pictured"
+CUT_IN = (
+    "roadproof witness 1 --out drives --no-pictures",
+    "roadproof export drives/scenario-01-base.json --to animation --out drives",
+)
 RECORDINGS = "roadproof simulate --out recordings --seconds 120 --lanes 3 --seed 3"
 COVERAGE = {
     "base": "roadproof coverage --set base --on recordings",
@@ -43,7 +46,7 @@ ALL_MODELS = (
 )
 
 PICTURES = (
-    Picture("docs/pictures/overtaking.png", (OVERTAKING,), lambda _: "pictured/formula-01-base.png"),
+    Picture("docs/pictures/cut-in.svg", CUT_IN, lambda _: "drives/scenario-01-base-moving.svg"),
     Picture("docs/pictures/overlap-base.png", (OVERLAP,), lambda _: "overlap/overlap.png"),
     Picture("docs/pictures/classes-base.png", (CLASSES,), lambda _: "classes/classes.png"),
     Picture("docs/pictures/gap-ext.png", (RECORDINGS, COVERAGE["ext"]), r.picture_of_a_gap_beside_the_lane),

@@ -48,13 +48,13 @@ def test_every_command_of_a_page_is_run(name: str) -> None:
     assert [command for command in named if command not in run and "DIR" not in command] == []
 
 
-BY_HAND = {"report.png", "studio.png", "studio-compare.png", "studio-explain.png"}
-"""Pictures of a browser's window."""
+BY_HAND = {"report.png", "studio.png", "studio-compare.png", "studio-explain.png", "trust.svg"}
+"""Pictures of a browser's window, and drawings."""
 
 
 def test_pictures_are_those_of_pages() -> None:
     pages = "".join(path.read_text("utf-8") for path in (ROOT / "README.md", *ROOT.glob("docs/**/*.md")))
-    pictures = {path.name for path in ROOT.glob("docs/pictures/*.png")}
+    pictures = {path.name for kind in ("png", "svg") for path in ROOT.glob(f"docs/pictures/*.{kind}")}
     assert {Path(picture.file).name for picture in PICTURES} == pictures - BY_HAND
     assert all(f"pictures/{name})" in pages for name in pictures)
 

@@ -10,12 +10,17 @@ from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.api.row import Row
+from roadproof.frontends.report.moving import draw_moving
 from roadproof.library.specification import Library, load_library, unknown
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.recordings.export.subject import Subject, subject_of
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.runtime.files import hold_folder, write_whole
 
+ANIMATION = "animation"
+"""A moving picture, which shows RSS distances of the library too, and so is made here."""
+NAMES = (*FORMATS, ANIMATION)
+"""The formats by name."""
 # A drive, a drive file, or the path of one or of a folder of them.
 DriveLike: TypeAlias = JudgedDrive | DriveFile | str | Path
 
@@ -62,7 +67,8 @@ class Exports:
         formats = list(dict.fromkeys(x.format for x in self.drives))
         count = len(self.drives) // len(formats)
         number = f"{count} drive{'s' if count > 1 else ''}"
-        return f"{number} as {', '.join(formats)}: {len(self.files)} files in {self.folder}"
+        files = f"{len(self.files)} file{'s' if len(self.files) > 1 else ''}"
+        return f"{number} as {', '.join(formats)}: {files} in {self.folder}"
 
 
 def export(
@@ -72,7 +78,7 @@ def export(
     rate: int = 25,
     specs: Iterable[str | Path] = (),
 ) -> Exports:
-    """Write drives for other tools: openscenario, opendrive, commonroad, highd, csv.
+    """Write drives for other tools (openscenario, opendrive, commonroad, highd, csv), or as a moving picture.
 
     Every drive is judged first. ``to``: a format or several, which go into folders of their own then;
     ``rate``: samples a second where a format has samples; ``specs``: specification files that the drives were
@@ -87,7 +93,7 @@ def export(
     if not subjects:
         raise UsageError("no drive to export: name drive files, such as those of roadproof witness")
     folder = Path(out)
-    made = {(subject.name, name): FORMATS[name](subject) for subject in subjects for name in formats}
+    made = {(x.name, name): _files(x, name, library) for x in subjects for name in formats}
     with hold_folder(folder):
         written = tuple(
             _write(folder / name if len(formats) > 1 else folder, subject, name, made[subject.name, name])
@@ -95,6 +101,13 @@ def export(
             for name in formats
         )
     return Exports(folder, written)
+
+
+def _files(subject: Subject, name: str, library: Library) -> dict[str, bytes]:
+    """The files of a drive in a format: their contents by name."""
+    if name == ANIMATION:
+        return {f"{subject.name}-moving.svg": draw_moving(subject.file, library)}
+    return FORMATS[name](subject)
 
 
 def _write(folder: Path, subject: Subject, name: str, files: Mapping[str, bytes]) -> ExportedDrive:
@@ -105,8 +118,9 @@ def _write(folder: Path, subject: Subject, name: str, files: Mapping[str, bytes]
 
 def can_export(drive: str | Path, to: str, specs: Iterable[str | Path] = ()) -> None:
     """Nothing; raises ``InputError`` where a format cannot say a drive."""
-    [(name, file, _)] = _judged([drive], load_library(Path(x) for x in specs))
-    FORMATS[to](subject_of(name, 1, file, 25))
+    library = load_library(Path(x) for x in specs)
+    [(name, file, _)] = _judged([drive], library)
+    _files(subject_of(name, 1, file, 25), to, library)
 
 
 def formats_in(to: str | Iterable[str]) -> list[str]:
@@ -114,10 +128,10 @@ def formats_in(to: str | Iterable[str]) -> list[str]:
     texts = to.split(",") if isinstance(to, str) else [x for text in to for x in text.split(",")]
     names = list(dict.fromkeys(text.strip() for text in texts))
     for name in names:
-        if name not in FORMATS:
-            raise UsageError(unknown("format", name, FORMATS))
+        if name not in NAMES:
+            raise UsageError(unknown("format", name, NAMES))
     if not names:
-        raise UsageError(f"to: name a format: {', '.join(FORMATS)}")
+        raise UsageError(f"to: name a format: {', '.join(NAMES)}")
     return names
 
 

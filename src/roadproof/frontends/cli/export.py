@@ -7,7 +7,7 @@ from roadproof.frontends.cli.options import add_spec_option
 from roadproof.frontends.settings.readers import whole
 from roadproof.verdict import ExitCode
 
-SUMMARY = "write drives as OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV"
+SUMMARY = "write drives as OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV, or as moving pictures"
 
 _EXAMPLES = """\
 formats:
@@ -16,12 +16,14 @@ formats:
   commonroad     NAME.xml (2020a): lanelets, obstacles, SV's planning problem
   highd          recordings 01, 02, ...: three CSV files each; XX_road.toml where the road has zones
   csv            NAME.csv, a row a time and vehicle; NAME_road.toml
+  animation      NAME-moving.svg, which a browser plays: the road, RSS distances of SV, what is true when
 
 Each drive is judged before it is written. One format goes into DIR, several into a folder for each. What is
 converted how is in docs/how-to/interop.md.
 
 examples:
   roadproof export drives/scenario-04-base.json --to openscenario --out play
+  roadproof export drives/scenario-01-base.json --to animation --out pictures
   roadproof export drives --to commonroad,highd,csv --out exported
 """
 
@@ -36,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FORMAT",
         action="append",
         required=True,
-        help="openscenario, opendrive, commonroad, highd or csv; may be repeated, or have commas",
+        help="openscenario, opendrive, commonroad, highd, csv or animation; may be repeated, or have commas",
     )
     parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the files go")
     parser.add_argument(

@@ -126,17 +126,17 @@ def _spans(truth: TruthSet, horizon: float) -> Iterator[Span]:
 def dangers_of(file: DriveFile, library: Library) -> tuple[Danger, ...]:
     """The first danger of the first vehicle with each other one, as the file's definitions have it."""
     first, *others = vehicles_of(file)
-    begun = ((other, _first_danger(file, library, first, other)) for other in others)
-    found = [Danger(first, other, time) for other, time in begun if time is not None]
+    spans = {other: danger_spans(file, library, first, other) for other in others}
+    found = [Danger(first, other, times[0][0]) for other, times in spans.items() if times]
     return tuple(sorted(found, key=lambda x: x.begins))
 
 
-def _first_danger(file: DriveFile, library: Library, one: str, other: str) -> float | None:
+def danger_spans(file: DriveFile, library: Library, one: str, other: str) -> tuple[Span, ...]:
+    """When two vehicles are in danger, in seconds; never where the library does not define danger."""
     formula = _bound(file, library, lambda home: danger(home, one, other))
     if formula is None:
-        return None
-    spans = _spans(judge(formula, file.drive).truth(formula), float(file.horizon))
-    return next((begin for begin, _ in spans), None)
+        return ()
+    return tuple(_spans(judge(formula, file.drive).truth(formula), float(file.horizon)))
 
 
 def distances_of(file: DriveFile, library: Library, direction: Direction) -> tuple[Distance, ...]:

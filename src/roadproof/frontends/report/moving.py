@@ -1,0 +1,334 @@
+"""A moving picture of a drive: the road from above, the RSS distances around SV, and what is true when.
+
+It is one SVG file that a browser plays without scripts. The view follows SV. For each other vehicle an area
+around SV is shaded up to the RSS distances. It is red while the vehicle is in it; if that lasts for
+``minDanger``, there is danger.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from xml.etree.ElementTree import Element
+
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import judge_file
+from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES, TRUE
+from roadproof.frontends.report.drive_data import (
+    GRAIN,
+    Box,
+    Distance,
+    Span,
+    Strip,
+    danger_spans,
+    distances_of,
+    road_in,
+    strips_of,
+    times_of,
+    vehicles_of,
+    window_of,
+)
+from roadproof.library.specification import Library
+from roadproof.library.words import words_of
+from roadproof.recordings.export.xml import document, element
+from roadproof.world.motion import State, states_at
+
+WIDTH, EDGE, NAMES = 860.0, 12.0, 230.0  # pixels: the picture, its margin, the column of names
+ROW, TITLE, LETTER = 17.0, 44.0, 12
+LANE_PIXELS = 7.0  # a metre across has at least that many
+DASH = (3, 9)  # metres of paint and of a gap between lanes
+PAUSE = Fraction(1)  # how long the last state stands, in s
+MOST_STRIPS, DEEPEST = 9, 2
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A drive that is shown, with what is computed of it once."""
+
+    file: DriveFile
+    library: Library
+
+    @cached_property
+    def times(self) -> list[Fraction]:
+        """The instants of the picture, in s."""
+        return times_of(self.file)
+
+    @cached_property
+    def states(self) -> dict[str, tuple[State, ...]]:
+        """The states of each vehicle at these instants, SV first."""
+        return {
+            name: states_at(self.file.drive.vehicles[name], self.times) for name in vehicles_of(self.file)
+        }
+
+    @cached_property
+    def colours(self) -> dict[str, str]:
+        """A colour for each vehicle."""
+        return dict(zip(self.states, COLOURS * len(self.states), strict=False))
+
+    @cached_property
+    def window(self) -> Span:
+        """What is seen along the road, in m from SV's front."""
+        return window_of(self.file, self.times)
+
+    @cached_property
+    def scale(self) -> tuple[float, float]:
+        """Pixels for each metre along and across."""
+        low, high = self.window
+        along = (WIDTH - 2 * EDGE) / (high - low)
+        return along, max(along, LANE_PIXELS)
+
+    @cached_property
+    def across(self) -> Span:
+        """Right and left edge of the road, in m."""
+        return road_in(self.file.road, self.states[self.subject][0].s, self.window).across
+
+    @property
+    def subject(self) -> str:
+        """The vehicle that the picture follows."""
+        return next(iter(self.states))
+
+    @cached_property
+    def dangers(self) -> dict[str, tuple[Span, ...]]:
+        """When the subject is in danger with each other vehicle, in s."""
+        others = [name for name in self.states if name != self.subject]
+        return {name: danger_spans(self.file, self.library, self.subject, name) for name in others}
+
+    @property
+    def begins(self) -> float | None:
+        """When the first danger begins, in s."""
+        return min((spans[0][0] for spans in self.dangers.values() if spans), default=None)
+
+    @property
+    def still(self) -> int:
+        """The instant that a viewer shows which does not play: the first in danger, else the first."""
+        return next((k for k, time in enumerate(self.times) if float(time) >= (self.begins or 0)), 0)
+
+    @property
+    def lasts(self) -> Fraction:
+        """A round of the picture, in s."""
+        return self.times[-1] + PAUSE
+
+    def pixels(self, box: Box) -> Box:
+        """Left, top, width and height of a box in m along, from SV's front, and across."""
+        left, right, bottom, top = box
+        along, across = self.scale
+        x, y = EDGE + (left - self.window[0]) * along, TITLE + (self.across[1] - top) * across
+        return x, y, (right - left) * along, (top - bottom) * across
+
+    def box(self, name: str, k: int) -> Box:
+        """A vehicle at an instant, in m along from SV's front, and across."""
+        motion, state = self.file.drive.vehicles[name], self.states[name][k]
+        s, d = float(state.s - self.states[self.subject][k].s), float(state.d)
+        return s - float(motion.length), s, d - float(motion.width), d
+
+
+def draw_moving(file: DriveFile, library: Library, title: str = "") -> bytes:
+    """The moving picture of a drive as SVG; the title is its scenario in words, or its formula."""
+    scene = Scene(file, library)
+    judgement = judge_file(file, library).judgement
+    strips = () if judgement is None else strips_of(judgement, file.horizon)
+    shown = [x for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
+    road_ends = TITLE + (scene.across[1] - scene.across[0]) * scene.scale[1]
+    below = road_ends + 2 * ROW
+    height = below + ROW * (len(shown) + len(scene.dangers) + 1) + EDGE
+    root = element(
+        "svg",
+        element("rect", width="100%", height="100%", fill="white"),
+        _text(title or _title(file, library), EDGE, 20, size=14),
+        _text(_legend(scene), EDGE, 37, fill="#555555"),
+        *_road(scene),
+        *_vehicles(scene),
+        *_over_time(scene, shown, below),
+        xmlns="http://www.w3.org/2000/svg",
+        viewBox=f"0 0 {WIDTH:g} {height:g}",
+        width=f"{WIDTH:g}",
+        height=f"{height:g}",
+    )
+    root.attrib["font-family"] = "Helvetica, Arial, sans-serif"
+    return document(root)
+
+
+def _title(file: DriveFile, library: Library) -> str:
+    if file.scenario is None:
+        return file.formula
+    return f"S{str(words_of(library.select(file.set_name, file.options), file.scenario))[1:]}"
+
+
+def _legend(scene: Scene) -> str:
+    told = "danger never begins" if scene.begins is None else f"danger begins at {scene.begins:.1f} s"
+    return f"the view follows {scene.subject}; shaded: within RSS distances, red if violated; {told}"
+
+
+# --- the road from above ------------------------------------------------------------------------
+
+
+def _road(scene: Scene) -> Iterator[Element]:
+    """The lanes, which move to the left as SV goes on, and RSS distances; both end at the window."""
+    states = scene.states[scene.subject]
+    travel = [float(state.s - states[0].s) for state in states]
+    low, high = scene.window
+    seen = road_in(scene.file.road, states[0].s, (low + min(travel), high + max(travel)))
+    left, top, width, height = scene.pixels((low, high, *scene.across))
+    cut = element("rect", x=_n(left), y=_n(top), width=_n(width), height=_n(height))
+    yield element("clipPath", cut, id="window")
+    pieces: list[Element] = []
+    for zone, along, (right, beyond) in seen.pieces:
+        x, y, wide, high_ = scene.pixels((*along, right, beyond))
+        pieces.append(element("rect", x=_n(x), y=_n(y), width=_n(wide), height=_n(high_), fill=SHADES[zone]))
+        for edge in (y, y + high_):
+            line = element("line", x1=_n(x), x2=_n(x + wide), y1=_n(edge), y2=_n(edge), stroke="#888888")
+            if top < edge < top + height:
+                line.attrib["stroke-dasharray"] = " ".join(_n(x * scene.scale[0]) for x in DASH)
+            pieces.append(line)
+    shift = [-x * scene.scale[0] for x in travel]
+    moved = element("g", *pieces, transform=f"translate({_n(shift[scene.still])} 0)")
+    moved.append(_moved(scene, shift))
+    shown = element("g", moved, *_envelopes(scene))
+    shown.attrib["clip-path"] = "url(#window)"
+    yield shown
+
+
+def _vehicles(scene: Scene) -> Iterator[Element]:
+    for name, colour in scene.colours.items():
+        boxes = [scene.pixels(scene.box(name, k)) for k in range(len(scene.times))]
+        yield _moving_box(scene, boxes, colour)
+        middles = [(x + w / 2, y + h / 2 + 4) for x, y, w, h in boxes]
+        label = _text(name, *middles[scene.still], fill="white", size=11)
+        label.attrib["text-anchor"] = "middle"
+        if boxes[0][2] < 9 * len(name):
+            label = _text(name, middles[scene.still][0], middles[scene.still][1] - 12, fill=colour, size=11)
+            middles = [(x, y - 12) for x, y in middles]
+        label.extend(_animated(scene, {"x": [x for x, _ in middles], "y": [y for _, y in middles]}))
+        yield label
+
+
+def _envelopes(scene: Scene) -> Iterator[Element]:
+    """The area within RSS distances of SV, for each other vehicle; red while that vehicle is in it."""
+    across = {x.other: x for x in distances_of(scene.file, scene.library, "across")}
+    instants = range(len(scene.times))
+    for along in distances_of(scene.file, scene.library, "along"):
+        beside = across.get(along.other)
+        if beside is None:
+            continue
+        box = [_around(scene.box(scene.subject, k), along, beside, k) for k in instants]
+        near = [along.gap[k] <= along.needed[k] and beside.gap[k] <= beside.needed[k] for k in instants]
+        area = _moving_box(scene, [*map(scene.pixels, box)], scene.colours[along.other])
+        area.attrib |= {"fill-opacity": "0.2"}
+        area.append(_switched(scene, near, DANGER, scene.colours[along.other]))
+        yield area
+
+
+def _around(box: Box, along: Distance, across: Distance, k: int) -> Box:
+    """Where the other vehicle would be too near: from the box of SV as far as the RSS distances reach.
+
+    Where a distance is negative, as that of a faster vehicle ahead can be, it reaches less far than the box.
+    """
+    left, right, bottom, top = box
+    if along.one_behind[k]:
+        right += along.needed[k]
+    else:
+        left -= along.needed[k]
+    if across.one_behind[k]:
+        top += across.needed[k]
+    else:
+        bottom -= across.needed[k]
+    return left, max(left, right), bottom, max(bottom, top)
+
+
+# --- over time ----------------------------------------------------------------------------------
+
+
+def _over_time(scene: Scene, strips: Sequence[Strip], top: float) -> Iterator[Element]:
+    """A row for each part and for danger, an axis of time, and a line that goes through all of them."""
+    rows = [(x.depth, x.name, x.spans, TRUE) for x in strips]
+    for other, spans in scene.dangers.items():
+        rows.append((0, f"danger between {scene.subject} and {other}", spans, DANGER))
+    bottom = top + ROW * len(rows)
+    begin, end = EDGE + NAMES, WIDTH - EDGE
+    pixels = (end - begin) / float(scene.file.horizon)
+    for row, (depth, name, spans, colour) in enumerate(rows):
+        y = top + ROW * row
+        yield _text(_fitting("\u2002" * depth + name), EDGE, y + 12, fill="#333333", size=11)
+        yield element("line", x1=_n(begin), x2=_n(end), y1=_n(y + 8), y2=_n(y + 8), stroke="#dddddd")
+        for since, until in spans:
+            x, width = begin + since * pixels, max(1.5, (until - since) * pixels)
+            yield element("rect", x=_n(x), y=_n(y + 3), width=_n(width), height="10", fill=colour)
+    for second in range(int(scene.file.horizon) + 1):
+        yield _text(f"{second} s", begin + second * pixels - 6, bottom + 14, fill="#555555", size=10)
+    if scene.begins is not None:
+        yield _line_at(begin + scene.begins * pixels, top - 8, bottom, DANGER, dashed=True)
+        told = _text("danger begins", begin + scene.begins * pixels, top - 11, fill=DANGER, size=11)
+        told.attrib["text-anchor"] = "middle"
+        yield told
+    places = [begin + float(time) * pixels for time in scene.times]
+    cursor = _line_at(places[scene.still], top - 4, bottom, "#222222")
+    cursor.extend(_animated(scene, {"x1": places, "x2": places}))
+    yield cursor
+
+
+def _fitting(name: str) -> str:
+    most = int(NAMES / 6.2)
+    return name if len(name) <= most else f"{name[: most - 1]}…"
+
+
+# --- shapes and their changes -------------------------------------------------------------------
+
+
+def _n(value: float) -> str:
+    return f"{value:.1f}".removesuffix(".0")
+
+
+def _text(text: str, x: float, y: float, fill: str = "#111111", size: int = LETTER) -> Element:
+    made = element("text", text=text, x=_n(x), y=_n(y), fill=fill)
+    made.attrib["font-size"] = str(size)
+    return made
+
+
+def _line_at(x: float, top: float, bottom: float, stroke: str, dashed: bool = False) -> Element:
+    line = element("line", x1=_n(x), x2=_n(x), y1=_n(top), y2=_n(bottom), stroke=stroke)
+    if dashed:
+        line.attrib["stroke-dasharray"] = "4 2"
+    return line
+
+
+def _moving_box(scene: Scene, boxes: Sequence[Box], fill: str) -> Element:
+    names = ("x", "y", "width", "height")
+    made = element("rect", **{n: _n(v) for n, v in zip(names, boxes[scene.still], strict=True)}, fill=fill)
+    made.extend(_animated(scene, {n: [box[k] for box in boxes] for k, n in enumerate(names)}))
+    return made
+
+
+def _animated(scene: Scene, values: Mapping[str, Sequence[float]]) -> Iterator[Element]:
+    """The changes of attributes that change, as the instants have them."""
+    for name, numbers in values.items():
+        if len({_n(x) for x in numbers}) > 1:
+            yield element("animate", attributeName=name, values=_played(numbers), **_clock(scene))
+
+
+def _moved(scene: Scene, shift: Sequence[float]) -> Element:
+    clock = _clock(scene)
+    return element(
+        "animateTransform", attributeName="transform", type="translate", values=_played(shift), **clock
+    )
+
+
+def _played(numbers: Sequence[float]) -> str:
+    """The values of a round: the last stands for the pause."""
+    return ";".join(map(_n, [*numbers, *[numbers[-1]] * int(PAUSE / GRAIN)]))
+
+
+def _switched(scene: Scene, flags: Sequence[bool], within: str, outside: str) -> Element:
+    """The fill of a shape: one colour at instants where a flag is set, another elsewhere."""
+    changes = [k for k, flag in enumerate(flags) if k == 0 or flag != flags[k - 1]]
+    return element(
+        "animate",
+        attributeName="fill",
+        calcMode="discrete",
+        keyTimes=";".join(f"{float(scene.times[k] / scene.lasts):.4f}" for k in changes),
+        values=";".join(within if flags[k] else outside for k in changes),
+        **_clock(scene),
+    )
+
+
+def _clock(scene: Scene) -> dict[str, str]:
+    return {"dur": f"{float(scene.lasts):g}s", "repeatCount": "indefinite"}
