@@ -9,7 +9,7 @@ from console import agree
 from pages import Example, examples_of, rewritten, run
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "docs/reference/python.md", ROOT / "README.md"]
+PAGES = [ROOT / "docs/reference/python.md", ROOT / "docs/how-to/jupyter.md", ROOT / "README.md"]
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda x: x.stem)

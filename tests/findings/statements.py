@@ -341,7 +341,7 @@ IMPLIED = (
                 "scenarios, {} formulas: {} edges proved",
             ),
             Figures(
-                "with the {} implications that follow by a chain",
+                "belong the {} implications that follow by a chain",
                 lambda x: (
                     len(r.read(x, "order/index.json")["proved"]) - len(r.read(x, "order/index.json")["edges"])
                 ),
@@ -389,7 +389,7 @@ VALUES = (
         (
             Figures("scenario 4 has drives up to `minSafe` = {} s", lambda x: r.boundaries(x)[4]),
             Figures(
-                "for the others up to {} s (1), {} s (3), {} s (5), {} s (6), {} s (7) and {} s (8)",
+                "Drives of the others: {} s (1), {} s (3), {} s (5), {} s (6), {} s (7) and {} s (8)",
                 lambda x: tuple(r.boundaries(x)[k] for k in (1, 3, 5, 6, 7, 8)),
             ),
         ),
