@@ -4,14 +4,17 @@ import json
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
+import jinja2
 import pytest
 
 import roadproof as rp
 from evidence.folders import some_proofs
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.page.markup import joined, table, tag
+from roadproof.frontends.report.page.page import page as page_of
+from roadproof.frontends.report.page.templates import render
 from roadproof.runtime.package_data import shipped
 
 HOSTILE = "<img src=x onerror=alert(1)>"
@@ -45,9 +48,31 @@ def body_of(text: str) -> str:
 
 
 def test_every_text_is_escaped_wherever_it_is_put():
-    assert tag("p", HOSTILE) == "<p>&lt;img src=x onerror=alert(1)&gt;</p>"
-    assert tag("p", tag("b", "&"), title='"><i>') == '<p title="&quot;&gt;&lt;i&gt;"><b>&amp;</b></p>'
-    assert "<img" not in table([HOSTILE], [[HOSTILE, 3]]) + joined([HOSTILE], HOSTILE)
+    page = page_of(HOSTILE, ["<p>made</p>"], [], CLOSED)
+    assert "<h1>&lt;img src=x onerror=alert(1)&gt;</h1>" in page
+    assert "<img" not in page
+    assert page.count("<script") == page.count("</script") == 3
+    assert "<main>\n<p>made</p>\n</main>" in page
+    finding = {"outcome": '"><i>', "label": HOSTILE, "where": HOSTILE, "reason": "a & b"}
+    shown = render("evidence.html", page=None, solver="z3", count=1, wrong=[finding], **NOTHING)
+    assert "<td>&#34;&gt;&lt;i&gt;</td>" in shown
+    assert "<td>a &amp; b</td>" in shown
+    assert "<img" not in shown
+
+
+NOTHING: dict[str, list] = {"accepted": [], "proofs": [], "drives": []}
+
+
+def test_a_value_that_a_template_lacks_is_an_error():
+    """A name that is misspelt in a template is found by the first page that is made with it."""
+    with pytest.raises(jinja2.UndefinedError, match="'solver' is undefined"):
+        render("evidence.html", page=None, count=0, wrong=[], **NOTHING)
+
+
+def test_only_a_page_imports_the_engine_of_templates():
+    code = "import sys, roadproof, roadproof.frontends.cli.main; print('jinja2' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
 
 
 def test_proofs_and_drives_with_what_was_found_of_them(tmp_path, drives):
@@ -414,7 +439,7 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
     (tmp_path / "tests.json").write_text(json.dumps(answer), "utf-8")
     found, text = made(tmp_path / "tests.json", out=tmp_path / "page.html")
     seen = body_of(text)
-    right, wrong, away, means = re.findall(r'<details id="test-0-\d">.*?</details>', seen)
+    right, wrong, away, means = re.findall(r'<details id="test-0-\d">.*?</details>', seen, re.DOTALL)
     assert found.drives == 2
     assert "is false" not in right
     assert "the formula is false on this drive, judged for this page" in wrong

@@ -1,4 +1,4 @@
-"""Plates of driver models: where a collision is unpreventable, drawn, with the drives beside the boundary."""
+"""Values of the section of plates: where a collision is unpreventable, drawn with all driver models."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,9 +9,7 @@ from roadproof.drivers.models import MODELS
 from roadproof.drivers.words import legend
 from roadproof.evidence.answers.plates import Index, Plate
 from roadproof.evidence.codec import read
-from roadproof.frontends.report.page.markup import Content, Markup, joined, table, tag
 from roadproof.frontends.report.page.page_context import PageContext
-from roadproof.frontends.report.page.pieces import counts, evidence_of, folded, verdict
 from roadproof.frontends.report.page.results import Result
 from roadproof.frontends.report.preventable import COLOURS, measured
 from roadproof.world.units import UNITS
@@ -19,57 +17,94 @@ from roadproof.world.units import UNITS
 _WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and the room for its numbers
 
 
-def plates(result: Result, context: PageContext, words: Mapping[int, str]) -> Markup:
-    """Each choice of fixed values as a picture with all its models, then plates and lemmas with evidence."""
+def plates(result: Result, context: PageContext) -> dict[str, object]:
+    """Plates, in ``groups`` of the same fixed values."""
     index = read(Index, result.data, result.name)
-    found, along, across = index.plates, index.along, index.across
-    known = MANOEUVRES[index.manoeuvre].quantities
+    quantities = MANOEUVRES[index.manoeuvre].quantities
     groups: dict[tuple[tuple[str, str], ...], list[Plate]] = {}
-    for x in found:
+    for x in index.plates:
         groups.setdefault(tuple(sorted(x.fixed.items())), []).append(x)
-    pictures = [_picture(_told(known, dict(of)), here, known, along, across) for of, here in groups.items()]
-    parts: list[Content] = [
-        tag("p", counts(x.verdict for x in found)),
-        _legend(found),
-        tag("div", *pictures, class_="plates"),
-    ]
-    parts.append(
-        tag(
-            "p",
-            f"Filled is what is unpreventable; {_label(known, across[0])} over {_label(known, along[0])}.",
-            class_="faint",
-        )
-    )
-    fixed = {name for x in found for name in x.fixed}
-    symbols = [x for name, x in known.items() if name in {along[0], across[0], *fixed}]
-    parts.append(tag("p", f"{legend(symbols)}.", class_="faint"))
-    parts += [_plate(x, known, result, context) for x in found]
-    for lemma in index.lemmas:
-        inside: list[Content] = [tag("p", lemma.title), tag("p", tag("code", lemma.claim))]
-        inside += evidence_of(result, context, certificate=lemma.certificate)
-        parts.append(folded((verdict(lemma.verdict), " lemma ", tag("b", lemma.name)), *inside))
-    return joined(parts)
-
-
-def _legend(found: Sequence[Plate]) -> Markup:
-    named = dict.fromkeys(x.model for x in found)
-    return tag("p", joined([tag("b", _title(x), style=f"color:{_colour(x)}") for x in named], " · "))
-
-
-def _title(model: str) -> str:
-    return MODELS[model].title if model in MODELS else model
+    shown = {index.along[0], index.across[0], *(name for x in index.plates for name in x.fixed)}
+    return {
+        "answer": index,
+        "groups": [(dict(fixed), here) for fixed, here in groups.items()],
+        "models": dict.fromkeys(x.model for x in index.plates),
+        "plane": _Plane(quantities, index.along, index.across),
+        "legend": legend([x for name, x in quantities.items() if name in shown]),
+        "title_of": lambda model: MODELS[model].title if model in MODELS else model,
+        "colour_of": _colour,
+    }
 
 
 def _colour(model: str) -> str:
     return COLOURS.get(model, "#555555")
 
 
-def _told(known: Mapping[str, Quantity], values: Mapping[str, str]) -> str:
-    return ", ".join(f"{name} = {_measured(known, name, value)}" for name, value in values.items())
+@dataclass(frozen=True)
+class _Span:
+    """A rectangle in a picture, in px."""
+
+    x: float
+    y: float
+    width: float
+    height: float
 
 
-def _measured(known: Mapping[str, Quantity], name: str, value: str) -> str:
-    return measured(known[name], Fraction(value)) if name in known else value
+@dataclass(frozen=True)
+class _Area:
+    """What is unpreventable for a model: spans of lines, and the points of their first and last ends."""
+
+    colour: str
+    spans: Sequence[_Span]
+    edges: Sequence[Sequence[str]]
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """Areas, and the numbers at the ends of the axes."""
+
+    areas: Sequence[_Area]
+    low: str
+    high: str
+    bottom: str
+    top: str
+
+
+@dataclass(frozen=True)
+class _Plane:
+    """The two initial values that vary: ``along`` a line from left to right, ``across`` lines upwards."""
+
+    quantities: Mapping[str, Quantity]
+    along: Sequence[str]
+    across: Sequence[str]
+
+    def known(self, values: Mapping[str, str]) -> dict[str, str]:
+        """The values of the manoeuvre's own quantities."""
+        return {name: x for name, x in values.items() if name in self.quantities}
+
+    def measured(self, name: str, value: str) -> str:
+        """A value in the unit of its quantity."""
+        return measured(self.quantities[name], Fraction(value)) if name in self.quantities else value
+
+    def label(self, name: str) -> str:
+        """The name of an axis, with its unit."""
+        return f"{name} [{self._unit(name)}]"
+
+    def drawn(self, plates: Sequence[Plate]) -> _Drawn:
+        """Plates over each other."""
+        low, high = (float(Fraction(x)) for x in self.along[1:])
+        rows = [float(Fraction(line.at)) for x in plates for line in x.lines] or [0.0, 1.0]
+        frame = _Frame((low, high), (min(rows), max(rows)))
+        ends = (self._number(self.along[0], low), self._number(self.along[0], high))
+        return _Drawn(
+            [_area(x, frame) for x in plates], *ends, *(self._number(self.across[0], x) for x in frame.across)
+        )
+
+    def _unit(self, name: str) -> str:
+        return self.quantities[name].unit if name in self.quantities else "unitless"
+
+    def _number(self, name: str, value: float) -> str:
+        return f"{value / float(UNITS[self._unit(name)][0]):.4g}"
 
 
 @dataclass(frozen=True)
@@ -87,87 +122,28 @@ class _Frame:
         low, high = self.across
         return round((_HIGH - _BELOW) * (1 - (value - low) / (high - low or 1)), 2)
 
+    def spans(self, plate: Plate) -> Iterator[_Span]:
+        """What is unpreventable on each line: thin lines where nothing is said of what is between them."""
+        thick = 1.2 if plate.stepped else (_HIGH - _BELOW) / max(1, len(plate.lines) - 1)
+        for line in plate.lines:
+            middle = self.y(float(Fraction(line.at)))
+            top, bottom = max(0.0, middle - thick / 2), min(_HIGH - _BELOW, middle + thick / 2)
+            for begin, end in line.unpreventable:
+                left = self.x(float(begin.near))
+                width = max(0.4, self.x(float(end.near)) - left)
+                yield _Span(left, round(top, 2), round(width, 2), round(bottom - top, 2))
 
-def _picture(
-    title: str,
-    found: Sequence[Plate],
-    known: Mapping[str, Quantity],
-    along: Sequence[str],
-    across: Sequence[str],
-) -> Markup:
-    """The plates of one choice of fixed values over each other, as SVG."""
-    low, high = (float(Fraction(x)) for x in along[1:])
-    rows = [float(Fraction(line.at)) for x in found for line in x.lines] or [0.0, 1.0]
-    frame = _Frame((low, high), (min(rows), max(rows)))
-    edge = {"x": _LEFT, "y": 0, "width": _WIDE - _LEFT, "height": _HIGH - _BELOW}
-    told = title or "the plate"
-    drawn = tag(
-        "svg",
-        *(part for x in found for part in _areas(x, frame)),
-        tag("rect", **edge, fill="none", class_="frame"),
-        _number(known, along[0], low, _LEFT, _HIGH - 16, "start"),
-        _number(known, along[0], high, _WIDE, _HIGH - 16, "end"),
-        _number(known, across[0], frame.across[0], _LEFT - 3, _HIGH - _BELOW, "end"),
-        _number(known, across[0], frame.across[1], _LEFT - 3, 9, "end"),
-        tag("text", _label(known, along[0]), x=(_LEFT + _WIDE) / 2, y=_HIGH - 4, text_anchor="middle"),
-        viewBox=f"0 0 {_WIDE:g} {_HIGH:g}",
-        class_="plate",
-        role="img",
-        aria_label=f"{told}: where a collision is unpreventable",
-    )
-    return tag("figure", tag("figcaption", told), drawn)
+    def edge(self, plate: Plate, which: int) -> list[str]:
+        """The first (0) or last (-1) ends of all lines, where these are not ends of the range."""
+        points = []
+        for line in plate.lines:
+            if line.unpreventable:
+                value = float(line.unpreventable[which][which].near)
+                if self.along[0] < value < self.along[1]:
+                    points.append(f"{self.x(value)},{self.y(float(Fraction(line.at)))}")
+        return points
 
 
-def _areas(plate: Plate, frame: _Frame) -> Iterator[Markup]:
-    """What is unpreventable on each line, and, where lines are exact, its first and last ends joined."""
-    colour, stepped = _colour(plate.model), bool(plate.stepped)
-    thick = 1.2 if stepped else (_HIGH - _BELOW) / max(1, len(plate.lines) - 1)
-    edges: tuple[list[str], list[str]] = ([], [])
-    for line in plate.lines:
-        middle = frame.y(float(Fraction(line.at)))
-        top, bottom = max(0.0, middle - thick / 2), min(_HIGH - _BELOW, middle + thick / 2)
-        spans = [(float(a.near), float(b.near)) for a, b in line.unpreventable]
-        for begin, end in spans:
-            width = max(0.4, frame.x(end) - frame.x(begin))
-            place = {"x": frame.x(begin), "y": round(top, 2), "height": round(bottom - top, 2)}
-            yield tag("rect", **place, width=round(width, 2), fill=colour, fill_opacity="0.15")
-        for points, value in zip(edges, (spans[0][0], spans[-1][1]) if spans else (), strict=False):
-            if frame.along[0] < value < frame.along[1]:
-                points.append(f"{frame.x(value)},{middle}")
-    for points in () if stepped else edges:
-        yield tag("polyline", points=" ".join(points), fill="none", stroke=colour)
-
-
-def _unit(known: Mapping[str, Quantity], name: str) -> tuple[str, float]:
-    unit = known[name].unit if name in known else "unitless"
-    return unit, float(UNITS[unit][0])
-
-
-def _label(known: Mapping[str, Quantity], name: str) -> str:
-    return f"{name} [{_unit(known, name)[0]}]"
-
-
-def _number(
-    known: Mapping[str, Quantity], name: str, value: float, x: float, y: float, anchor: str
-) -> Markup:
-    return tag("text", f"{value / _unit(known, name)[1]:.4g}", x=x, y=y, text_anchor=anchor)
-
-
-def _plate(x: Plate, known: Mapping[str, Quantity], result: Result, context: PageContext) -> Markup:
-    """A plate: its formula, some of what it says in words, a drive on each side."""
-    fixed = _told(known, x.fixed)
-    inside: list[Content] = [tag("p", tag("code", x.formula))]
-    inside += [tag("p", note) for note in (x.stepped, x.motion, x.reason) if note]
-    rows = [
-        (line.at, "; ".join(f"{a.near:g} to {b.near:g}" for a, b in line.unpreventable) or "nowhere")
-        for line in x.lines
-    ]
-    inside.append(folded(("lines, in SI units",), table(("at", "unpreventable"), rows)))
-    for y in x.shown:
-        said = _told(known, {k: v for k, v in y.at.items() if k in known})
-        inner: list[Content] = [tag("p", y.reason)] if y.reason else []
-        inner += [tag("p", tag("code", y.formula))]
-        inner += evidence_of(result, context, y.drive)
-        inside.append(folded((verdict(y.verdict), f" {y.side}: {said}"), *inner))
-    name = f" {_title(x.model)}{fixed and f'; {fixed}'}"
-    return folded((verdict(x.verdict), tag("b", name)), *inside)
+def _area(plate: Plate, frame: _Frame) -> _Area:
+    edges = [] if plate.stepped else [frame.edge(plate, which) for which in (0, -1)]
+    return _Area(_colour(plate.model), [*frame.spans(plate)], edges)
