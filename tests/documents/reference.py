@@ -67,25 +67,27 @@ def _options(name: str) -> Iterator[str]:
         )
         yield from (f"**{title}**", "", "| | |", "|---|---|")
         for action in actions:
-            yield f"| {_spelling(action)} | {_cell(_help(parser, action))} |"
+            spelled = ", ".join(map(_code, spellings(action)))
+            yield f"| {spelled} | {_cell(help_of(parser, action))} |"
         yield ""
     if parser.epilog:
         yield from ("```text", parser.epilog.strip(), "```")
 
 
-def _spelling(action: argparse.Action) -> str:
+def spellings(action: argparse.Action) -> list[str]:
+    """An option by each of its names, with its value; an argument as help shows it."""
     value = action.metavar or (
         "{" + ",".join(map(str, action.choices)) + "}" if action.choices else action.dest.upper()
     )
     if isinstance(value, tuple):
         value = " ".join(value)
     if not action.option_strings:
-        return _code(value)
+        return [value]
     takes = "" if action.nargs == 0 else f" {value}"
-    return ", ".join(_code(f"{option}{takes}") for option in action.option_strings)
+    return [f"{option}{takes}" for option in action.option_strings]
 
 
-def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
+def help_of(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
     if not action.help or action.help == argparse.SUPPRESS:
         return ""
     return parser._get_formatter()._expand_help(action)
