@@ -105,7 +105,7 @@ def test_verdicts_and_truth_intervals_are_those_of_the_drive(
     made: Subject, format_: str, tmp_path: Path
 ) -> None:
     read = READERS[format_](made, tmp_path)
-    found = monitor(made.file.scenario or "", read.trace, of_file(made.file), {"L": read.lane})
+    found = monitor(made.file.scenario or "", read.trace, of_file(made.file), lanes={"L": read.lane})
     assert found.verdict == original(made.name).verdict == "true"
     ours, theirs = spans(original(made.name)), spans(found)
     assert len(ours) == len(theirs) > 10
@@ -124,7 +124,7 @@ def test_a_drive_with_jerk_is_read_back_as_it_was(format_: str, tmp_path: Path) 
     made = Subject("smooth", 1, drive(4, vehicles, load("ext")).file)
     read = READERS[format_](made, tmp_path)
     ours = monitor(4, made.file, view="recorded")
-    found = monitor(4, read.trace, of_file(made.file), {"L": read.lane})
+    found = monitor(4, read.trace, of_file(made.file), lanes={"L": read.lane})
     assert found.verdict == ours.verdict == "true"
     for each, again in zip(spans(ours), spans(found), strict=True):
         assert again == pytest.approx(np.array(each), abs=STEP + 1e-9) if each else again == each
@@ -232,5 +232,5 @@ def test_planted_fault_a_sample_of_another_vehicle_is_noticed(tmp_path: Path) ->
     made = next(x for x in PAIRS if x.file.scenario == 4)
     path = written(made, "csv", tmp_path) / f"{made.name}.csv"
     home, lanes = of_file(made.file), made.file.lanes
-    assert monitor(4, f"{path}:1,2", home, lanes).verdict == "true"
-    assert monitor(4, f"{path}:2,1", home, lanes).verdict == "false"
+    assert monitor(4, f"{path}:1,2", home, lanes=lanes).verdict == "true"
+    assert monitor(4, f"{path}:2,1", home, lanes=lanes).verdict == "false"

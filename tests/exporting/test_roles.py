@@ -67,7 +67,7 @@ def test_numbers_are_roles_in_every_format(drive: str, format_: str, tmp_path: P
 
     def verdict(order: tuple[int, ...]) -> str:
         lane = trace.lanes["SV"] if made.file.lanes["L"] == lane_of(made, "SV") else trace.lanes[names[1]]
-        return monitor(made.file.scenario or "", read(order), home, {"L": lane}).verdict
+        return monitor(made.file.scenario or "", read(order), home, lanes={"L": lane}).verdict
 
     assert verdict(own) == "true"
     others = [order for order in permutations(own) if order != own]

@@ -6,10 +6,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Progress
 from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
@@ -22,10 +21,14 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
 from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import one_of, work_of
+from roadproof.frontends.api.settings import work_of
+from roadproof.frontends.settings.evidence import Check
+from roadproof.frontends.settings.keywords import CheckKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import Library, load_library
 from roadproof.library.words import called_by, legend
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
@@ -115,17 +118,8 @@ class CheckReport:
         return "\n".join([*lines, summary(self.findings, self.solver), *kernel])
 
 
-def check(
-    *paths: str | Path,
-    solver: Solver = "z3",
-    specs: Iterable[str | Path] = (),
-    effort: float = 60.0,
-    timeout: float | None = None,
-    jobs: int | None = None,
-    progress: Progress | None = None,
-    kernel: Kernel | None = None,
-    strict: bool = False,
-) -> CheckReport:
+@takes(Check)
+def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     """Check certificates, drive files and folders of them, as ``roadproof check`` does.
 
     ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
@@ -133,25 +127,25 @@ def check(
     code is 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN. Raises
     ``InputError`` for a path that holds nothing, ``MissingSolverError``.
     """
-    one_of("solver", solver, Solver)
-    if kernel is None:
-        ask("(set-logic QF_UF)(check-sat)", solver)  # a solver that is missing is said once, before any work
+    asked = Check.of(options)
+    if asked.kernel is None:
+        # A solver that is missing is said once, before any work.
+        ask("(set-logic QF_UF)(check-sat)", asked.solver)
     else:
-        one_of("kernel", kernel, Kernel)
         coq.find()
-    named = tuple(Path(x) for x in specs)
+    named = tuple(Path(x) for x in asked.specs)
     library = load_library(named)
     surveyed = survey([Path(x) for x in paths], named, find_label)
     given = list(surveyed.files.items())
-    answered = None if kernel is None else kernels.put(_asked(given), jobs, progress)
+    answered = None if asked.kernel is None else kernels.put(_asked(given), asked.jobs, asked.progress)
     names = kernels.names_of(path for path, _ in given)
     said = {} if answered is None else answered.rulings
     work = [
         _Job(path, beside, kernels.ruled(said[names[path]]) if names[path] in said else None)
         for path, beside in given
     ]
-    judge = partial(_examine, solver, work_of(effort, timeout))
-    answers = pool.in_order(pool.work(judge, work, jobs, _doubt, progress, "files"))
+    judge = partial(_examine, asked.solver, work_of(asked.effort, asked.timeout))
+    answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)
     from roadproof.frontends.api.judging_again import compare  # what reads tests takes long to import
@@ -159,16 +153,17 @@ def check(
     findings = [*conclude(surveyed, found)]
     left: dict[str, tuple[str, ...]] = {}
     for told in surveyed.told:
-        again = compare(told, jobs, progress)
+        again = compare(told, asked.jobs, asked.progress)
         findings += () if again is None else again.findings
         compared = () if again is None else again.compared
         if unchecked := tuple(x for x in told.not_checked if x not in compared):
             left[str(told.folder)] = unchecked
-    return CheckReport(tuple(findings), kernel or solver, library, beside, answered, left, strict)
+    solver = asked.kernel or asked.solver
+    return CheckReport(tuple(findings), solver, library, beside, answered, left, asked.strict)
 
 
 def write_sources(
-    *paths: str | Path, folder: str | Path, specs: Iterable[str | Path] = (), jobs: int | None = None
+    *paths: str | Path, folder: str | Path, specs: Iterable[str | Path] = (), jobs: Jobs = None
 ) -> dict[Path, str]:
     """Write what would be put to Coq for each certificate; why there is no file for those without one.
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import TypeAlias, Unpack
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
@@ -11,6 +11,9 @@ from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.report.moving import draw_moving
+from roadproof.frontends.settings.keywords import ExportKeywords
+from roadproof.frontends.settings.recordings import Export
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import Library, load_library, unknown
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.recordings.export.subject import Subject, subject_of
@@ -71,12 +74,12 @@ class Exports:
         return f"{number} as {', '.join(formats)}: {files} in {self.folder}"
 
 
+@takes(Export)
 def export(
     drives: DriveLike | Iterable[DriveLike],
     to: str | Iterable[str],
     out: str | Path,
-    rate: int = 25,
-    specs: Iterable[str | Path] = (),
+    **options: Unpack[ExportKeywords],
 ) -> Exports:
     """Write drives for other tools (openscenario, opendrive, commonroad, highd, csv), or as a moving picture.
 
@@ -85,11 +88,11 @@ def export(
     made with. In highD's format the drives are the recordings 01, 02 and so on. Raises ``InputError`` for
     drives that do not stand and roads that a format cannot say, ``UsageError``.
     """
-    formats = formats_in(to)
-    library = load_library(Path(x) for x in specs)
-    given = [drives] if isinstance(drives, str | Path | JudgedDrive | DriveFile) else drives
-    files = _named(_judged(given, library))
-    subjects = [subject_of(name, k, file, rate) for k, (name, file) in enumerate(files.items(), 1)]
+    given, formats = Export.of(options), formats_in(to)
+    library = load_library(Path(x) for x in given.specs)
+    each = [drives] if isinstance(drives, str | Path | JudgedDrive | DriveFile) else drives
+    files = _named(_judged(each, library))
+    subjects = [subject_of(name, k, file, given.rate) for k, (name, file) in enumerate(files.items(), 1)]
     if not subjects:
         raise UsageError("no drive to export: name drive files, such as those of roadproof witness")
     folder = Path(out)

@@ -21,6 +21,7 @@ from roadproof.evidence.kernel.coq import THEORIES, ready
 from roadproof.evidence.kernel.source import file
 from roadproof.evidence.strict import read_json
 from roadproof.library.specification import Library, load_library
+from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
@@ -80,7 +81,7 @@ class KernelAnswer:
         return f"coqc {self.version}: {self.seconds:.1f} s of processor time, {held}; axioms: {axioms}"
 
 
-def put(asked: Sequence[KernelQuestion], jobs: int | None, progress: Progress | None = None) -> KernelAnswer:
+def put(asked: Sequence[KernelQuestion], jobs: Jobs, progress: Progress | None = None) -> KernelAnswer:
     """What Coq says of each certificate and drive; nothing of others. Raises ``MissingSolverError``."""
     with ready() as coq:
         prepared = prepare_all(asked, jobs, progress)
@@ -97,7 +98,7 @@ def put(asked: Sequence[KernelQuestion], jobs: int | None, progress: Progress | 
         return KernelAnswer(coq.version, rulings, seconds, megabytes)
 
 
-def write(asked: Sequence[KernelQuestion], folder: Path, jobs: int | None) -> dict[str, str]:
+def write(asked: Sequence[KernelQuestion], folder: Path, jobs: Jobs) -> dict[str, str]:
     """A file for each certificate and drive, with the theories below; Coq is not asked.
 
     Comes back with why there is no file, by name, where there is none.
@@ -131,7 +132,7 @@ def names_of(paths: Iterable[Path]) -> dict[Path, str]:
 
 
 def prepare_all(
-    asked: Sequence[KernelQuestion], jobs: int | None, progress: Progress | None = None
+    asked: Sequence[KernelQuestion], jobs: Jobs, progress: Progress | None = None
 ) -> dict[str, CoqModule]:
     made = pool.in_order(pool.work(_prepare, asked, jobs, _unprepared, progress, "claims to be printed"))
     return {x.name: y for x, y in zip(asked, made, strict=True) if y is not None}

@@ -2,26 +2,28 @@
 
 import re
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from roadproof.analysis.study.pool import Say
 from roadproof.drivers.models import DRIVERS
 from roadproof.errors import UsageError
 from roadproof.frontends.api.answer import Picture, picture
-from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import one_of
 from roadproof.frontends.report.answers import facts
 from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.frontends.report.traffic_figures import draw_figures
 from roadproof.frontends.report.write_traffic import remove_report, write_report
+from roadproof.frontends.settings.keywords import EvaluateKeywords
+from roadproof.frontends.settings.recordings import Evaluate
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import COMPARISON, MIN_DANGER
-from roadproof.library.values import Number, exact
+from roadproof.library.values import exact
 from roadproof.recordings.evaluate.evaluate import Findings
 from roadproof.recordings.evaluate.experiment import (
     Experiment,
@@ -36,9 +38,8 @@ from roadproof.recordings.evaluate.results import as_json, driver_cells, driver_
 from roadproof.recordings.evaluate.totals import Totals
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.table import Frame, frame_of
-from roadproof.runtime.executors import Jobs, hands_of
+from roadproof.runtime.executors import hands_of
 from roadproof.runtime.files import hold_folder
-from roadproof.semantics.sampled.answers import Convention
 from roadproof.verdict import ExitCode, Verdict
 
 MOST_FACTS = 12
@@ -181,21 +182,12 @@ class Evaluation:
         return f"<pre>{escape(str(self))}</pre>"
 
 
+@takes(Evaluate)
 def evaluate(
     path: str | Path,
     out: str | Path | None = None,
     using: Definitions | None = None,
-    among: Among = None,
-    min_danger: Iterable[Number] = (0, "0.6 s"),
-    classes: Iterable[str] = ("Car",),
-    end: Convention = "truncated",
-    detectors: bool = True,
-    check: bool = False,
-    keep_going: bool = False,
-    pictures: bool = True,
-    jobs: Jobs = None,
-    tell: Say | None = None,
-    drivers: Iterable[str] = (),
+    **options: Unpack[EvaluateKeywords],
 ) -> Evaluation:
     """Find where danger arises in recordings, and match it with scenarios (paper, RQ1 to RQ5).
 
@@ -207,28 +199,21 @@ def evaluate(
     ``driver.spec`` (``load(specs=["driver"])``), such as careful, that matches are put to. Raises
     ``InputError``, ``UsageError``.
     """
-    models = tuple(drivers)
+    given = Evaluate.of(options)
+    models = tuple(given.drivers)
     home = using or load("base", "extA", "ext", specs=[DRIVERS] if models else [])
-    settings = replace(_settings_of(home, among, min_danger, classes, end, detectors), drivers=models)
-    if out is None:
-        if hands_of(jobs).shard is not None:
-            raise UsageError("a shard needs a folder in which the runs keep what they find: name out")
-        with tempfile.TemporaryDirectory() as folder:
-            found = _evaluate(Path(path), Path(folder), settings, check, keep_going, False, jobs, tell)
-            return replace(found, folder=None, kept=found.findings)
-    return _evaluate(Path(path), Path(out), settings, check, keep_going, pictures, jobs, tell)
+    settings = replace(_settings_of(home, given), drivers=models)
+    if out is not None:
+        return _evaluate(Path(path), Path(out), settings, given)
+    if hands_of(given.jobs).shard is not None:
+        raise UsageError("a shard needs a folder in which the runs keep what they find: name out")
+    with tempfile.TemporaryDirectory() as folder:
+        found = _evaluate(Path(path), Path(folder), settings, replace(given, pictures=False))
+        return replace(found, folder=None, kept=found.findings)
 
 
-def _settings_of(
-    home: Definitions,
-    among: Among,
-    min_danger: Iterable[Number],
-    classes: Iterable[str],
-    end: Convention,
-    detectors: bool,
-) -> Settings:
+def _settings_of(home: Definitions, given: Evaluate) -> Settings:
     """What is asked of traffic. Raises ``UsageError``, ``InputError``."""
-    one_of("end", end, Convention)
     if MIN_DANGER in home.values:
         raise UsageError(f"params {MIN_DANGER}: evaluate takes several values of it; use min_danger=(0, 0.6)")
     return Settings(
@@ -236,34 +221,25 @@ def _settings_of(
         home.specification.options,
         home.all_values(),
         sets=home.sets,
-        min_danger=tuple(exact(MIN_DANGER, x, "s") for x in min_danger),
-        scenarios=home.among(among) or askable(home.specification),
-        classes=tuple(classes),
-        convention=end,
-        detectors=COMPARISON if detectors else (),
+        min_danger=tuple(exact(MIN_DANGER, x, "s") for x in given.min_danger),
+        scenarios=home.among(given.among) or askable(home.specification),
+        classes=tuple(given.classes),
+        convention=given.end,
+        detectors=COMPARISON if given.detectors else (),
     )
 
 
-def _evaluate(
-    path: Path,
-    out: Path,
-    settings: Settings,
-    check: bool,
-    keep_going: bool,
-    pictures: bool,
-    jobs: Jobs,
-    tell: Say | None,
-) -> Evaluation:
+def _evaluate(path: Path, out: Path, settings: Settings, given: Evaluate) -> Evaluation:
     """As ``evaluate``, with what is asked as a value, in a folder that no other run is writing into."""
-    hands = hands_of(jobs)
-    experiment = Experiment(path, out, settings, hands, keep_going)
-    say = tell or (lambda line: None)
+    hands = hands_of(given.jobs)
+    experiment = Experiment(path, out, settings, hands, given.keep_going)
+    say = given.tell or (lambda line: None)
     find_sources(path)
     with hold_folder(out, shared=hands.shard is not None):
         remove_report(out)
         outcome = run_experiment(experiment, say)
-        denied = tuple(_denied(experiment, outcome, say)) if check else ()
-        write_report(out, outcome.totals, outcome.failed, pictures)
+        denied = tuple(_denied(experiment, outcome, say)) if given.check else ()
+        write_report(out, outcome.totals, outcome.failed, given.pictures)
         _sweep(out)
         return Evaluation(experiment, outcome, denied, out)
 

@@ -1,20 +1,22 @@
 """Results of any kind as one page that needs no network."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Unpack
 
-from roadproof.analysis.study.pool import Progress
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding, summary
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.heading import version
-from roadproof.frontends.api.checking import CheckReport, Solver, check
-from roadproof.frontends.api.settings import one_of
+from roadproof.frontends.api.checking import CheckReport, check
 from roadproof.frontends.report.page.page import page as page_of
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Given, Result, read_results
 from roadproof.frontends.report.page.sections import evidence_section, section
+from roadproof.frontends.settings import evidence
+from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library, load_library
 from roadproof.library.words import words_of
@@ -51,43 +53,35 @@ class Page:
         return f"{self.path}: {told}, {size}, in one file that needs no network{bad}"
 
 
-def page(
-    *results: str | Path,
-    out: str | Path,
-    title: str | None = None,
-    solver: Solver = "z3",
-    specs: Iterable[str | Path] = (),
-    jobs: int | None = None,
-    progress: Progress | None = None,
-) -> Page:
+@takes(evidence.Page)
+def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords]) -> Page:
     """One HTML file about results: folders of ``out``, evidence, and answers as JSON.
 
     Evidence is checked again while the page is made, and each claim says what was found. ``specs``:
     specification files that the results were made with. Raises ``InputError`` for what is no result or cannot
     be written, ``UsageError``.
     """
-    one_of("solver", solver, Solver)
+    asked = evidence.Page.of(options)
     if not results:
         raise UsageError("name results: folders and JSON answers that commands have written, or evidence")
     paths = [Path(x) for x in results]
     target = Path(out)
     if target.suffix.lower() not in (".html", ".htm"):
         raise UsageError(f"out={target}: name a file that ends with .html")
-    named = tuple(Path(x) for x in specs)
+    named = tuple(Path(x) for x in asked.specs)
     given = read_results(paths)
-    checked = (
-        check(*given.checkable, solver=solver, specs=named, jobs=jobs, progress=progress)
-        if given.checkable
-        else None
-    )
+    checked = None
+    if given.checkable:
+        told = CheckKeywords(solver=asked.solver, specs=named, jobs=asked.jobs, progress=asked.progress)
+        checked = check(*given.checkable, **told)
     library = load_library((*named, *(checked.specs if checked else ())))
     inside = {} if checked is None else {x.where: x for x in checked.findings if x.kind == "index"}
     book = PageContext(library, _by_file(checked), inside, _rejected(checked))
     sections = [section(x, book, _words(x, library)) for x in given.results]
     alone = _alone(given, checked)
     if alone and checked is not None:
-        sections.append(evidence_section(alone, book, solver))
-    said = title or f"roadproof: {', '.join(x.name or str(x) for x in paths)[:120]}"
+        sections.append(evidence_section(alone, book, asked.solver))
+    said = asked.title or f"roadproof: {', '.join(x.name or str(x) for x in paths)[:120]}"
     text = page_of(said, sections, book.documents, _made(checked))
     with whole_file(target) as file:
         file.write(text.encode("utf-8"))

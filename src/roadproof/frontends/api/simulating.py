@@ -1,16 +1,18 @@
 """Traffic that is simulated in the shape of recordings."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Unpack
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Say
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.sheet import csv_text
+from roadproof.frontends.settings.keywords import SimulateKeywords
+from roadproof.frontends.settings.recordings import Simulate
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import bundled_library
 from roadproof.recordings.export.road_toml import road_toml
 from roadproof.recordings.formats.table import Frame, frame_of
@@ -19,7 +21,7 @@ from roadproof.recordings.simulate.planting import PLANTED_COLUMNS, Truth, lane_
 from roadproof.recordings.simulate.ramps import road_of
 from roadproof.recordings.simulate.synthetic import markings_of
 from roadproof.recordings.simulate.synthetic import simulate as simulate_one
-from roadproof.recordings.simulate.traffic import Ramp, Traffic
+from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.files import write_whole
 
 
@@ -41,21 +43,8 @@ class Simulation:
         return frame_of([dict(zip(PLANTED_COLUMNS, row, strict=True)) for row in rows])
 
 
-def simulate(
-    out: str | Path,
-    recordings: int = 1,
-    seconds: float = 990.0,
-    seed: int = 1,
-    lanes: int = 3,
-    flow: float = 3350.0,
-    truck_share: float = 0.18,
-    section: float = 420.0,
-    ramp: Ramp = "none",
-    ramp_flow: float = 400.0,
-    plant: Iterable[JudgedDrive | DriveFile] = (),
-    jobs: int | None = None,
-    tell: Say | None = None,
-) -> Simulation:
+@takes(Simulate)
+def simulate(out: str | Path, **options: Unpack[SimulateKeywords]) -> Simulation:
     """Write simulated traffic in highD's format; the same numbers give the same files.
 
     ``lanes`` each way, ``flow`` in vehicles an hour and way, ``section`` in m. ``ramp``: the lower
@@ -63,41 +52,42 @@ def simulate(
     XX_road.toml describes. ``plant``: drives that are woven in where there is no ramp (``witness`` finds
     some). Raises ``InputError``, ``UsageError``.
     """
-    drives = tuple(x.file if isinstance(x, JudgedDrive) else x for x in plant)
+    given = Simulate.of(options)
+    drives = tuple(x.file if isinstance(x, JudgedDrive) else x for x in given.plant)
     traffic = Traffic(
-        seconds=seconds,
-        lanes=lanes,
-        flow=flow,
-        truck_share=truck_share,
-        section=section,
-        ramp=ramp,
-        ramp_flow=ramp_flow,
+        seconds=given.seconds,
+        lanes=given.lanes,
+        flow=given.flow,
+        truck_share=given.truck_share,
+        section=given.section,
+        ramp=given.ramp,
+        ramp_flow=given.ramp_flow,
     )
-    if seed < 0:
-        raise UsageError(f"seed={seed}: a seed is 0 or more")
-    if not 1 <= recordings <= 999:
-        raise UsageError(f"recordings={recordings}: between 1 and 999 can be made")
-    if drives and ramp != "none":
+    if given.seed < 0:
+        raise UsageError(f"seed={given.seed}: a seed is 0 or more")
+    if not 1 <= given.recordings <= 999:
+        raise UsageError(f"recordings={given.recordings}: between 1 and 999 can be made")
+    if drives and given.ramp != "none":
         raise UsageError(
-            f"ramp={ramp}: drives are planted on main roads only; simulate without one of the two"
+            f"ramp={given.ramp}: drives are planted on main roads only; simulate without one of the two"
         )
     if drives:
         traffic = replace(traffic, lane_width=lane_width(drives))
     folder = Path(out)
-    make = partial(_make_one, folder, traffic, seed, drives)
-    numbers = range(1, recordings + 1)
-    done = pool.in_order(pool.work(make, numbers, jobs, None, None, "recordings", fresh=True))
+    make = partial(_make_one, folder, traffic, given.seed, drives)
+    numbers = range(1, given.recordings + 1)
+    done = pool.in_order(pool.work(make, numbers, given.jobs, None, None, "recordings", fresh=True))
     truths: list[Truth] = []
     left_out: dict[str, None] = {}
     for number, (made, missing) in enumerate(done, 1):
-        if tell is not None:
-            tell(f"[{number}/{recordings}] recording {number:02d}")
+        if given.tell is not None:
+            given.tell(f"[{number}/{given.recordings}] recording {number:02d}")
         truths += made
         left_out |= dict.fromkeys(missing)
     if drives:
         table = csv_text(PLANTED_COLUMNS, rows_of(truths))
         write_whole(folder / "planted.csv", table.encode())
-    return Simulation(folder, recordings, tuple(truths), tuple(left_out))
+    return Simulation(folder, given.recordings, tuple(truths), tuple(left_out))
 
 
 def _make_one(

@@ -6,11 +6,11 @@ from fractions import Fraction
 from html import escape
 from math import isfinite
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, Unpack
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers import monitor as kept
-from roadproof.evidence.answers.monitor import Override, Place, Truth, View
+from roadproof.evidence.answers.monitor import Override, Place, Truth
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
@@ -18,14 +18,16 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import as_road, one_of, positive
+from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.report.one_trace import as_text, draw_strips
+from roadproof.frontends.settings.keywords import MonitorKeywords
+from roadproof.frontends.settings.recordings import Monitor
+from roadproof.frontends.settings.signatures import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with
 from roadproof.library.query import Query
 from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner
 from roadproof.library.specification import Library
-from roadproof.library.values import Number
 from roadproof.recordings.evaluate.observed import FirstAnswer, Spans, observe_drive, observe_samples
 from roadproof.recordings.evaluate.one_trace import (
     OneTrace,
@@ -38,7 +40,6 @@ from roadproof.recordings.evaluate.one_trace import (
 )
 from roadproof.recordings.formats.source import TRACK_FILES
 from roadproof.recordings.formats.table import Frame, columns_of, frame_of
-from roadproof.semantics.sampled.answers import Convention
 from roadproof.verdict import ExitCode
 
 # A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
@@ -142,16 +143,9 @@ def trace(columns: "Mapping[str, Any] | Frame", road: RoadLike = "main-2") -> On
     return of_columns(columns_of(columns), as_road(road))
 
 
+@takes(Monitor)
 def monitor(
-    what: What,
-    on: TraceLike,
-    using: Definitions | None = None,
-    lanes: Mapping[str, str] | None = None,
-    road: RoadLike | None = None,
-    view: View | None = None,
-    dt: Number = Fraction(1, 25),
-    frames: tuple[int | None, int | None] = (None, None),
-    end: Convention = "truncated",
+    what: What, on: TraceLike, using: Definitions | None = None, **options: Unpack[MonitorKeywords]
 ) -> MonitorAnswer:
     """Where a formula holds on one trace.
 
@@ -162,18 +156,15 @@ def monitor(
     name, or a vehicle, whose lane at the start it is. ``end``: what the end of a recorded trace means. Raises
     ``InputError``, ``UsageError``, ``TextError``.
     """
-    if view is not None:
-        one_of("view", view, View)
-    one_of("end", end, Convention)
+    given = Monitor.of(options)
     if isinstance(on, str | Path) and str(on).endswith(".json"):
-        return _on_drive(what, load_drive(Path(on)), str(on), using, lanes or {}, view, dt, end)
+        return _on_drive(what, load_drive(Path(on)), str(on), using, given)
     if isinstance(on, JudgedDrive | DriveFile):
-        file = on.file if isinstance(on, JudgedDrive) else on
-        return _on_drive(what, file, "drive", using, lanes or {}, view, dt, end)
-    if view == "dense":
+        return _on_drive(what, on.file if isinstance(on, JudgedDrive) else on, "drive", using, given)
+    if given.view == "dense":
         raise UsageError("--view dense: only a drive file says what is true between samples")
     home = using or load()
-    return _on_trace(what, _read(on, road, frames), home, home.all_values(), lanes or {}, {}, end)
+    return _on_trace(what, _read(on, given.road, given.frames), home, home.all_values(), {}, given)
 
 
 def _read(
@@ -204,25 +195,18 @@ def of_file(file: DriveFile) -> Definitions:
 
 
 def _on_drive(
-    what: What,
-    file: DriveFile,
-    source: str,
-    using: Definitions | None,
-    asked: Mapping[str, str],
-    view: str | None,
-    dt: Number,
-    end: Convention,
+    what: What, file: DriveFile, source: str, using: Definitions | None, given: Monitor
 ) -> MonitorAnswer:
     home = using or of_file(file)
     values = values_with(home.library, {**file.values, **home.values})
-    step = positive("dt", dt, "s")
+    step = positive("dt", given.dt, "s")
     samples = sample_drive(file.drive, file.road, file.horizon, step, source)
     overruled = tuple(_overruled(file, home, values))
-    if view == "recorded":
-        found = _on_trace(what, samples, home, values, asked, file.lanes, end)
+    if given.view == "recorded":
+        found = _on_trace(what, samples, home, values, file.lanes, given)
         return replace(found, place=replace(found.place, overruled=overruled))
     number, query = home.numbered(what)
-    lanes = _lanes(home, query, number, samples, file.lanes, asked)
+    lanes = _lanes(home, query, number, samples, file.lanes, given)
     formula = bind(query.formula, file.road, lanes, values)
     observed = observe_drive(query.text, formula, file.drive, file.horizon, step)
     return MonitorAnswer(home.library, observed, _place(samples, home, lanes, overruled))
@@ -246,15 +230,14 @@ def _on_trace(
     samples: OneTrace,
     home: Definitions,
     values: Mapping[str, Fraction],
-    asked: Mapping[str, str],
     known: Mapping[str, str],
-    end: Convention,
+    given: Monitor,
 ) -> MonitorAnswer:
     number, query = home.numbered(what)
-    lanes = _lanes(home, query, number, samples, known, asked)
+    lanes = _lanes(home, query, number, samples, known, given)
     formula = bind(query.formula, samples.road, lanes, values)
     refuse_unmeasured(samples, formula)
-    observed = observe_samples(query.text, formula, samples.batch, end)
+    observed = observe_samples(query.text, formula, samples.batch, given.end)
     return MonitorAnswer(home.library, observed, _place(samples, home, lanes), samples.notes)
 
 
@@ -277,7 +260,7 @@ def _lanes(
     number: int | None,
     samples: OneTrace,
     known: Mapping[str, str],
-    asked: Mapping[str, str],
+    given: Monitor,
 ) -> dict[str, str]:
     """A lane for each free lane of the formula: as asked for, as in the file, or a vehicle's."""
     missing = [name for name in query.vehicles if name not in samples.lanes]
@@ -286,6 +269,7 @@ def _lanes(
             f"{query.text}: speaks of {', '.join(missing)}, but {samples.source} has "
             f"{', '.join(samples.lanes)}; name other vehicles or another formula"
         )
+    asked = given.lanes or {}
     lanes = {**known, **{name: samples.lanes.get(lane, lane) for name, lane in asked.items()}}
     scenario = None if number is None else Scenario(number, home.specification.set_name)
     usual = SUBJECT if scenario is None else lane_owner(home.specification, scenario)

@@ -2,14 +2,12 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.numbers import add_effort_options
-from roadproof.frontends.cli.options import add_json_option, add_spec_option, write_json
+from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.cli.progress import Counter
-from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.groups import Workers
+from roadproof.frontends.settings.evidence import Check
+from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.verdict import ExitCode
 
 SUMMARY = "check certificates and drive files again, independently"
@@ -41,23 +39,7 @@ For pipelines: with --strict also 20 where an answer has no evidence, such as UN
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
-    parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who is asked (default: z3)")
-    parser.add_argument(
-        "--kernel",
-        choices=("coq",),
-        help="put certificates and drives to the kernel of Coq, with coqc, in place of a solver",
-    )
-    parser.add_argument(
-        "--write", type=Path, metavar="DIR", help="with --kernel: only write the files for Coq"
-    )
-    parser.add_argument(
-        "--strict",
-        action="store_true",
-        help="exit with 20 where an answer has no evidence (UNKNOWN, NONE-WITHIN)",
-    )
-    add_effort_options(parser, each="a query")
-    add_spec_option(parser, "a specification file that the claims were made with")
-    add_flags(parser, Workers)
+    add_flags(parser, Check)
     add_json_option(parser)
 
 
@@ -68,9 +50,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--kernel {args.kernel} asks no solver: ask without --solver, or without --kernel")
     if args.write is not None:
         return _write(args)
-    more: dict[str, Any] = {"strict": args.strict}
-    more |= {"effort": args.effort, "timeout": args.timeout, "jobs": args.jobs, "progress": Counter()}
-    checked = check(*args.paths, solver=args.solver, specs=args.specs, kernel=args.kernel, **more)
+    checked = check(*args.paths, **read_keywords(args, Check) | {"progress": Counter()})
     if args.json != "-":
         print(checked)
     if args.json:
@@ -85,7 +65,7 @@ def _write(args: argparse.Namespace) -> int:
         raise UsageError(
             "--write DIR writes files for Coq and checks nothing: ask with --kernel, without --json"
         )
-    reasons = write_sources(*args.paths, folder=args.write, specs=args.specs, jobs=args.jobs)
+    reasons = write_sources(*args.paths, folder=args.write, specs=args.specs or (), jobs=args.jobs)
     for path, reason in reasons.items():
         print(f"no file for {path}: {reason}")
     print(

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from roadproof.frontends.cli.options import add_spec_option
-from roadproof.frontends.settings.readers import whole
+from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.recordings import Export
 from roadproof.verdict import ExitCode
 
 SUMMARY = "write drives as OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV, or as moving pictures"
@@ -33,27 +33,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "drives", metavar="DRIVE", nargs="+", type=Path, help="a drive file, or a folder of drive files"
     )
-    parser.add_argument(
-        "--to",
-        metavar="FORMAT",
-        action="append",
-        required=True,
-        help="openscenario, opendrive, commonroad, highd, csv or animation; may be repeated, or have commas",
-    )
-    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the files go")
-    parser.add_argument(
-        "--rate",
-        metavar="N",
-        type=whole("--rate", 1),
-        default=25,
-        help="samples a second of commonroad, highd and csv (default: 25)",
-    )
-    add_spec_option(parser, "a specification file that the drives were made with")
+    add_flags(parser, Export)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.exporting import export
 
-    found = export(args.drives, args.to, args.out, args.rate, args.specs)
-    print(found)
+    print(export(args.drives, args.to, args.out, **read_keywords(args, Export)))
     return ExitCode.AS_EXPECTED

@@ -1,19 +1,14 @@
 """``roadproof monitor``: where a formula holds on one trace."""
 
 import argparse
-import re
 import sys
 from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import (
-    add_json_option,
-    add_parameter_option,
-    add_specification_options,
-    write_json,
-)
-from roadproof.frontends.settings.readers import named, read_seconds
+from roadproof.frontends.cli.options import add_definition_options, add_json_option, write_json
+from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.recordings import Monitor
 
 SUMMARY = "evaluate a formula on one trace: a drive, samples, a recording"
 
@@ -42,39 +37,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("formula", metavar="FORMULA", help="a formula, or a scenario's number")
     parser.add_argument("trace", metavar="TRACE", help="a drive, samples, or vehicles of a recording")
-    add_specification_options(parser, None)
-    add_parameter_option(parser)
-    parser.add_argument(
-        "--lane",
-        dest="lanes",
-        metavar="[L=]LANE",
-        action="append",
-        default=[],
-        help="the lane that L stands for: its name, or a vehicle, whose lane at the start it is "
-        "(default: SV's, POV's for scenario 7, acceleration behind; a drive file names its own)",
-    )
-    parser.add_argument(
-        "--road", metavar="R", help="road of samples (default: NAME_road.toml beside the file, or main-2)"
-    )
-    parser.add_argument(
-        "--view", choices=("dense", "recorded"), help="how a drive file is read (default: dense)"
-    )
-    parser.add_argument("--dt", metavar="S", default="1/25", help="seconds between samples of a drive")
-    parser.add_argument("--frames", metavar="A-B", help="frames of a recording (default: all common ones)")
-    parser.add_argument(
-        "--end",
-        choices=("truncated", "clip"),
-        default="truncated",
-        help="what the end of a recorded trace means (default: truncated)",
-    )
-    parser.add_argument("--picture", metavar="FILE", type=Path, help="draw strips into FILE (.png or .svg)")
+    add_definition_options(parser, None)
+    add_flags(parser, Monitor)
     add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.evidence.drive_file import load_drive
     from roadproof.frontends.api.traces import monitor
-    from roadproof.library.scenarios import LANE
 
     if args.picture is not None and args.picture.suffix not in (".png", ".svg"):
         raise UsageError(f"--picture {args.picture}: name a file that ends in .png or .svg")
@@ -82,17 +52,8 @@ def run(args: argparse.Namespace) -> int:
     if file is not None:
         args.set_name = args.set_name or file.set_name
         args.options = [*(f"{name}={value}" for name, value in file.options.items()), *args.options]
-    found = monitor(
-        args.formula,
-        args.trace,
-        read_definitions(args, [args.set_name or "base"]),
-        dict(map(named(LANE), args.lanes)),
-        args.road,
-        args.view,
-        read_seconds("--dt", args.dt),
-        _frames(args.frames),
-        args.end,
-    )
+    home = read_definitions(args, [args.set_name or "base"])
+    found = monitor(args.formula, args.trace, home, **read_keywords(args, Monitor))
     for line in found.notes:
         print(f"note: {line}", file=sys.stderr)
     if args.json:
@@ -102,12 +63,3 @@ def run(args: argparse.Namespace) -> int:
     if args.picture is not None:
         found.plot().save(args.picture)
     return found.exit_code
-
-
-def _frames(text: str | None) -> tuple[int | None, int | None]:
-    if text is None:
-        return None, None
-    read = re.fullmatch(r"(\d{1,9})-(\d{1,9})", text)
-    if read is None:
-        raise UsageError(f"--frames {text[:40]}: write the first and the last frame, such as 100-400")
-    return int(read[1]), int(read[2])

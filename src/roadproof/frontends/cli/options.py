@@ -58,11 +58,6 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
             help="choose a reading, such as lateral_sign=literal; may be repeated",
         )
     )
-    add_spec_option(parser, "specification file to add")
-
-
-def add_spec_option(parser: argparse.ArgumentParser, text: str) -> None:
-    """``--spec FILE``, which may be repeated; ``text`` says what the files are."""
     section(parser, "definitions").add_argument(
         "--spec",
         dest="specs",
@@ -70,7 +65,7 @@ def add_spec_option(parser: argparse.ArgumentParser, text: str) -> None:
         action="append",
         type=Path,
         default=[],
-        help=f"{text}; may be repeated",
+        help="specification file to add; may be repeated",
     )
 
 

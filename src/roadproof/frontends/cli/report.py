@@ -3,10 +3,9 @@
 import argparse
 from pathlib import Path
 
-from roadproof.frontends.cli.options import add_spec_option
 from roadproof.frontends.cli.progress import Counter, clear
-from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.groups import Workers
+from roadproof.frontends.settings.evidence import Page
+from roadproof.frontends.settings.flags import add_flags, read_keywords
 
 SUMMARY = "make one HTML page from results, to be read without a network"
 
@@ -31,24 +30,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a folder of --out, a file of evidence or of --json",
     )
     parser.add_argument("-o", "--out", metavar="FILE", type=Path, required=True, help="the page, NAME.html")
-    parser.add_argument("--title", metavar="TEXT", help="what the page is called")
-    parser.add_argument("--solver", choices=("z3", "cvc5"), default="z3", help="who checks (default: z3)")
-    add_spec_option(parser, "a specification file that the results were made with")
-    add_flags(parser, Workers)
+    add_flags(parser, Page)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.reporting import page
 
-    found = page(
-        *args.results,
-        out=args.out,
-        title=args.title,
-        solver=args.solver,
-        specs=args.specs,
-        jobs=args.jobs,
-        progress=Counter(),
-    )
+    found = page(*args.results, out=args.out, **read_keywords(args, Page) | {"progress": Counter()})
     clear()
     print(found)
     return found.exit_code

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import InputError, UsageError
 from roadproof.frontends.cli.progress import note
-from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.groups import Workers
-from roadproof.frontends.settings.readers import LARGEST_SEED, decimal, whole
+from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.recordings import Simulate
 from roadproof.verdict import ExitCode
 
 _NUMBERS = re.compile(r"\d{1,2}(-\d{1,2})?(,\d{1,2}(-\d{1,2})?)*")
@@ -38,81 +37,18 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the files go")
-    parser.add_argument(
-        "--recordings", metavar="N", type=whole("--recordings", 1), default=1, help="how many (default: 1)"
-    )
-    parser.add_argument(
-        "--seconds", metavar="S", type=decimal("--seconds"), default=990.0, help="length (default: 990)"
-    )
-    parser.add_argument(
-        "--seed",
-        metavar="K",
-        type=whole("--seed", 0, LARGEST_SEED),
-        default=1,
-        help="0 to 2^64 - 1 (default: 1)",
-    )
-    parser.add_argument(
-        "--lanes", metavar="N", type=whole("--lanes", 1), default=3, help="each way (default: 3)"
-    )
-    parser.add_argument(
-        "--flow",
-        metavar="F",
-        type=decimal("--flow"),
-        default=3350.0,
-        help="vehicles an hour and way (default: 3350)",
-    )
-    parser.add_argument(
-        "--truck-share", metavar="P", type=float, default=0.18, help="share of trucks (default: 0.18)"
-    )
-    parser.add_argument(
-        "--section",
-        metavar="M",
-        type=decimal("--section"),
-        default=420.0,
-        help="length of the road in m (default: 420)",
-    )
-    parser.add_argument(
-        "--ramp",
-        choices=("none", "merge", "depart"),
-        default="none",
-        help="an on-ramp or an off-ramp of the lower carriageway, with XX_road.toml (default: none)",
-    )
-    parser.add_argument(
-        "--ramp-flow",
-        metavar="F",
-        type=decimal("--ramp-flow"),
-        default=400.0,
-        help="vehicles an hour on the ramp (default: 400)",
-    )
-    parser.add_argument(
-        "--plant",
-        metavar="PATH|N,N",
-        action="append",
-        default=[],
-        help="weave in drives: a drive file, a folder of them, or scenarios to find drives for, such as "
-        "1-8; may be repeated",
-    )
-    parser.add_argument(
-        "--plant-set", metavar="S", default="base", help="spec set of --plant N,N (default: base)"
-    )
-    add_flags(parser, Workers)
+    add_flags(parser, Simulate)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.simulating import simulate
 
-    if args.recordings > 999:
-        raise UsageError(f"--recordings {args.recordings}: between 1 and 999 can be made")
     if args.plant and args.ramp != "none":
         raise UsageError(f"--plant with --ramp {args.ramp}: drives are planted on main roads only; drop one")
-    drives = tuple(_drives(args.plant, args.plant_set))
+    drives = tuple(_drives(args.plant or (), args.plant_set))
     if args.plant and not drives:
         raise InputError(f"--plant {' '.join(args.plant)}: no drive that can be planted")
-    road = {"lanes": args.lanes, "flow": args.flow, "truck_share": args.truck_share, "section": args.section}
-    road |= {"ramp": args.ramp, "ramp_flow": args.ramp_flow}
-    made = {"recordings": args.recordings, "seconds": args.seconds, "seed": args.seed}
-    found = simulate(args.out, **made, **road, plant=drives, jobs=args.jobs, tell=note)
+    found = simulate(args.out, **read_keywords(args, Simulate) | {"plant": drives, "tell": note})
     for line in found.left_out:
         _warn(f"not planted: {line}")
     if drives and not found.planted:

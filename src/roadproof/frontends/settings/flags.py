@@ -50,14 +50,19 @@ def _rules(settings: type[Settings], name: str, option: Option) -> dict[str, Any
     if isinstance(default, bool):
         return {"action": "store_false" if default else "store_true"}
     rules = {"metavar": option.metavar, "type": option.read, "choices": option.choices, "default": default}
+    rules |= {"required": option.required or None}
     if option.gather is not None:
-        rules["action"] = "append"
+        rules |= {"action": "append", "default": None}
     return {key: value for key, value in rules.items() if value is not None}
 
 
 def read_keywords(args: argparse.Namespace, settings: type[Settings]) -> Any:
     """The keyword arguments that the flags of a question give."""
-    given = {name: option for name, option in settings.options().items() if option.flag and option.keyword}
-    found = {name: getattr(args, name) for name in given}
-    gathered = ((name, given[name].gather) for name, value in found.items() if value is not None)
-    return found | {name: gather(found[name]) for name, gather in gathered if gather is not None}
+    found = {}
+    for name, option in settings.options().items():
+        if option.flag and option.keyword:
+            value = getattr(args, name)
+            if option.gather is not None:
+                value = getattr(settings, name) if value is None else option.gather(value)
+            found[name] = value
+    return found

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.settings.value_types import RoadLike, Vehicles
     from roadproof.library.values import Number
     from roadproof.runtime.executors import Jobs
+    from roadproof.semantics.sampled.answers import Convention
 
 
 def effort_for(what: str, units: float) -> Any:
@@ -27,16 +28,27 @@ def effort_for(what: str, units: float) -> Any:
     return option(units, "--effort", "N", help=text, group="effort", read=decimal("--effort"))
 
 
-def folder_for(what: str, command_line_only: bool = False) -> Any:
+def folder_for(what: str, command_line_only: bool = False, required: bool = False) -> Any:
     """``out`` of a question that writes ``what``."""
-    keyword = not command_line_only
-    return option(None, "--out", "DIR", help=f"write {what}", group="output", read=Path, keyword=keyword)
+    rules: dict[str, Any] = {"keyword": not command_line_only, "required": required}
+    return option(None, "--out", "DIR", help=f"write {what}", group="output", read=Path, **rules)
+
+
+def specifications_of(what: str) -> Any:
+    """``specs``, the specification files that ``what`` were made with."""
+    text = f"specification file of {what}; may be repeated"
+    return option((), "--spec", "FILE", help=text, group="definitions", read=Path, gather=tuple)
 
 
 def pictures_of(what: str = "pictures", command_line_only: bool = False) -> Any:
     """``pictures`` of a question that draws ``what``."""
     keyword = not command_line_only
     return option(True, "--no-pictures", help=f"draw no {what}", group="output", keyword=keyword, rare=True)
+
+
+def checker_of(what: str) -> Any:
+    """``solver``, which checks evidence; ``what`` is its help."""
+    return option("z3", "--solver", help=f"{what} (default: z3)", choices=("z3", "cvc5"))
 
 
 def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
@@ -118,6 +130,19 @@ class SearchPlace(Models):
     )
     collisions: bool = option(
         False, "--allow-collisions", help="allow vehicles to overlap", group="search", rare=True
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traces(Settings):
+    """The meaning of recorded traces."""
+
+    end: Convention = option(
+        "truncated",
+        "--end",
+        "KIND",
+        help="end of a trace: truncated (default) asks for every continuation, clip cuts windows there",
+        choices=("truncated", "clip"),
     )
 
 

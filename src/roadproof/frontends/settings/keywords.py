@@ -10,11 +10,17 @@ if TYPE_CHECKING:
 
     from roadproof.analysis.study.pool import Progress, Say
     from roadproof.engines.search.question import Engine, Objective
-    from roadproof.frontends.api.definitions import What
+    from roadproof.evidence.answers.monitor import View
+    from roadproof.evidence.drive_file import DriveFile
+    from roadproof.evidence.judged import JudgedDrive
+    from roadproof.frontends.api.checking import Kernel, Solver
+    from roadproof.frontends.api.definitions import Among, What
     from roadproof.frontends.api.phrases import Term
     from roadproof.frontends.settings.value_types import RoadLike, Same, Vehicles
     from roadproof.library.values import Number
+    from roadproof.recordings.simulate.traffic import Ramp
     from roadproof.runtime.executors import Jobs
+    from roadproof.semantics.sampled.answers import Convention
 
 
 class CompareKeywords(TypedDict, total=False):
@@ -146,3 +152,65 @@ class ClassifyKeywords(TypedDict, total=False):
     out: str | Path | None
     on: str | Path | None
     shares: bool
+
+
+class MonitorKeywords(TypedDict, total=False):
+    end: Convention
+    lanes: Mapping[str, str] | None
+    road: RoadLike | None
+    view: View | None
+    dt: Number
+    frames: tuple[int | None, int | None]
+
+
+class EvaluateKeywords(TypedDict, total=False):
+    end: Convention
+    jobs: Jobs
+    among: Among
+    min_danger: Iterable[Number]
+    classes: Iterable[str]
+    drivers: Iterable[str]
+    detectors: bool
+    check: bool
+    keep_going: bool
+    pictures: bool
+    tell: Say | None
+
+
+class SimulateKeywords(TypedDict, total=False):
+    jobs: Jobs
+    recordings: int
+    seconds: float
+    seed: int
+    lanes: int
+    flow: float
+    truck_share: float
+    section: float
+    ramp: Ramp
+    ramp_flow: float
+    plant: Iterable[JudgedDrive | DriveFile]
+    tell: Say | None
+
+
+class ExportKeywords(TypedDict, total=False):
+    rate: int
+    specs: Iterable[str | Path]
+
+
+class CheckKeywords(TypedDict, total=False):
+    jobs: Jobs
+    effort: float
+    timeout: float | None
+    solver: Solver
+    specs: Iterable[str | Path]
+    kernel: Kernel | None
+    strict: bool
+    progress: Progress | None
+
+
+class PageKeywords(TypedDict, total=False):
+    jobs: Jobs
+    title: str | None
+    solver: Solver
+    specs: Iterable[str | Path]
+    progress: Progress | None

@@ -9,9 +9,10 @@ import re
 from pathlib import Path
 from typing import TypeGuard
 
-from roadproof.frontends.settings import groups, questions
+from roadproof.frontends.settings import evidence, groups, questions, recordings
 from roadproof.frontends.settings.option import Settings
 
+MODULES = (questions, recordings, evidence)
 FILE = Path(__file__).with_name("keywords.py")
 _HEAD = '''"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
 
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 
 def all_questions() -> list[type[Settings]]:
     """The settings classes of questions, in the order of their definition."""
-    found = vars(questions).values()
-    return [x for x in found if _is_settings(x) and x.__module__ == questions.__name__]
+    found = ((home, x) for home in MODULES for x in vars(home).values())
+    return [x for home, x in found if _is_settings(x) and x.__module__ == home.__name__]
 
 
 def _is_settings(value: object) -> TypeGuard[type[Settings]]:
@@ -43,7 +44,7 @@ def text() -> str:
         used.update(*(re.findall(r"[A-Za-z_]\w*", str(x.type)) for x in fields))
         parts.append(f"\n\nclass {question.__name__}Keywords(TypedDict, total=False):\n{''.join(lines)}")
     imports = dict[str, set[str]]()
-    for module in (groups, questions):
+    for module in (groups, *MODULES):
         for line in re.findall(r"^ *(from \S+ import [^\n(]+)$", inspect.getsource(module), re.MULTILINE):
             _, home, _, names = line.split(" ", 3)
             imports.setdefault(home, set()).update({*names.split(", ")} & used)

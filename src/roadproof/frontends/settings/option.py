@@ -25,6 +25,7 @@ class Option:
     choices: tuple[str, ...] | None
     least: int | None
     keyword: bool
+    required: bool
     rare: bool
     """Only ``--help-all`` shows the flag."""
 
@@ -48,7 +49,7 @@ def option(
     **more: Any,
 ) -> Any:
     """A field of a settings class; ``more``: other fields of its ``Option``."""
-    rules = {"choices": None, "least": None, "keyword": True, "rare": False, **more}
+    rules = {"choices": None, "least": None, "keyword": True, "required": False, "rare": False, **more}
     found = Option(flag, help, metavar, group, read, gather, **rules)
     return dataclasses.field(default=default, metadata={"option": found})
 
@@ -69,5 +70,6 @@ class Settings:
         for name, value in given.items():
             if name not in known or not known[name].keyword:
                 raise TypeError(f"{cls.__name__.lower()}() got an unexpected keyword argument {name!r}")
-            known[name].check(name, value)
+            if value is not getattr(cls, name):
+                known[name].check(name, value)
         return cls(**given)

@@ -3,11 +3,13 @@
 import re
 from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 from roadproof.errors import UsageError
 
 _DECIMAL = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?")
 _WHOLE = re.compile(r"[0-9]{1,20}")
+_FRAMES = re.compile(r"([0-9]{1,9})-([0-9]{1,9})")
 MOST = 1_000_000
 LARGEST_SEED = 2**64 - 1
 
@@ -39,9 +41,9 @@ def whole(option: str, least: int, most: int = MOST) -> Callable[[str], int]:
     return read
 
 
-def seconds(option: str) -> Callable[[str], Fraction]:
-    """A reader of numbers greater than 0, such as 6, 0.6 or 3/5."""
-    return lambda text: read_seconds(option, text)
+def seconds(option: str, or_zero: bool = False) -> Callable[[str], Fraction]:
+    """A reader of numbers greater than 0 (or 0 too), such as 6, 0.6 or 3/5."""
+    return lambda text: read_seconds(option, text, or_zero)
 
 
 def read_seconds(option: str, text: str, or_zero: bool = False) -> Fraction:
@@ -62,6 +64,32 @@ def named(usual: str) -> Callable[[str], tuple[str, str]]:
     def read(text: str) -> tuple[str, str]:
         name, equals, value = text.rpartition("=")
         return (name if equals else usual), value
+
+    return read
+
+
+def items_of(
+    option: str, what: str, example: str = "", read: Callable[[str], Any] = str
+) -> Callable[[str], tuple[Any, ...]]:
+    """A reader of items with commas between them; ``what`` are they?"""
+
+    def read_items(text: str) -> tuple[Any, ...]:
+        items = [item.strip() for item in text.split(",")]
+        if not all(items):
+            raise UsageError(f"{option} {text}: write {what} separated by commas{example}")
+        return tuple(map(read, items))
+
+    return read_items
+
+
+def frame_range(option: str) -> Callable[[str], tuple[int, int]]:
+    """A reader of a first and a last frame, such as 100-400."""
+
+    def read(text: str) -> tuple[int, int]:
+        found = _FRAMES.fullmatch(text)
+        if found is None:
+            raise UsageError(f"{option} {text[:40]}: write the first and the last frame, such as 100-400")
+        return int(found[1]), int(found[2])
 
     return read
 

@@ -1,0 +1,221 @@
+"""The options of each question about traces and recordings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.frontends.settings.groups import (
+    Sharing,
+    Traces,
+    Workers,
+    folder_for,
+    pictures_of,
+    specifications_of,
+)
+from roadproof.frontends.settings.option import Settings, option
+from roadproof.frontends.settings.readers import (
+    LARGEST_SEED,
+    decimal,
+    frame_range,
+    items_of,
+    named,
+    seconds,
+    whole,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from roadproof.analysis.study.pool import Say
+    from roadproof.evidence.answers.monitor import View
+    from roadproof.evidence.drive_file import DriveFile
+    from roadproof.evidence.judged import JudgedDrive
+    from roadproof.frontends.api.definitions import Among
+    from roadproof.frontends.settings.value_types import RoadLike
+    from roadproof.library.values import Number
+    from roadproof.recordings.simulate.traffic import Ramp
+
+
+@dataclass(frozen=True, kw_only=True)
+class Monitor(Traces):
+    """Options of ``monitor``."""
+
+    lanes: Mapping[str, str] | None = option(
+        None,
+        "--lane",
+        "[L=]LANE",
+        help="lane that L means: its name, or a vehicle in it at the start (default: as the drive file "
+        "says, else the lane of SV; of POV for scenario 7, acceleration behind)",
+        read=named("L"),
+        gather=dict,
+    )
+    road: RoadLike | None = option(
+        None, "--road", "R", help="road of samples (default: NAME_road.toml beside the file, else main-2)"
+    )
+    view: View | None = option(
+        None,
+        "--view",
+        help="judge a drive in dense time (default), or as samples",
+        choices=("dense", "recorded"),
+    )
+    dt: Number = option(
+        Fraction(1, 25),
+        "--dt",
+        "S",
+        help="seconds between samples of a drive (default: 1/25)",
+        read=seconds("--dt"),
+    )
+    frames: tuple[int | None, int | None] = option(
+        (None, None),
+        "--frames",
+        "A-B",
+        help="frames of a recording (default: all that the vehicles share)",
+        read=frame_range("--frames"),
+    )
+    picture: Path | None = option(
+        None,
+        "--picture",
+        "FILE",
+        help="draw the truth over time into FILE (.png or .svg)",
+        group="output",
+        read=Path,
+        keyword=False,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evaluate(Sharing, Traces):
+    """Options of ``evaluate``."""
+
+    among: Among = option(
+        None, "--among", "N-M", help="only these scenarios (default: all of two or three vehicles)"
+    )
+    min_danger: Iterable[Number] = option(
+        (0, "0.6 s"),
+        "--min-danger",
+        "S,S",
+        help="values of minDanger in seconds (default: 0,0.6)",
+        read=items_of("--min-danger", "values", read=seconds("--min-danger", or_zero=True)),
+    )
+    min_safe: Number | None = option(
+        None,
+        "--min-safe",
+        "S",
+        help="value of minSafe in seconds (default: 0.6)",
+        read=seconds("--min-safe", or_zero=True),
+        keyword=False,
+    )
+    classes: Iterable[str] = option(
+        ("Car",),
+        "--class",
+        "C",
+        help="vehicle class to evaluate; may be repeated (default: Car)",
+        gather=tuple,
+    )
+    drivers: Iterable[str] = option(
+        (),
+        "--drivers",
+        "NAME,…",
+        help="say of each match whether driver models (careful, r157, eu1426, rss) prevent a collision, "
+        "from the begin of the manoeuvre; for scenarios 1, 2, 4 and the like on other road sectors",
+        read=items_of("--drivers", "names", ", such as careful,r157"),
+    )
+    detectors: bool = option(
+        True, "--no-detectors", help="leave out the detectors of earlier works", rare=True
+    )
+    check: bool = option(
+        False, "--check", help="compare with the plain recursive evaluator (slow)", rare=True
+    )
+    keep_going: bool = option(False, "--keep-going", help="skip recordings that cannot be used")
+    out: str | Path | None = folder_for("results", command_line_only=True)
+    list_roads: bool = option(
+        False,
+        "--list",
+        help="only list lanes and zones, and which of them were inferred",
+        group="output",
+        keyword=False,
+    )
+    pictures: bool = pictures_of("figures, which need matplotlib")
+    tell: Say | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simulate(Workers):
+    """Options of ``simulate``."""
+
+    recordings: int = option(
+        1, "--recordings", "N", help="number of recordings (default: 1)", read=whole("--recordings", 1, 999)
+    )
+    seconds: float = option(
+        990.0, "--seconds", "S", help="seconds of each recording (default: 990)", read=decimal("--seconds")
+    )
+    seed: int = option(
+        1,
+        "--seed",
+        "K",
+        help="seed from 0 to 2^64 - 1 (default: 1)",
+        read=whole("--seed", 0, LARGEST_SEED),
+    )
+    lanes: int = option(3, "--lanes", "N", help="lanes each way (default: 3)", read=whole("--lanes", 1))
+    flow: float = option(
+        3350.0, "--flow", "F", help="vehicles per hour each way (default: 3350)", read=decimal("--flow")
+    )
+    truck_share: float = option(
+        0.18, "--truck-share", "P", help="share of trucks (default: 0.18)", read=float
+    )
+    section: float = option(
+        420.0, "--section", "M", help="length of the road in metres (default: 420)", read=decimal("--section")
+    )
+    ramp: Ramp = option(
+        "none",
+        "--ramp",
+        help="add an on-ramp or an off-ramp to the lower carriageway, with XX_road.toml (default: none)",
+        choices=("none", "merge", "depart"),
+    )
+    ramp_flow: float = option(
+        400.0,
+        "--ramp-flow",
+        "F",
+        help="vehicles per hour on the ramp (default: 400)",
+        read=decimal("--ramp-flow"),
+    )
+    plant: Iterable[JudgedDrive | DriveFile] = option(
+        (),
+        "--plant",
+        "PATH|N,N",
+        help="plant drives: a drive file, a folder of them, or scenarios to search, such as 1-8; may be "
+        "repeated",
+        gather=tuple,
+    )
+    plant_set: str = option(
+        "base", "--plant-set", "S", help="spec set of --plant N,N (default: base)", keyword=False, rare=True
+    )
+    out: str | Path | None = folder_for("recordings", command_line_only=True, required=True)
+    tell: Say | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export(Settings):
+    """Options of ``export``."""
+
+    to: Iterable[str] = option(
+        (),
+        "--to",
+        "FORMAT",
+        help="openscenario, opendrive, commonroad, highd, csv or animation; may be repeated",
+        gather=list,
+        keyword=False,
+        required=True,
+    )
+    rate: int = option(
+        25,
+        "--rate",
+        "N",
+        help="samples per second of commonroad, highd and csv (default: 25)",
+        read=whole("--rate", 1),
+    )
+    specs: Iterable[str | Path] = specifications_of("the drives")
+    out: str | Path | None = folder_for("files", command_line_only=True, required=True)
