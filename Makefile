@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test long demo docs man browser findings interop mutants fuzz lint unit format clean
+.PHONY: test long demo docs man fresh browser findings interop mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -41,6 +41,10 @@ demo: $(READY)
 # The documentation site, in out/site: open out/site/index.html in a browser; it needs no network.
 docs: $(READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
+
+# Every command of the README, typed into the login shell of a user who has nothing but a fresh clone.
+fresh: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m fresh
 
 # Manual pages, in out/man: man -l out/man/man1/roadproof.1, or MANPATH=$PWD/out/man: man roadproof-witness.
 man: $(READY)
