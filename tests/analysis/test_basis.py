@@ -10,6 +10,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.settings.groups import Budget
 from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import bundled_library
 from roadproof.world.models import load_vehicle
@@ -26,7 +27,7 @@ def test_models_go_to_the_vehicles_that_a_formula_has() -> None:
 
 def test_roles_that_no_scenario_has_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(UsageError, match="vehicle XV: scenarios speak of POV, POV1, POV2, SV"):
-        basis_of(rp.load(), 1.0, None, {"XV": "truck"})
+        basis_of(rp.load(), Budget(), {"XV": "truck"})
     for command in ("overlap", "order", "redundancy", "coverage", "classify"):
         assert main([command, "--vehicle", "XV=truck"]) == 2
         assert "vehicle XV" in capsys.readouterr().err

@@ -28,6 +28,7 @@ from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.catalogue import as_text
+from roadproof.frontends.settings.groups import Budget
 from roadproof.library.bind import bind
 from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
@@ -49,7 +50,7 @@ FIXED, ANY = Freedom(), Freedom(True, True, True)
 
 @pytest.fixture(scope="module")
 def division() -> Division:
-    return divide(basis_of(HOME, 60.0, None), plan_of(HOME.alone, NUMBERS), 1, in_few_words=False)
+    return divide(basis_of(HOME, Budget()), plan_of(HOME.alone, NUMBERS), 1, in_few_words=False)
 
 
 @pytest.fixture(scope="module")

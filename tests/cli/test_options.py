@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.analysis.claims import Claims
 from roadproof.errors import InputError, UsageError
 from roadproof.frontends.cli import options, prove
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.settings.flags import read_keywords
+from roadproof.frontends.settings.questions import Prove
 from roadproof.library.specification import bundled_library
 
 
@@ -130,14 +133,15 @@ def test_a_target_that_cannot_be_written_ends_a_run_before_its_work(
     ("words", "scenarios"), [(["4"], {4}), (["scenario_4", "P1"], {4}), (["1-2,7", "P1"], {1, 2, 7})]
 )
 def test_prove_takes_scenarios_as_other_commands_do(words: list[str], scenarios: set[int]) -> None:
-    tasks = prove._asked(options_of_prove([*words, "--set", "base"])).tasks
+    tasks = asked_of_prove([*words, "--set", "base"]).tasks
     assert {task.scenario for task in tasks} == scenarios
     assert {task.id for task in tasks} == {"P1"} or "P1" not in words
     with pytest.raises(UsageError, match="no claim of P9, 4"):
-        prove._asked(options_of_prove(["P9", "4"]))
+        asked_of_prove(["P9", "4"])
 
 
-def options_of_prove(words: list[str]) -> argparse.Namespace:
+def asked_of_prove(words: list[str]) -> Claims:
     parser = argparse.ArgumentParser()
     prove.add_arguments(parser)
-    return parser.parse_args(words)
+    args = parser.parse_args(words)
+    return prove._asked(args, Prove.of(read_keywords(args, Prove)))

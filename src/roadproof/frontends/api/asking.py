@@ -1,12 +1,10 @@
 """Studies that have no function of their own, asked as those that have: a verdict for each answer."""
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, Unpack
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.study.frame import Study
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
@@ -15,9 +13,10 @@ from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers
-from roadproof.frontends.settings.value_types import Vehicles
+from roadproof.frontends.settings.keywords import AskKeywords
+from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.studies import Ask
 from roadproof.library.scenarios import numbers_of
-from roadproof.runtime.executors import Jobs
 from roadproof.verdict import Verdict
 
 
@@ -93,17 +92,12 @@ class Answers(StudyAnswers[Listing[A, R], A, R]):
         return "\n".join([*lines, f"{len(lines)} answers in {self.seconds:.1f} s"])
 
 
+@takes(Ask)
 def ask(
     about: Callable[[Basis, tuple[int, ...]], Listing[A, R]],
     among: Among = None,
     using: Definitions | None = None,
-    vehicles: Vehicles = None,
-    effort: float = 60.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
+    **options: Unpack[AskKeywords],
 ) -> Answers[A, R]:
     """The answers to a study that ``about`` makes of definitions and of the numbers of scenarios.
 
@@ -111,9 +105,10 @@ def ask(
     ``out``: a folder in which answers are kept as they come; ``say`` is told of kept ones that do not count.
     Raises ``InputError``, ``UsageError``.
     """
+    given = Ask.of(options)
     home = using or load()
     numbers = home.among(among) or numbers_of(home.specification)
-    study = about(basis_of(home, effort, timeout, vehicles), numbers)
+    study = about(basis_of(home, given, given.vehicles), numbers)
     if not study.names:
         raise UsageError(f"--among {among} leaves nothing to ask: name other scenarios")
-    return Answers[A, R].asked(study, out, jobs, progress, say)
+    return Answers[A, R].asked(study, given)

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Unpack
 
 from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.catalogue.completing import PriorResults, complete
@@ -14,21 +14,21 @@ from roadproof.analysis.catalogue.entries import Catalogue, Concrete
 from roadproof.analysis.catalogue.examination import Examination, examine
 from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
 from roadproof.analysis.catalogue.ranges import Span
-from roadproof.analysis.catalogue.request import NEAR, Request
+from roadproof.analysis.catalogue.request import Request
 from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.tested import SCENARIOS, Targets, all_facts, kind_of
 from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
-from roadproof.analysis.study.pool import Progress, Say
+from roadproof.analysis.study.pool import Progress
 from roadproof.drivers.models import MODELS
 from roadproof.engines.search.question import Objective
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import catalogue_index as kept
-from roadproof.evidence.answers.catalogue_index import Figure, Look
+from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions
-from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.restricting import drivers_of, restricted
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of, one_of
@@ -36,7 +36,9 @@ from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report import catalogue_drivers as decisions
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
-from roadproof.frontends.settings.value_types import Vehicles
+from roadproof.frontends.settings import studies as settings
+from roadproof.frontends.settings.keywords import CatalogueKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict
@@ -243,27 +245,9 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
         return PriorResults(begins, tests, gaps)
 
 
+@takes(settings.Catalogue)
 def catalogue(
-    *paths: str | Path,
-    among: Among = None,
-    using: Definitions | None = None,
-    classes: bool = True,
-    gaps: bool = False,
-    explore: bool = False,
-    roles: Look = "fixed",
-    lanes: Look = "fixed",
-    start: Look = "fixed",
-    near: float = NEAR,
-    preventable: str | None = None,
-    unpreventable: str | None = None,
-    drivers: Iterable[str] | None = None,
-    vehicles: Vehicles = None,
-    effort: float = 60.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
+    *paths: str | Path, using: Definitions | None = None, **options: Unpack[CatalogueKeywords]
 ) -> CatalogueAnswer:
     """Which scenarios and classes the tests in folders and files show, and which nobody tests.
 
@@ -278,16 +262,24 @@ def catalogue(
     and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     begun = time.monotonic()
+    given = settings.Catalogue.of(options)
     plain = using or load()
-    wanted = restricted(plain, preventable, unpreventable, among)
-    models = tuple(MODELS if drivers is None else drivers)
+    wanted = restricted(plain, given.preventable, given.unpreventable, given.among)
+    models = tuple(MODELS if given.drivers is None else given.drivers)
     request = Request(
-        tuple(map(str, paths)), wanted.sets, classes, gaps, explore, roles, lanes, start, float(near), models
+        tuple(map(str, paths)),
+        wanted.sets,
+        given.classes,
+        given.gaps,
+        given.explore,
+        given.roles,
+        given.lanes,
+        given.start,
+        float(given.near),
+        models,
     )
-    basis = basis_of(replace(wanted, sets=wanted.sets[:1]), effort, timeout, vehicles)
-    numbers = wanted.among(among) or numbers_of(wanted.specification)
+    basis = basis_of(replace(wanted, sets=wanted.sets[:1]), given, given.vehicles)
+    numbers = wanted.among(given.among) or numbers_of(wanted.specification)
     asked = drivers_of(wanted, models)
-    made = examine(request, basis, numbers, plain.specification, asked, jobs, progress)
-    return CatalogueAnswer.asked(
-        made.study, out, jobs, progress, say, more=lambda: {"examination": made}, begun=begun
-    )
+    made = examine(request, basis, numbers, plain.specification, asked, given.jobs, given.progress)
+    return CatalogueAnswer.asked(made.study, given, more=lambda: {"examination": made}, begun=begun)

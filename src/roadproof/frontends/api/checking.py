@@ -144,7 +144,7 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
         _Job(path, beside, kernels.ruled(said[names[path]]) if names[path] in said else None)
         for path, beside in given
     ]
-    judge = partial(_examine, asked.solver, work_of(asked.effort, asked.timeout))
+    judge = partial(_examine, asked.solver, work_of(asked))
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
@@ -29,7 +29,7 @@ from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import classify as report
-from roadproof.frontends.settings import questions as settings
+from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import ClassifyKeywords
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import numbers_of
@@ -146,7 +146,7 @@ def classify(
     begun = time.monotonic()
     given = settings.Classify.of(options)
     home = restricted(using or load(), given.preventable, given.unpreventable, among)
-    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
+    basis = basis_of(home, given, given.vehicles)
     plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
     folder = None if given.out is None else Path(given.out)
     if folder is not None:
@@ -163,9 +163,7 @@ def classify(
         about, values = study.basis.specification, study.basis.all_values()
         counted = count_shares(study.classes, about, values, recordings, source=source)
     more = {"shares": counted}
-    return Classifications.asked(
-        study, folder, given.jobs, given.progress, given.say, more=lambda: more, begun=begun
-    )
+    return Classifications.asked(study, replace(given, out=folder), more=lambda: more, begun=begun)
 
 
 def _recordings(on: str | Path | None) -> tuple[str, Iterator[Recording]]:

@@ -129,7 +129,7 @@ def compare(
         raise UsageError(f"{len(home.sets)} spec sets are given: two formulas have at most two")
     other = home.sets[-1]
     query = replace(home, specification=home.specification.in_set(other)).read(second)
-    work = work_of(given.effort, given.timeout)
+    work = work_of(given)
     search = Search(
         home.specification,
         home.read(first),

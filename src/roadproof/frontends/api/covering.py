@@ -28,7 +28,7 @@ from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import coverage as report
-from roadproof.frontends.settings import questions as settings
+from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CoverageKeywords
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.words import Called, called
@@ -157,7 +157,7 @@ def coverage(
     wider = given.wider
     home = restricted(using or load(), given.preventable, given.unpreventable, about="drives")
     check_drives(home.specification.options)
-    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
+    basis = basis_of(home, given, given.vehicles)
     name = home.alone.set_name
     if wider is not None:
         home.specification.in_set(wider)
@@ -175,4 +175,4 @@ def coverage(
 
     folder = None if given.out is None else Path(given.out)
     with hold_if_any(folder, shared=hands_of(given.jobs).shard is not None):
-        return Coverages.asked(study, folder, given.jobs, given.progress, given.say, more=count, begun=begun)
+        return Coverages.asked(study, given, more=count, begun=begun)

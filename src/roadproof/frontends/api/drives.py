@@ -10,7 +10,6 @@ from typing import Any, ClassVar, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.frame import StudyResult, put_away
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.analysis.witnesses import WitnessStudy, evidence_files, stems
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.question import SearchOptions
@@ -33,7 +32,6 @@ from roadproof.frontends.settings.questions import Witness
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
-from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -174,39 +172,35 @@ def witness(
     given = Witness.of(options)
     searches = searches_for(what, using or load(), given)
     with listening(stage):
-        return witness_all(searches, given.out, given.pictures, given.jobs, given.progress, given.say)
+        return witness_all(searches, given)
 
 
 def searches_for(what: Sequence[What], using: Definitions, given: Witness) -> list[Search]:
     """The searches that ``witness`` makes. Raises as that does."""
     home = restricted(using, given.preventable, given.unpreventable, what=what)
-    work = work_of(given.effort, given.timeout)
+    work = work_of(given)
     search_options = SearchOptions(given.objective, given.engine, given.solver, work)
     return list(searches_of(home, what, setting(home, given), search_options, given.count))
 
 
 def witness_all(
-    searches: Sequence[Search],
-    out: str | Path | None = None,
-    pictures: bool = True,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
-    each: Callable[[str, Outcome], None] | None = None,
+    searches: Sequence[Search], given: Witness, each: Callable[[str, Outcome], None] | None = None
 ) -> Witnesses:
     """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
     if not searches:
         raise UsageError("there is no scenario in the spec set: name formulas")
-    if pool.are_forked(searches, jobs):
+    if pool.are_forked(searches, given.jobs):
         from roadproof.engines.solve.milp import prepare
 
         prepare()  # what every worker needs is imported once, before they are forked
-    beside = None if out is None else DriveFolder(Path(out), searches[0].specification.library, pictures)
+    library, out = searches[0].specification.library, given.out
+    beside = None if out is None else DriveFolder(Path(out), library, given.pictures)
     study = WitnessStudy(tuple(searches), beside)
-    found = Witnesses.asked(study, out, jobs, progress, say, each)
+    found = Witnesses.asked(study, given, each)
     if beside is not None:
         left = [(name, x) for name in study.named if beside.lacks(name, x := found.found.answers[name])]
-        with closing(pool.work(partial(_finish, beside), left, jobs, None, progress, "drives")) as done:
+        finish = partial(_finish, beside)
+        with closing(pool.work(finish, left, given.jobs, None, given.progress, "drives")) as done:
             list(done)
     return found
 

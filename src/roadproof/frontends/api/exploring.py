@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Unpack
 
 from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, say_nothing
@@ -10,7 +9,7 @@ from roadproof.analysis.explore.asking import ask_for
 from roadproof.analysis.explore.measure import Sense
 from roadproof.analysis.explore.study import Exploration
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Progress, Say
+from roadproof.analysis.study.pool import Say
 from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import explore as kept
@@ -23,12 +22,12 @@ from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import explore as report
+from roadproof.frontends.settings.groups import Run
 from roadproof.frontends.settings.keywords import ExploreKeywords
 from roadproof.frontends.settings.questions import Explore
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenario_references import names_scenarios
 from roadproof.library.values import Number
-from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 
@@ -121,14 +120,14 @@ def explore(
     for name in {*vary} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")
     asked = explorables(home, what, given, [(name, *ends) for name, ends in vary.items()])
-    return explore_all(asked, given.out, given.jobs, given.progress, given.say)
+    return explore_all(asked, given)
 
 
 def explorables(
     home: Definitions, what: Sequence[What], given: Explore, ranges: Sequence[tuple[str, Number, Number]]
 ) -> Iterator[Explorable]:
     """What is asked of each formula in each spec set, varied over ``ranges``. Raises as ``explore``."""
-    work = work_of(given.effort, given.timeout)
+    work = work_of(given)
     search_options = SearchOptions(engine=given.engine, solver=given.solver, effort=work)
     measures: dict[Sense, Term | None] = {"least": given.least, "greatest": given.greatest}
     wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None]
@@ -142,18 +141,11 @@ def explorables(
         yield ask_for(search, ranges, given.steps, given.precision, wanted, moment)
 
 
-def explore_all(
-    asked: Iterable[Explorable],
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
-    tell: Say | None = None,
-) -> Explorations:
+def explore_all(asked: Iterable[Explorable], given: Run, tell: Say | None = None) -> Explorations:
     """As ``explore``, with what is asked as values; ``tell`` is told how far a formula is."""
-    study = Exploration(tuple(asked), jobs, tell or say_nothing)
-    if pool.are_forked(range(1000), jobs):
+    study = Exploration(tuple(asked), given.jobs, tell or say_nothing)
+    if pool.are_forked(range(1000), given.jobs):
         from roadproof.engines.solve.milp import prepare
 
         prepare()  # what every worker needs is imported once, before they are forked
-    return Explorations.asked(study, out, jobs, progress, say)
+    return Explorations.asked(study, given)

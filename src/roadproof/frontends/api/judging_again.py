@@ -30,6 +30,7 @@ from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.restricting import drivers_of
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.catalogue import tables
+from roadproof.frontends.settings.studies import Catalogue
 from roadproof.library.scenarios import name_of as scenario_name
 from roadproof.library.specification import Library
 from roadproof.runtime.executors import Jobs
@@ -47,7 +48,6 @@ _DERIVED = (
     "notes",
 )
 _ASKED = ("scenarios", "options", "parameters", "specs")
-_EFFORT = 60.0  # units of work, as catalogue asks by default
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
         request = read_request(index.get("request"), f"{where}, request")
         home = _definitions(index, library, request)
         numbers = tuple(Fields({"n": x}, f"{where}, scenarios").whole("n") for x in index.items("scenarios"))
-        basis = basis_of(replace(home, sets=home.sets[:1]), _EFFORT, None)
+        basis = basis_of(replace(home, sets=home.sets[:1]), Catalogue())
         drivers = drivers_of(home, request.drivers)
         made = examine(request, basis, numbers, home.specification, drivers, jobs, progress)
         facts = tuple(_facts(index, told.folder, made.study))

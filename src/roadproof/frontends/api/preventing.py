@@ -3,11 +3,10 @@
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from pathlib import Path
+from typing import Unpack
 
 from roadproof.analysis.preventable.study import Answer as Found
 from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.gradual import RATE, check_gradual
 from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre
 from roadproof.drivers.models import DRIVERS, manoeuvre_of, models_for, require
@@ -22,9 +21,11 @@ from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import preventable as report
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.sheet import as_csv, as_rows
+from roadproof.frontends.settings import studies as settings
+from roadproof.frontends.settings.keywords import PreventableKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import unknown
 from roadproof.library.values import Number, exact
-from roadproof.runtime.executors import Jobs
 from roadproof.verdict import Verdict
 
 _MOST_LINES = 2000
@@ -87,21 +88,12 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record]):
         return f"{report.as_text(self.study, self.plates, self.lemmas)}\n{count}"
 
 
+@takes(settings.Preventable)
 def preventable(
     manoeuvre: str | int,
     models: Sequence[str] = (),
-    at: Mapping[str, Number | Sequence[Number]] | None = None,
-    along: tuple[Number, Number] | None = None,
-    across: tuple[Number, Number] | None = None,
-    lines: int = 100,
-    lemmas: bool = True,
     using: Definitions | None = None,
-    effort: float = 60.0,
-    timeout: float | None = None,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
+    **options: Unpack[PreventableKeywords],
 ) -> Plates:
     """Where a collision is unpreventable for driver models, over planes of initial values.
 
@@ -112,27 +104,28 @@ def preventable(
     ``using``: definitions with those of ``driver.spec`` (``load(specs=["driver"])``). Raises ``InputError``,
     ``UsageError``.
     """
+    given = settings.Preventable.of(options)
     home = using or load(specs=[DRIVERS])
-    basis = basis_of(home, effort, timeout, None)
+    basis = basis_of(home, given)
     require(home.specification, basis.all_values())
     name, scenario = manoeuvre_of(str(manoeuvre))
     kind = MANOEUVRES[name]
-    if not 2 <= lines <= _MOST_LINES:
-        raise UsageError(f"lines={lines}: a plate has between 2 and {_MOST_LINES}")
-    given = {name: _values(kind, name, x) for name, x in (at or {}).items()}
-    sheet = {name: given.pop(name, values) for name, values in kind.sheet.items()}
-    sheet |= {name: values for name, values in given.items() if len(values) > 1}
-    fixed = {name: values[0] for name, values in given.items() if len(values) == 1}
+    if not 2 <= given.lines <= _MOST_LINES:
+        raise UsageError(f"lines={given.lines}: a plate has between 2 and {_MOST_LINES}")
+    at = {name: _values(kind, name, x) for name, x in (given.at or {}).items()}
+    sheet = {name: at.pop(name, values) for name, values in kind.sheet.items()}
+    sheet |= {name: values for name, values in at.items() if len(values) > 1}
+    fixed = {name: values[0] for name, values in at.items() if len(values) == 1}
     study = Preventable(
         basis,
         kind,
         models_for(kind.name, tuple(models)),
         fixed,
         sheet,
-        _range(kind, kind.line, along) or kind.along,
-        _range(kind, kind.across, across) or kind.range,
-        lines,
-        lemmas,
+        _range(kind, kind.line, given.along) or kind.along,
+        _range(kind, kind.across, given.across) or kind.range,
+        given.lines,
+        given.lemmas,
         scenario,
     )
     count = len(study.plates)
@@ -142,7 +135,7 @@ def preventable(
         values = kind.values(piece.fixed)
         if RATE in values:
             check_gradual(piece.model.name, values, study.reading)
-    return Plates.asked(study, out, jobs, progress, say)
+    return Plates.asked(study, given)
 
 
 def _values(kind: Manoeuvre, name: str, given: Number | Sequence[Number]) -> tuple[Fraction, ...]:

@@ -5,12 +5,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, ClassVar, Literal, Self, TypeAlias
+from typing import Any, ClassVar, Self, Unpack
 
 from roadproof.analysis.claims import ClaimResult, Claims, former_claims, name_of, write_claims
 from roadproof.analysis.study.frame import StudyResult
-from roadproof.analysis.study.pool import Progress, Say
+from roadproof.analysis.study.pool import Progress
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
+from roadproof.engines.search.question import Engine
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays, Record
 from roadproof.evidence.heading import heading
@@ -21,24 +22,23 @@ from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.row import Row
-from roadproof.frontends.api.settings import models_of, one_of, setting, work_of
+from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import claims as claims_text
-from roadproof.frontends.settings.groups import SearchPlace
-from roadproof.frontends.settings.value_types import RoadLike, Vehicles
+from roadproof.frontends.settings.groups import Run, SearchPlace
+from roadproof.frontends.settings.keywords import ProveKeywords
+from roadproof.frontends.settings.questions import Prove
+from roadproof.frontends.settings.signatures import takes
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split
 from roadproof.library.scenario_references import names_scenarios, read_numbers
 from roadproof.library.specification import Specification
-from roadproof.library.values import Number
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_if_any
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code
 from roadproof.world.vehicle import Vehicle
 
-_Engine: TypeAlias = Literal["dense", "smt", "milp"]
-_Expected: TypeAlias = Literal["PROVED", "REFUTED"]
 _PROPERTY = re.compile(r"[A-Z]\d+")
 
 
@@ -53,20 +53,17 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
     def asked(
         cls,
         study: Claims,
-        out: str | Path | None = None,
-        jobs: Jobs = None,
-        progress: Progress | None = None,
-        say: Say | None = None,
+        given: Run,
         each: Callable[[str, ClaimResult], None] | None = None,
         more: Callable[[], Mapping[str, Any]] = dict,
         begun: float | None = None,
     ) -> Self:
         """As of all studies; a folder of claims grows, and only one run at a time may write into it."""
-        folder = None if out is None else Path(out)
+        folder = None if given.out is None else Path(given.out)
         with hold_if_any(folder):
             if folder is not None:
                 former_claims(folder, study)
-            return super().asked(study, folder, jobs, progress, say, each, more, begun)
+            return super().asked(study, given, each, more, begun)
 
     @property
     def answers(self) -> tuple[ClaimResult, ...]:
@@ -174,26 +171,12 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
         return f"{table}\n{len(self.answers)} claims in {self.seconds:.1f} s"
 
 
+@takes(Prove)
 def prove(
     *what: What,
     using: Definitions | None = None,
-    expect: _Expected = "PROVED",
-    assume: Literal["motion"] | None = None,
-    vehicles: Vehicles = None,
-    declared: bool = False,
-    engine: _Engine = "dense",
-    road: RoadLike | None = None,
-    horizon: Number = 6,
-    dt: Number | None = None,
-    effort: float = 60.0,
-    timeout: float | None = None,
-    drive: bool = True,
-    out: str | Path | None = None,
-    jobs: Jobs = None,
-    progress: Progress | None = None,
-    say: Say | None = None,
-    kernel: Literal["coq"] | None = None,
     stage: Listener | None = None,
+    **options: Unpack[ProveKeywords],
 ) -> Proofs:
     """Prove or refute claims for all time, on all roads, for all parameter values within their bounds.
 
@@ -215,25 +198,37 @@ def prove(
     >>> prove("danger(SV,POV) -> danger(SV,POV)", jobs=1).verdict
     <Verdict.PROVED: 'PROVED'>
     """
-    one_of("engine", engine, _Engine)
-    one_of("expect", expect, _Expected)
-    home = using or load()
-    said = assuming(
-        assume,
-        vehicles if engine == "dense" else None,
-        values_put_in(home, declared) if engine == "dense" else {},
-    )
-    asked = claims_of(home, what, using.alone.set_name if using else None, claim_verdict(expect), said)
-    asked = replace(asked, effort=work_of(effort, timeout), seek_drive=drive)
-    if engine != "dense":
-        if not asked.are_own:
-            raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
-        asked = within_limits(asked, home, engine, road, horizon, dt, vehicles)
-    if kernel is not None:
-        ask_kernel(kernel, engine)
+    given = Prove.of(options)
+    asked = claims_asked(using or load(), what, using.alone.set_name if using else None, given)
     with listening(stage):
-        found = Proofs.asked(asked, out, jobs, progress, say)
-    return found if kernel is None else found.put_to_kernel(jobs, progress)
+        found = Proofs.asked(asked, given)
+    return found if given.kernel is None else found.put_to_kernel(given.jobs, given.progress)
+
+
+def claims_asked(
+    home: Definitions, what: Sequence[What | AssumedClaim], set_name: str | None, given: Prove
+) -> Claims:
+    """What ``prove`` settles: claims in dense time, or within limits; ``set_name``: see ``claims_of``.
+
+    Raises as ``prove``.
+    """
+    dense = given.engine == "dense"
+    if dense and given.vehicles and given.assume is None:
+        raise UsageError("limits of vehicles are assumed with motion only: ask with assume motion")
+    values = home.all_values() if given.declared else dict(home.values)
+    limits = (models_of(given.vehicles), values) if dense else ()
+    said = Assumptions(given.assume is not None, *limits)
+    asked = claims_of(home, what, set_name, claim_verdict(given.expect), said)
+    asked = replace(asked, effort=work_of(given), seek_drive=given.drive)
+    if given.engine != "dense":
+        if given.kernel is not None:
+            raise UsageError(
+                f"engine={given.engine!r} makes no certificates that could be put to Coq: ask without kernel"
+            )
+        return _within_limits(asked, home, given.engine, given)
+    if given.kernel is not None:
+        coq.find()
+    return asked
 
 
 def _said(ruling: Ruling) -> KernelSays:
@@ -244,16 +239,6 @@ def _premises(answer: ClaimResult) -> str:
     """The limits and facts about motion that a proof uses; empty where there is no proof or it uses none."""
     certificate = answer.settled.result.certificate
     return "" if certificate is None else "; ".join(certificate.assumed.premises)
-
-
-def ask_kernel(kernel: str, engine: str) -> None:
-    """Whether proofs can be put to a kernel. Raises ``UsageError``, ``MissingSolverError``."""
-    one_of("kernel", kernel, Literal["coq"])
-    if engine != "dense":
-        raise UsageError(
-            f"engine={engine!r} makes no certificates that could be put to Coq: ask without kernel"
-        )
-    coq.find()
 
 
 @dataclass(frozen=True)
@@ -284,24 +269,6 @@ class Assumptions:
             return task
         claim = AssumedClaim(read_claim(specification, task.claim))
         return replace(task, assuming=at_values(specification, claim, self.values).said)
-
-
-def values_put_in(home: Definitions, declared: bool) -> dict[str, Fraction]:
-    """At which values proofs are asked: those that were given; where ``declared`` one of each parameter."""
-    return home.all_values() if declared else dict(home.values)
-
-
-def assuming(
-    assume: str | None,
-    vehicles: Vehicles = None,
-    values: Mapping[str, Fraction] | None = None,
-) -> Assumptions:
-    """What is assumed, in the words of Python. Raises ``UsageError``, ``InputError``."""
-    if assume not in (None, MOTION):
-        raise UsageError(f"assume={assume!r}: write {MOTION!r}")
-    if vehicles and assume is None:
-        raise UsageError("limits of vehicles are assumed with motion only: ask with assume motion")
-    return Assumptions(assume is not None, models_of(vehicles), values or {})
 
 
 def claims_of(
@@ -363,26 +330,20 @@ def _own(home: Definitions, claims: list[AssumedClaim], expected: ClaimVerdict) 
     ]
 
 
-def within_limits(
-    asked: Claims,
-    home: Definitions,
-    engine: Literal["smt", "milp"],
-    road: RoadLike | None = None,
-    horizon: Number = 6,
-    dt: Number | None = None,
-    vehicles: Vehicles = None,
-) -> Claims:
+def _within_limits(asked: Claims, home: Definitions, engine: Engine, given: Prove) -> Claims:
     """The same claims, about drives on one road up to a horizon, within models of vehicles.
 
     Raises ``InputError``, ``UsageError``.
     """
     from roadproof.engines.search.question import SearchOptions
 
+    if not asked.are_own:
+        raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
     if any(task.assuming for task in asked.tasks):
         raise UsageError(
             f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "
             "engine='dense'"
         )
-    where = SearchPlace(road=road, vehicles=vehicles, horizon=horizon, dt=dt)
+    where = SearchPlace(road=given.road, vehicles=given.vehicles, horizon=given.horizon, dt=given.dt)
     place = replace(setting(home, where), values=dict(home.values))
     return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Definitions, What
-from roadproof.frontends.settings.groups import SearchPlace
+from roadproof.frontends.settings.groups import Budget, SearchPlace
 from roadproof.frontends.settings.value_types import RoadLike, Vehicles
 from roadproof.library.bind import values_with
 from roadproof.library.scenarios import numbers_of, roles
@@ -78,12 +78,12 @@ def positive(name: str, value: Number, unit: str) -> Fraction:
     return found
 
 
-def work_of(effort: float, timeout: float | None) -> Effort:
+def work_of(given: Budget) -> Effort:
     """So many units of work, and seconds after which the clock ends it. Raises ``UsageError``."""
-    for name, value in (("effort", effort), ("timeout", timeout)):
+    for name, value in (("effort", given.effort), ("timeout", given.timeout)):
         if value is not None and not value > 0:
             raise UsageError(f"{name}={value}: write a number greater than 0")
-    return Effort(effort, timeout)
+    return Effort(given.effort, given.timeout)
 
 
 def one_of(name: str, value: str, allowed: Any) -> None:
@@ -92,13 +92,8 @@ def one_of(name: str, value: str, allowed: Any) -> None:
         raise UsageError(f"{name}={value!r}: write {' or '.join(map(repr, get_args(allowed)))}")
 
 
-def basis_of(
-    home: Definitions,
-    effort: float,
-    timeout: float | None,
-    vehicles: Vehicles = None,
-) -> "Basis":
-    """What analyses rest on; ``effort``: units of work for a drive; ``vehicles``: models, by role or for all.
+def basis_of(home: Definitions, given: Budget, vehicles: Vehicles = None) -> "Basis":
+    """What analyses rest on; ``given``: work for a drive; ``vehicles``: models, by role or for all.
 
     Raises ``InputError``, ``UsageError`` for a role that no scenario has.
     """
@@ -113,6 +108,6 @@ def basis_of(
         home.specification,
         home.sets,
         home.all_values(),
-        effort=work_of(effort, timeout),
+        effort=work_of(given),
         vehicles=models,
     )

@@ -9,11 +9,10 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from roadproof.analysis.study.evidence_store import write_index
 from roadproof.analysis.study.frame import Study, StudyResult, conduct, put_away
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.codec import write
 from roadproof.frontends.api.answer import Answer, Picture
-from roadproof.runtime.executors import Jobs
+from roadproof.frontends.settings.groups import Run
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode, Verdict
 
@@ -36,22 +35,19 @@ class StudyAnswers(Answer, Generic[S, A, R]):
     def asked(
         cls,
         study: S,
-        out: str | Path | None = None,
-        jobs: Jobs = None,
-        progress: Progress | None = None,
-        say: Say | None = None,
+        given: Run,
         each: Callable[[str, A], None] | None = None,
         more: Callable[[], Mapping[str, Any]] = dict,
         begun: float | None = None,
     ) -> Self:
-        """Ask ``study`` (``study.frame.conduct``); what was kept in ``out`` before is not asked again.
+        """Ask ``study`` (``study.frame.conduct``); what was kept in ``given.out`` before is not asked again.
 
         ``more`` gives further fields of the answer, once all else is answered; ``begun``: since when the
         seconds count.
         """
         since = time.monotonic() if begun is None else begun
-        folder = None if out is None else Path(out)
-        found = conduct(study, folder, jobs, progress, cls.pieces, say, each)
+        folder = None if given.out is None else Path(given.out)
+        found = conduct(study, folder, given.jobs, given.progress, cls.pieces, given.say, each)
         fields = more()
         made = cls(study, found, time.monotonic() - since, folder, **fields)
         if folder is not None:

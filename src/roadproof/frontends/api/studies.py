@@ -25,7 +25,7 @@ from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
 from roadproof.frontends.report.sheet import Sheet, as_csv, as_rows
-from roadproof.frontends.settings import questions as settings
+from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords, RedundancyKeywords
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import numbers_of
@@ -111,7 +111,7 @@ def overlap(
     # What happens one after the other takes longer than what happens at once.
     usual = 9 if given.start == "any" else 6
     horizon = positive("horizon", usual if given.horizon is None else given.horizon, "s")
-    basis = replace(basis_of(home, given.effort, given.timeout, given.vehicles), horizon=horizon)
+    basis = replace(basis_of(home, given, given.vehicles), horizon=horizon)
     pairs = pairs_of(basis, home.among(among))
     if not pairs:
         raise UsageError(f"--among {among} leaves no pair: name at least two scenarios")
@@ -120,7 +120,7 @@ def overlap(
 
         prepare()  # what every worker needs is imported once, before they are forked
     study = Overlap(basis, pairs, Meeting(given.lanes, given.roles, given.start))
-    return Overlaps.asked(study, given.out, given.jobs, given.progress, given.say)
+    return Overlaps.asked(study, given)
 
 
 class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):
@@ -175,9 +175,9 @@ def order(among: Among = None, using: Definitions | None = None, **options: Unpa
     """Which scenarios imply which, in the sets of ``using`` (base, extA and ext). Raises as ``overlap``."""
     given = settings.Order.of(options)
     home = using or load("base", "extA", "ext")
-    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
+    basis = basis_of(home, given, given.vehicles)
     kinds = kinds_of(basis.specification, basis.set_names, home.among(among))
-    return Orders.asked(Ordering(basis, kinds), given.out, given.jobs, given.progress, given.say)
+    return Orders.asked(Ordering(basis, kinds), given)
 
 
 class Redundancies(StudyAnswers[Redundancy, ChangeFindings, redundancy_answers.Record]):
@@ -239,6 +239,6 @@ def redundancy(
     given = settings.Redundancy.of(options)
     home = using or load()
     every = numbers_of(home.alone)
-    basis = basis_of(home, given.effort, given.timeout, given.vehicles)
+    basis = basis_of(home, given, given.vehicles)
     study = Redundancy(basis, home.among(among) or every, given.whole)
-    return Redundancies.asked(study, given.out, given.jobs, given.progress, given.say)
+    return Redundancies.asked(study, given)

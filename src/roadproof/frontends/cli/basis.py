@@ -4,7 +4,7 @@ import argparse
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.numbers import read_hands
@@ -14,31 +14,17 @@ from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.option import Settings
 
 if TYPE_CHECKING:
-    from roadproof.analysis.study.pool import Progress, Say
     from roadproof.frontends.api.definitions import Definitions
     from roadproof.frontends.api.studied import StudyAnswers
-    from roadproof.runtime.executors import Executor
 
 A = TypeVar("A")
-
-
-class RunOptions(TypedDict):
-    """How much work, how many processes, where answers are kept, and who is told how far it is."""
-
-    effort: float
-    timeout: float | None
-    jobs: "Executor"
-    out: Path | None
-    vehicles: dict[str, str]
-    progress: "Progress"
-    say: "Say"
 
 
 def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definitions":
     """The definitions of ``sets``, readings and values. Raises ``InputError``, ``UsageError``."""
     from roadproof.frontends.api.definitions import Definitions
 
-    if any(restricting(args).values()):
+    if vars(args).get("preventable") or vars(args).get("unpreventable"):
         from roadproof.drivers.restriction import names_for
 
         args.specs = names_for(args.specs)
@@ -49,34 +35,6 @@ def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definiti
         library.select(name, options)
     values = given_values(args, library) if "params" in args else {}
     return Definitions(library.select(sets[0], options), tuple(sets), values)
-
-
-class DriverOptions(TypedDict):
-    """The driver models of --preventable and --unpreventable."""
-
-    preventable: str | None
-    unpreventable: str | None
-
-
-def restricting(args: argparse.Namespace) -> DriverOptions:
-    """What is asked of driver models; nothing where a command does not ask."""
-    return {
-        "preventable": getattr(args, "preventable", None),
-        "unpreventable": getattr(args, "unpreventable", None),
-    }
-
-
-def asking(args: argparse.Namespace, folder: Path | None) -> RunOptions:
-    """What every long question is told besides what is asked."""
-    return {
-        "effort": args.effort,
-        "timeout": args.timeout,
-        "jobs": read_hands(args),
-        "out": folder,
-        "vehicles": dict(getattr(args, "vehicles", None) or ()),
-        "progress": Counter(),
-        "say": warn,
-    }
 
 
 def study_keywords(args: argparse.Namespace, settings: type[Settings], folder: Path | None) -> Any:
@@ -98,12 +56,12 @@ def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[
     return hear
 
 
-def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]") -> int:
+def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]", pictures: bool = False) -> int:
     """JSON, what is written to be looked at, and the text of an answer; its exit code."""
     if args.json:
         write_json(found.as_data(), args.json)
     if args.out is not None:
-        found.add_files(getattr(args, "pictures", not getattr(args, "no_pictures", False)))
+        found.add_files(pictures)
     if args.json != "-":
         print(found)
         for line in found.supposed:

@@ -1,22 +1,13 @@
 """``roadproof catalogue``: what a catalogue of tests shows, what nobody tests, and drives for that."""
 
 import argparse
-from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import asking, evidence_folder, hand_over, read_definitions, restricting
-from roadproof.frontends.cli.numbers import add_effort_options
-from roadproof.frontends.cli.options import (
-    add_json_option,
-    add_parameter_option,
-    add_prevention_options,
-    add_specification_options,
-    chosen_sets,
-)
+from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.groups import Models, Workers
-from roadproof.frontends.settings.readers import whole
+from roadproof.frontends.settings.studies import Catalogue
 
 SUMMARY = "list which scenarios a catalogue of tests covers, and complete it"
 
@@ -63,58 +54,8 @@ with --gaps also whether a class of gaps is empty, with --explore how far drives
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="DIR|FILE", nargs="+", help="folders of tests, or tests")
-    add_specification_options(parser, several=True)
-    add_parameter_option(parser)
-    parser.add_argument("--among", metavar="N-M", help="only these scenarios, such as 1-8")
-    parser.add_argument("--no-classes", action="store_true", help="scenarios only")
-    parser.add_argument(
-        "--gaps", action="store_true", help="each class of gaps is to be tested too, or is proved empty"
-    )
-    parser.add_argument(
-        "--explore",
-        action="store_true",
-        help="also how drives of each class can begin, and what of it nobody tests",
-    )
-    for name, what in (("roles", "choices of roles"), ("lanes", "lanes"), ("start", "instants")):
-        text = f"look at all {what}, not only at what a test fixes"
-        parser.add_argument(f"--{name}", choices=("fixed", "any"), default="fixed", help=text)
-    parser.add_argument(
-        "--near",
-        type=float,
-        default=0.5,
-        metavar="X",
-        help="tests that show the same and begin within X m and m/s say the same (default: 0.5)",
-    )
-    parser.add_argument("--complete", type=Path, metavar="DIR", help="write drives for what nobody tests")
-    parser.add_argument(
-        "--objective",
-        choices=("any", "smooth", "margin", "mild", "severe", "short"),
-        help="with --complete: what the drives should be like (default: smooth)",
-    )
-    parser.add_argument(
-        "--spread",
-        type=whole("--spread", 1),
-        metavar="K",
-        help="with --complete: until each class has K tests, drives that begin far from those it has",
-    )
-    parser.add_argument(
-        "--format",
-        dest="formats",
-        metavar="FORMAT",
-        action="append",
-        help="with --complete: write the drives as openscenario, commonroad, highd, csv or opendrive too",
-    )
-    add_prevention_options(parser)
-    parser.add_argument(
-        "--drivers",
-        metavar="MODELS",
-        help="driver models that are asked what becomes of tests: careful,r157, or none (default: all)",
-    )
-    add_flags(parser, Models)
-    add_effort_options(parser, 60.0, "a drive")
-    add_flags(parser, Workers)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write matrix, JUnit, picture, evidence")
-    parser.add_argument("--no-pictures", action="store_true", help="with --out: no picture")
+    add_definition_options(parser, several=True)
+    add_flags(parser, Catalogue)
     add_json_option(parser)
 
 
@@ -127,22 +68,9 @@ def run(args: argparse.Namespace) -> int:
             raise UsageError(f"--{name.removesuffix('s')} is for drives that are made: add --complete DIR")
     formats_in(args.formats or "csv")
     home = read_definitions(args, chosen_sets(args))
-    found = catalogue(
-        *args.paths,
-        among=args.among,
-        using=home,
-        classes=not args.no_classes,
-        gaps=args.gaps,
-        explore=args.explore,
-        roles=args.roles,
-        lanes=args.lanes,
-        start=args.start,
-        near=args.near,
-        drivers=_drivers(args.drivers),
-        **restricting(args),
-        **asking(args, evidence_folder(args.out, args.json)),
-    )
-    code = hand_over(args, found)
+    given = study_keywords(args, Catalogue, evidence_folder(args.out, args.json))
+    found = catalogue(*args.paths, using=home, **given)
+    code = hand_over(args, found, args.pictures)
     if args.complete is not None:
         completed = found.complete(
             args.complete,
@@ -156,13 +84,3 @@ def run(args: argparse.Namespace) -> int:
         if args.json != "-":
             print(completed)
     return code
-
-
-def _drivers(text: str | None) -> list[str] | None:
-    """The driver models; None for all. Raises ``UsageError``."""
-    if text is None or text == "none":
-        return None if text is None else []
-    names = [name.strip() for name in text.split(",")]
-    if not all(names):
-        raise UsageError(f"--drivers {text}: write names separated by commas, such as careful,r157, or none")
-    return names

@@ -6,7 +6,7 @@ from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_definition_options, add_json_option
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.questions import Classify
+from roadproof.frontends.settings.studies import Classify
 
 SUMMARY = "partition scenarios into exclusive classes, and count them"
 
@@ -41,4 +41,5 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("--on and --no-shares: shares are counted on recordings; leave out one of the two")
     folder = evidence_folder(args.out, args.json)
     home = read_definitions(args, [args.set_name])
-    return hand_over(args, classify(args.among, home, **study_keywords(args, Classify, folder)))
+    found = classify(args.among, home, **study_keywords(args, Classify, folder))
+    return hand_over(args, found, args.pictures)

@@ -6,7 +6,7 @@ from roadproof.frontends.cli.basis import hand_over, read_definitions, study_key
 from roadproof.frontends.cli.options import add_definition_options, add_json_option
 from roadproof.frontends.cli.progress import Counter, tell
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.questions import Coverage
+from roadproof.frontends.settings.studies import Coverage
 
 SUMMARY = "find disturbances that a spec set misses, or prove it has no gap"
 
@@ -43,4 +43,4 @@ def run(args: argparse.Namespace) -> int:
     found = coverage(home, tell=tell, **study_keywords(args, Coverage, args.out))
     if args.out is not None and args.pictures:
         found.draw_beside(args.jobs, Counter())
-    return hand_over(args, found)
+    return hand_over(args, found, args.pictures)

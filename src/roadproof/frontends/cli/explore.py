@@ -3,12 +3,11 @@
 import argparse
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, restricting
-from roadproof.frontends.cli.numbers import read_hands
+from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
-from roadproof.frontends.cli.progress import Counter, tell, warn
+from roadproof.frontends.cli.progress import tell
 from roadproof.frontends.cli.what import add_what_arguments, some_or_all
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Explore
 
 SUMMARY = "find the parameter values for which a scenario has a drive"
@@ -51,13 +50,14 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.restricting import restricted
 
     what, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
-    home = restricted(read_definitions(args, chosen_sets(args)), what=what, **restricting(args))
+    given = Explore.of(study_keywords(args, Explore, evidence_folder(args.out, args.json)))
+    home = read_definitions(args, chosen_sets(args))
+    home = restricted(home, given.preventable, given.unpreventable, what=what)
     for name, _, _ in ranges:
         if name in home.values:
             raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")
-    asked = explorables(home, what, Explore.of(read_keywords(args, Explore)), ranges)
-    folder = evidence_folder(args.out, args.json)
-    return hand_over(args, explore_all(asked, folder, read_hands(args), Counter(), warn, tell))
+    asked = explorables(home, what, given, ranges)
+    return hand_over(args, explore_all(asked, given, tell), args.pictures)
 
 
 def _varied(text: str) -> tuple[str, str, str]:

@@ -8,7 +8,6 @@ from roadproof.frontends.settings.flags import mark_rare
 from roadproof.frontends.settings.readers import decimal
 
 if TYPE_CHECKING:
-    from roadproof.runtime.budget import Effort
     from roadproof.runtime.executors import Executor
 
 
@@ -33,13 +32,6 @@ def add_effort_options(
             "so (default: 60 for each unit of --effort, at least 600)",
         )
     )
-
-
-def read_effort(args: argparse.Namespace) -> "Effort":
-    """What ``--effort`` and ``--timeout`` allow for one search."""
-    from roadproof.runtime.budget import Effort
-
-    return Effort(args.effort, args.timeout)
 
 
 def read_hands(args: argparse.Namespace) -> "Executor":

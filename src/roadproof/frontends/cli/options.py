@@ -81,16 +81,6 @@ def add_parameter_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_prevention_options(parser: argparse.ArgumentParser, what: str = "scenarios") -> None:
-    """``--preventable`` and ``--unpreventable``, which ``cli.basis`` reads; ``what`` is what begins so."""
-    for side, does in (("preventable", "prevents"), ("unpreventable", "cannot prevent")):
-        parser.add_argument(
-            f"--{side}",
-            metavar="MODEL",
-            help=f"only {what} whose first collision a driver model (careful) {does}",
-        )
-
-
 def add_json_option(parser: argparse.ArgumentParser) -> None:
     """``--json FILE``, where - is stdout; see ``write_json``."""
     section(parser, "output").add_argument(

@@ -5,7 +5,7 @@ import argparse
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.questions import Order
+from roadproof.frontends.settings.studies import Order
 
 SUMMARY = "decide which scenarios imply which"
 
@@ -31,6 +31,5 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import order
 
     sets = list(dict.fromkeys(chosen_sets(args, "base,extA,ext")))
-    return hand_over(
-        args, order(args.among, read_definitions(args, sets), **study_keywords(args, Order, args.out))
-    )
+    found = order(args.among, read_definitions(args, sets), **study_keywords(args, Order, args.out))
+    return hand_over(args, found, args.pictures)

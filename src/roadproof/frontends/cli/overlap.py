@@ -5,7 +5,7 @@ import argparse
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.questions import Overlap
+from roadproof.frontends.settings.studies import Overlap
 
 SUMMARY = "decide for each pair of scenarios whether both can hold at once"
 
@@ -36,4 +36,5 @@ def run(args: argparse.Namespace) -> int:
 
     folder = evidence_folder(args.out, args.json)
     home = read_definitions(args, chosen_sets(args))
-    return hand_over(args, overlap(args.among, home, **study_keywords(args, Overlap, folder)))
+    found = overlap(args.among, home, **study_keywords(args, Overlap, folder))
+    return hand_over(args, found, args.pictures)

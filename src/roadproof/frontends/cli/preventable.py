@@ -4,12 +4,11 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import asking, hand_over, read_definitions
-from roadproof.frontends.cli.numbers import add_effort_options
-from roadproof.frontends.cli.options import add_json_option, add_parameter_option, add_specification_options
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.options import add_definition_options, add_json_option
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.groups import Sharing
-from roadproof.frontends.settings.readers import whole
+from roadproof.frontends.settings.readers import flat
+from roadproof.frontends.settings.studies import Preventable
 
 SUMMARY = "map the initial values from which a driver prevents a collision"
 
@@ -37,32 +36,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "manoeuvre", metavar="MANOEUVRE", help="cut-in, cut-out, deceleration; or a scenario: 1, 2 or 4"
     )
-    parser.add_argument(
-        "--model",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="careful, r157, eu1426, rss; by name only: fsm",
-    )
-    parser.add_argument(
-        "--at",
-        metavar="NAME=VALUE[,…]",
-        action="append",
-        default=[],
-        help="an initial value; several make several plates",
-    )
-    for word, what in (("along", "each line runs along"), ("across", "differs from line to line")):
-        parser.add_argument(f"--{word}", metavar="NAME=LOW:HIGH", help=f"the range of the value that {what}")
-    parser.add_argument(
-        "--lines", type=whole("--lines", 2), default=100, metavar="K", help="lines of a plate (default: 100)"
-    )
-    parser.add_argument("--no-lemmas", action="store_true", help="prove no lemmas")
-    add_specification_options(parser)
-    add_parameter_option(parser)
-    add_effort_options(parser, 60.0, "a lemma")
-    add_flags(parser, Sharing)
-    parser.add_argument("--out", type=Path, metavar="DIR", help="write drives, certificates, CSV, pictures")
-    parser.add_argument("--no-pictures", action="store_true", help="with --out: no pictures")
+    add_definition_options(parser)
+    add_flags(parser, Preventable)
     add_json_option(parser)
 
 
@@ -74,34 +49,11 @@ def run(args: argparse.Namespace) -> int:
     if Path(DRIVERS) not in args.specs:
         args.specs = [Path(DRIVERS), *args.specs]
     kind = MANOEUVRES[manoeuvre_of(args.manoeuvre)[0]]
-    models = [name.strip() for text in args.model for name in text.split(",")]
-    told = asking(args, args.out)
-    found = preventable(
-        args.manoeuvre,
-        models,
-        dict(_named("--at", text) for text in args.at),
-        _range("--along", args.along, kind.line),
-        _range("--across", args.across, kind.across),
-        args.lines,
-        not args.no_lemmas,
-        read_definitions(args, [args.set_name]),
-        told["effort"],
-        told["timeout"],
-        told["out"],
-        told["jobs"],
-        told["progress"],
-        told["say"],
-    )
-    return hand_over(args, found)
-
-
-def _named(option: str, text: str) -> tuple[str, list[str]]:
-    name, equals, value = text.partition("=")
-    if not equals or not value.strip():
-        raise UsageError(
-            f"{option} {text}: write NAME=VALUE, or several with commas, such as Ve0=60km/h,90km/h"
-        )
-    return name.strip(), [x.strip() for x in value.split(",")]
+    given = study_keywords(args, Preventable, args.out)
+    given |= {"along": _range("--along", args.along, kind.line)}
+    given |= {"across": _range("--across", args.across, kind.across)}
+    home = read_definitions(args, [args.set_name])
+    return hand_over(args, preventable(args.manoeuvre, flat(args.models or ()), home, **given), args.pictures)
 
 
 def _range(option: str, text: str | None, name: str) -> tuple[str, str] | None:

@@ -5,7 +5,7 @@ import argparse
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_definition_options, add_json_option
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.questions import Redundancy
+from roadproof.frontends.settings.studies import Redundancy
 
 SUMMARY = "find the parts of scenarios that can be left out"
 

@@ -3,13 +3,12 @@
 import argparse
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.cli.basis import in_order, read_definitions
-from roadproof.frontends.cli.numbers import read_hands
+from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets, write_json
-from roadproof.frontends.cli.progress import Counter, clear, tell_stage, warn
+from roadproof.frontends.cli.progress import clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.cli.what import add_what_arguments, some_or_all
-from roadproof.frontends.settings.flags import add_flags, mark_rare, read_keywords, section
+from roadproof.frontends.settings.flags import add_flags, mark_rare, section
 from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
 
@@ -51,14 +50,14 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.report.witness import as_line
 
     what = some_or_all(args)
-    given = Witness.of(read_keywords(args, Witness))
+    given = Witness.of(study_keywords(args, Witness, args.out))
     searches = searches_for(what, read_definitions(args, chosen_sets(args)), given)
     named = WitnessStudy(tuple(searches)).named
-    pictures, plain = given.pictures, args.json != "-"
+    plain = args.json != "-"
     written: list[str] = []
 
     def show(name: str, outcome: "Outcome") -> None:
-        files = [] if args.out is None else files_written(name, outcome, pictures)
+        files = [] if args.out is None else files_written(name, outcome, given.pictures)
         written.extend(files)
         clear()
         told = f"\n  written to {args.out}: {', '.join(files)}" if files else ""
@@ -67,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
 
     each = in_order(tuple(named), show) if plain else None
     with listening(tell_stage if len(named) == 1 else None):
-        found = witness_all(searches, args.out, pictures, read_hands(args), Counter(), warn, each)
+        found = witness_all(searches, given, each)
     if args.out is not None and not written and plain:
         print(f"nothing is written to {args.out}, as there is no drive")
     if args.json:

@@ -57,14 +57,25 @@ def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
     return option(None, f"--{side}", "MODEL", help=text, rare=True)
 
 
-def scenarios_such_as(example: str = "1,3-8") -> Any:
-    """``--among``, which is the first argument in Python."""
-    return option(None, "--among", "N-M", help=f"only these scenarios, such as {example}", keyword=False)
+def scenarios_such_as(example: str = "1,3-8", keyword: bool = False) -> Any:
+    """``--among``, which is the first argument in Python where it is no ``keyword``."""
+    return option(None, "--among", "N-M", help=f"only these scenarios, such as {example}", keyword=keyword)
 
 
 def same_or_any(flag: str, what: str) -> Any:
     """A choice between the same for both scenarios, and any."""
     return option("same", flag, help=f"{what} (default: same)", choices=("same", "any"))
+
+
+def fixed_or_any(flag: str, what: str) -> Any:
+    """A choice between ``what`` a test fixes, and any."""
+    text = f"look at all {what}, not only at those that a test fixes"
+    return option("fixed", flag, help=text, choices=("fixed", "any"))
+
+
+def with_complete(flag: str, metavar: str | None, what: str, **more: Any) -> Any:
+    """An option of the drives that ``--complete`` writes."""
+    return option(None, flag, metavar, help=f"with --complete: {what}", group="output", keyword=False, **more)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,6 +212,21 @@ class Workers(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Listeners(Settings):
+    """Who is told how far the work is, and of kept answers that do not count."""
+
+    progress: Progress | None = option(None)
+    say: Say | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run(Workers, Listeners):
+    """How a long question is worked on, and where its evidence is kept."""
+
+    out: str | Path | None = folder_for("certificates and drives")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Sharing(Workers):
     """Several runs, or a cluster, that do the work; from Python ``jobs`` says this."""
 
@@ -252,14 +278,6 @@ class Sharing(Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Listeners(Settings):
-    """Who is told how far the work is, and of kept answers that do not count."""
-
-    progress: Progress | None = option(None)
-    say: Say | None = option(None)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Prevention(Settings):
     """Driver models that restrict the question."""
 
@@ -268,7 +286,5 @@ class Prevention(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Survey(Models, Budget, Sharing, Listeners):
+class Survey(Models, Budget, Sharing, Run):
     """Options of every question about several scenarios."""
-
-    out: str | Path | None = folder_for("certificates and drives")

@@ -5,18 +5,26 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypedDict
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from roadproof.analysis.study.pool import Progress, Say
     from roadproof.engines.search.question import Engine, Objective
+    from roadproof.evidence.answers.catalogue_index import Look
     from roadproof.evidence.answers.monitor import View
     from roadproof.evidence.drive_file import DriveFile
     from roadproof.evidence.judged import JudgedDrive
     from roadproof.frontends.api.checking import Kernel, Solver
     from roadproof.frontends.api.definitions import Among, What
     from roadproof.frontends.api.phrases import Term
-    from roadproof.frontends.settings.value_types import RoadLike, Same, Vehicles
+    from roadproof.frontends.settings.value_types import (
+        Assumed,
+        Expected,
+        ProofEngine,
+        RoadLike,
+        Same,
+        Vehicles,
+    )
     from roadproof.library.values import Number
     from roadproof.recordings.simulate.traffic import Ramp
     from roadproof.runtime.executors import Jobs
@@ -42,6 +50,7 @@ class WitnessKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
     jobs: Jobs
+    out: str | Path | None
     effort: float
     timeout: float | None
     preventable: str | None
@@ -57,7 +66,6 @@ class WitnessKeywords(TypedDict, total=False):
     collisions: bool
     objective: Objective
     count: int
-    out: str | Path | None
     pictures: bool
 
 
@@ -65,6 +73,7 @@ class ExploreKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
     jobs: Jobs
+    out: str | Path | None
     effort: float
     timeout: float | None
     preventable: str | None
@@ -84,7 +93,35 @@ class ExploreKeywords(TypedDict, total=False):
     greatest: Term | None
     when: What | None
     precision: Number | None
+
+
+class ProveKeywords(TypedDict, total=False):
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
     out: str | Path | None
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
+    declared: bool
+    expect: Expected
+    assume: Assumed | None
+    engine: ProofEngine
+    road: RoadLike | None
+    horizon: Number
+    dt: Number | None
+    drive: bool
+    kernel: Kernel | None
+
+
+class AskKeywords(TypedDict, total=False):
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    out: str | Path | None
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
 
 
 class OverlapKeywords(TypedDict, total=False):
@@ -93,10 +130,10 @@ class OverlapKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
     jobs: Jobs
+    out: str | Path | None
     effort: float
     timeout: float | None
     vehicles: Vehicles
-    out: str | Path | None
     lanes: Same
     roles: Same
     start: Same
@@ -107,20 +144,20 @@ class OrderKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
     jobs: Jobs
+    out: str | Path | None
     effort: float
     timeout: float | None
     vehicles: Vehicles
-    out: str | Path | None
 
 
 class RedundancyKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
     jobs: Jobs
+    out: str | Path | None
     effort: float
     timeout: float | None
     vehicles: Vehicles
-    out: str | Path | None
     whole: bool
 
 
@@ -130,10 +167,10 @@ class CoverageKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
     jobs: Jobs
+    out: str | Path | None
     effort: float
     timeout: float | None
     vehicles: Vehicles
-    out: str | Path | None
     wider: str | None
     roads: Iterable[RoadLike] | None
     needed: bool
@@ -146,12 +183,47 @@ class ClassifyKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
     jobs: Jobs
+    out: str | Path | None
     effort: float
     timeout: float | None
     vehicles: Vehicles
-    out: str | Path | None
     on: str | Path | None
     shares: bool
+
+
+class PreventableKeywords(TypedDict, total=False):
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    out: str | Path | None
+    effort: float
+    timeout: float | None
+    at: Mapping[str, Number | Sequence[Number]] | None
+    along: tuple[Number, Number] | None
+    across: tuple[Number, Number] | None
+    lines: int
+    lemmas: bool
+
+
+class CatalogueKeywords(TypedDict, total=False):
+    preventable: str | None
+    unpreventable: str | None
+    progress: Progress | None
+    say: Say | None
+    jobs: Jobs
+    out: str | Path | None
+    effort: float
+    timeout: float | None
+    vehicles: Vehicles
+    among: Among
+    classes: bool
+    gaps: bool
+    explore: bool
+    roles: Look
+    lanes: Look
+    start: Look
+    near: float
+    drivers: Iterable[str] | None
 
 
 class MonitorKeywords(TypedDict, total=False):

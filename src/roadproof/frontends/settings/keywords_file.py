@@ -3,17 +3,19 @@
 ``python -m roadproof.frontends.settings.keywords_file`` makes the file again after a change.
 """
 
+import ast
 import dataclasses
 import inspect
 import re
 from pathlib import Path
 from typing import TypeGuard
 
-from roadproof.frontends.settings import evidence, groups, questions, recordings
+from roadproof.frontends.settings import evidence, groups, questions, recordings, studies
 from roadproof.frontends.settings.option import Settings
 
-MODULES = (questions, recordings, evidence)
+MODULES = (questions, studies, recordings, evidence)
 FILE = Path(__file__).with_name("keywords.py")
+_WIDEST = 111  # characters of a line with its end
 _HEAD = '''"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
 
 from __future__ import annotations
@@ -45,14 +47,21 @@ def text() -> str:
         parts.append(f"\n\nclass {question.__name__}Keywords(TypedDict, total=False):\n{''.join(lines)}")
     imports = dict[str, set[str]]()
     for module in (groups, *MODULES):
-        for line in re.findall(r"^ *(from \S+ import [^\n(]+)$", inspect.getsource(module), re.MULTILINE):
-            _, home, _, names = line.split(" ", 3)
-            imports.setdefault(home, set()).update({*names.split(", ")} & used)
+        for node in ast.walk(ast.parse(inspect.getsource(module))):
+            if isinstance(node, ast.ImportFrom) and node.module not in (None, groups.__name__):
+                imports.setdefault(node.module, set()).update({x.name for x in node.names} & used)
     ordered = sorted((x for x in imports if imports[x]), key=lambda x: (x.startswith("roadproof"), x))
-    lines = [f"    from {home} import {', '.join(sorted(imports[home]))}\n" for home in ordered]
+    lines = [_import_line(home, sorted(imports[home])) for home in ordered]
     inner = [x for x in lines if " roadproof" in x]
     outer = [x for x in lines if " roadproof" not in x]
     return _HEAD + "".join([*outer, *(["\n"] if outer and inner else []), *inner]) + "".join(parts)
+
+
+def _import_line(home: str, names: list[str]) -> str:
+    line = f"    from {home} import {', '.join(names)}\n"
+    if len(line) <= _WIDEST:
+        return line
+    return f"    from {home} import (\n" + "".join(f"        {name},\n" for name in names) + "    )\n"
 
 
 if __name__ == "__main__":

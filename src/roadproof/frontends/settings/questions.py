@@ -3,35 +3,45 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.groups import (
     Budget,
-    Listeners,
+    Models,
     Prevention,
+    Run,
     SearchPlace,
     Sharing,
     Solver,
-    Survey,
     Workers,
-    driver_model,
     effort_for,
     folder_for,
     pictures_of,
-    same_or_any,
-    scenarios_such_as,
 )
 from roadproof.frontends.settings.option import option
-from roadproof.frontends.settings.readers import seconds, text_or_none, whole
+from roadproof.frontends.settings.readers import (
+    named,
+    seconds,
+    text_or_none,
+    whole,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from roadproof.engines.search.question import Objective
+    from roadproof.frontends.api.checking import Kernel
     from roadproof.frontends.api.definitions import What
     from roadproof.frontends.api.phrases import Term
-    from roadproof.frontends.settings.value_types import RoadLike, Same
+    from roadproof.frontends.settings.value_types import (
+        Assumed,
+        Expected,
+        ProofEngine,
+        RoadLike,
+        Vehicles,
+    )
     from roadproof.library.values import Number
 
 
@@ -43,7 +53,7 @@ class Compare(SearchPlace, Solver, Budget, Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Listeners):
+class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
     """Options of ``witness``."""
 
     objective: Objective = option(
@@ -66,7 +76,7 @@ class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Listeners):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Listeners):
+class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
     """Options of ``explore``."""
 
     vary: Mapping[str, tuple[Number, Number]] | None = option(
@@ -104,89 +114,77 @@ class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Listeners):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Overlap(Survey, Prevention):
-    """Options of ``overlap``."""
+class Prove(Models, Budget, Run):
+    """Options of ``prove``."""
 
-    among: str | None = scenarios_such_as()
-    lanes: Same = same_or_any("--lanes", "L is the same lane in both scenarios, or any")
-    roles: Same = same_or_any("--roles", "vehicles have the same roles in both, or any")
-    start: Same = same_or_any("--start", "both start at time 0, or one at any later time")
-    horizon: Number | None = option(
+    file: Path | None = option(
+        None, "--claims", "FILE", help="read claims from a file, one a paragraph", read=Path, keyword=False
+    )
+    declared: bool = option(
+        False, "--declared", help="use the declared values of all other parameters, not all values"
+    )
+    expect: Expected = option(
+        "PROVED",
+        "--expect",
+        help="verdict that you expect of your own claims (default: PROVED)",
+        choices=("PROVED", "REFUTED"),
+        rare=True,
+    )
+    assume: Assumed | None = option(
         None,
+        "--assume",
+        help="assume that vehicles move: places and speeds are continuous",
+        choices=("motion",),
+    )
+    vehicles: Vehicles = option(
+        None,
+        "--vehicle",
+        "[NAME=]MODEL",
+        help="with --assume motion, smt or milp: limits of a model, for all vehicles or for NAME",
+        group="search",
+        read=named(""),
+        gather=dict,
+    )
+    engine: ProofEngine = option(
+        "dense",
+        "--engine",
+        help="dense: for all time (default); smt, milp: drives up to a horizon",
+        group="search",
+        choices=("dense", "smt", "milp"),
+    )
+    road: RoadLike | None = option(
+        None, "--road", "R", help="with smt, milp: reference road, .toml or .xodr file", group="search"
+    )
+    horizon: Number = option(
+        Fraction(6),
         "--horizon",
         "S",
-        help="seconds to search (default: 6; 9 with --start any)",
+        help="with smt, milp: seconds to search (default: 6)",
         group="search",
         read=seconds("--horizon"),
     )
-    effort: float = effort_for("a drive", 60.0)
-    out: str | Path | None = folder_for("evidence, CSV, JSON and heat map")
-    pictures: bool = pictures_of("heat map", command_line_only=True)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Order(Survey):
-    """Options of ``order``."""
-
-    among: str | None = scenarios_such_as()
-    effort: float = effort_for("a drive", 120.0)
-    out: str | Path | None = folder_for("certificates, drives, DOT and SVG")
-    pictures: bool = pictures_of("picture", command_line_only=True)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Redundancy(Survey):
-    """Options of ``redundancy``."""
-
-    among: str | None = scenarios_such_as()
-    whole: bool = option(False, "--whole", help="include the parts of simple predicates")
-    effort: float = effort_for("a drive", 20.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Coverage(Survey, Prevention):
-    """Options of ``coverage``."""
-
-    preventable: str | None = driver_model("preventable", "prevents", "drives")
-    unpreventable: str | None = driver_model("unpreventable", "cannot prevent", "drives")
-    wider: str | None = option(
+    dt: Number | None = option(
         None,
-        "--wider",
+        "--dt",
         "S",
-        help="set that misses nothing (default: complete, if it extends the set)",
-    )
-    roads: Iterable[RoadLike] | None = option(
-        None,
-        "--road",
-        "R",
-        help="road to search; may be repeated (default: main-2, then main-3)",
+        help="with smt, milp: seconds between samples (default: the coarsest that fits)",
         group="search",
-        gather=list,
+        read=seconds("--dt"),
+        rare=True,
     )
-    needed: bool = option(
-        False, "--needed", help="if the set has no gap: find a drive for each definition that it needs"
+    drive: bool = option(
+        True, "--no-drive", help="search no drive that refutes a claim", group="search", rare=True
     )
-    on: str | Path | None = option(
-        None,
-        "--on",
-        "DIR",
-        help="count the classes of gaps in these recordings",
-        read=Path,
+    kernel: Kernel | None = option(
+        None, "--kernel", help="also check each proof with the kernel of Coq, by coqc", choices=("coq",)
     )
-    effort: float = effort_for("a search", 10.0)
-    out: str | Path | None = folder_for("certificates, drives and pictures")
-    pictures: bool = pictures_of(command_line_only=True)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Classify(Survey, Prevention):
-    """Options of ``classify``."""
-
-    among: str | None = scenarios_such_as("1-8")
-    on: str | Path | None = option(
-        None, "--on", "DIR", help="recordings for the shares (default: simulated traffic)", read=Path
+    effort: float = effort_for("a claim", 60.0)
+    out: str | Path | None = folder_for("certificates and an index")
+    verbose: bool = option(
+        False,
+        "--verbose",
+        help="print a line for every claim of the list",
+        group="output",
+        keyword=False,
+        rare=True,
     )
-    shares: bool = option(True, "--no-shares", help="compute no shares")
-    effort: float = effort_for("a drive or a proof", 60.0)
-    out: str | Path | None = folder_for("classes.spec, claims, evidence, picture")
-    pictures: bool = pictures_of("picture", command_line_only=True)

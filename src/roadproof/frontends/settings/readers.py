@@ -1,7 +1,7 @@
 """Readers of the texts behind flags; each raises ``UsageError`` by the name of its option."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from typing import Any
 
@@ -97,3 +97,26 @@ def frame_range(option: str) -> Callable[[str], tuple[int, int]]:
 def text_or_none(text: str) -> str | None:
     """The text, or None where it is empty."""
     return text or None
+
+
+def several(option: str, example: str) -> Callable[[str], tuple[str, list[str]]]:
+    """A reader of ``NAME=VALUE`` with one value or several, as a pair."""
+
+    def read(text: str) -> tuple[str, list[str]]:
+        name, equals, value = text.partition("=")
+        if not equals or not value.strip():
+            raise UsageError(f"{option} {text}: write NAME=VALUE, or several with commas, such as {example}")
+        return name.strip(), [x.strip() for x in value.split(",")]
+
+    return read
+
+
+def driver_models_or_none(option: str) -> Callable[[str], tuple[str, ...]]:
+    """A reader of names of driver models with commas between them; none stands for no model."""
+    read = items_of(option, "names", ", such as careful,r157, or none")
+    return lambda text: () if text == "none" else read(text)
+
+
+def flat(lists: Iterable[Iterable[str]]) -> list[str]:
+    """The texts of several lists in one."""
+    return [text for texts in lists for text in texts]

@@ -14,3 +14,12 @@ Vehicles: TypeAlias = VehicleLike | Mapping[str, VehicleLike] | None
 
 Same: TypeAlias = Literal["same", "any"]
 """Whether two scenarios have the same lanes, roles or start, or any."""
+
+ProofEngine: TypeAlias = Literal["dense", "smt", "milp"]
+"""In dense time for all time, or on a grid up to a horizon."""
+
+Expected: TypeAlias = Literal["PROVED", "REFUTED"]
+"""The verdict that is expected of a claim."""
+
+Assumed: TypeAlias = Literal["motion"]
+"""What claims may be asked under."""

@@ -1,0 +1,234 @@
+"""The options of each question that takes long, about many scenarios."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.frontends.settings.groups import (
+    Budget,
+    Models,
+    Prevention,
+    Run,
+    Sharing,
+    Survey,
+    driver_model,
+    effort_for,
+    fixed_or_any,
+    folder_for,
+    pictures_of,
+    same_or_any,
+    scenarios_such_as,
+    with_complete,
+)
+from roadproof.frontends.settings.option import option
+from roadproof.frontends.settings.readers import (
+    driver_models_or_none,
+    flat,
+    items_of,
+    seconds,
+    several,
+    whole,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from roadproof.engines.search.question import Objective
+    from roadproof.evidence.answers.catalogue_index import Look
+    from roadproof.frontends.api.definitions import Among
+    from roadproof.frontends.settings.value_types import RoadLike, Same
+    from roadproof.library.values import Number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ask(Survey):
+    """Options of ``ask``."""
+
+    among: str | None = scenarios_such_as()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Overlap(Survey, Prevention):
+    """Options of ``overlap``."""
+
+    among: str | None = scenarios_such_as()
+    lanes: Same = same_or_any("--lanes", "L is the same lane in both scenarios, or any")
+    roles: Same = same_or_any("--roles", "vehicles have the same roles in both, or any")
+    start: Same = same_or_any("--start", "both start at time 0, or one at any later time")
+    horizon: Number | None = option(
+        None,
+        "--horizon",
+        "S",
+        help="seconds to search (default: 6; 9 with --start any)",
+        group="search",
+        read=seconds("--horizon"),
+    )
+    effort: float = effort_for("a drive", 60.0)
+    out: str | Path | None = folder_for("evidence, CSV, JSON and heat map")
+    pictures: bool = pictures_of("heat map", command_line_only=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order(Survey):
+    """Options of ``order``."""
+
+    among: str | None = scenarios_such_as()
+    effort: float = effort_for("a drive", 120.0)
+    out: str | Path | None = folder_for("certificates, drives, DOT and SVG")
+    pictures: bool = pictures_of("picture", command_line_only=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Redundancy(Survey):
+    """Options of ``redundancy``."""
+
+    among: str | None = scenarios_such_as()
+    whole: bool = option(False, "--whole", help="include the parts of simple predicates")
+    effort: float = effort_for("a drive", 20.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coverage(Survey, Prevention):
+    """Options of ``coverage``."""
+
+    preventable: str | None = driver_model("preventable", "prevents", "drives")
+    unpreventable: str | None = driver_model("unpreventable", "cannot prevent", "drives")
+    wider: str | None = option(
+        None,
+        "--wider",
+        "S",
+        help="set that misses nothing (default: complete, if it extends the set)",
+    )
+    roads: Iterable[RoadLike] | None = option(
+        None,
+        "--road",
+        "R",
+        help="road to search; may be repeated (default: main-2, then main-3)",
+        group="search",
+        gather=list,
+    )
+    needed: bool = option(
+        False, "--needed", help="if the set has no gap: find a drive for each definition that it needs"
+    )
+    on: str | Path | None = option(
+        None,
+        "--on",
+        "DIR",
+        help="count the classes of gaps in these recordings",
+        read=Path,
+    )
+    effort: float = effort_for("a search", 10.0)
+    out: str | Path | None = folder_for("certificates, drives and pictures")
+    pictures: bool = pictures_of(command_line_only=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Classify(Survey, Prevention):
+    """Options of ``classify``."""
+
+    among: str | None = scenarios_such_as("1-8")
+    on: str | Path | None = option(
+        None, "--on", "DIR", help="recordings for the shares (default: simulated traffic)", read=Path
+    )
+    shares: bool = option(True, "--no-shares", help="compute no shares")
+    effort: float = effort_for("a drive or a proof", 60.0)
+    out: str | Path | None = folder_for("classes.spec, claims, evidence, picture")
+    pictures: bool = pictures_of("picture", command_line_only=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Preventable(Budget, Sharing, Run):
+    """Options of ``preventable``."""
+
+    models: Sequence[str] = option(
+        (),
+        "--model",
+        "NAME",
+        help="driver model: careful, r157, eu1426, rss or fsm (default: all but fsm)",
+        read=items_of("--model", "names", ", such as careful,r157"),
+        gather=flat,
+        keyword=False,
+    )
+    at: Mapping[str, Number | Sequence[Number]] | None = option(
+        None,
+        "--at",
+        "NAME=VALUE[,…]",
+        help="fix an initial value; several values make several plates",
+        read=several("--at", "Ve0=60km/h,90km/h"),
+        gather=dict,
+    )
+    along: tuple[Number, Number] | None = option(
+        None, "--along", "NAME=LOW:HIGH", help="range of the value along each line"
+    )
+    across: tuple[Number, Number] | None = option(
+        None, "--across", "NAME=LOW:HIGH", help="range of the value across the lines"
+    )
+    lines: int = option(100, "--lines", "K", help="lines of a plate (default: 100)", read=whole("--lines", 2))
+    lemmas: bool = option(True, "--no-lemmas", help="prove no lemmas")
+    effort: float = effort_for("a lemma", 60.0)
+    out: str | Path | None = folder_for("drives, certificates, CSV, pictures")
+    pictures: bool = pictures_of(command_line_only=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Catalogue(Models, Budget, Run, Prevention):
+    """Options of ``catalogue``."""
+
+    among: Among = scenarios_such_as("1-8", keyword=True)
+    classes: bool = option(True, "--no-classes", help="ask about scenarios only")
+    gaps: bool = option(
+        False, "--gaps", help="also ask for a test of each class of gaps that is not proved empty"
+    )
+    explore: bool = option(
+        False, "--explore", help="also ask how drives of each class can begin, and which part no test covers"
+    )
+    roles: Look = fixed_or_any("--roles", "choices of roles")
+    lanes: Look = fixed_or_any("--lanes", "lanes")
+    start: Look = fixed_or_any("--start", "instants")
+    near: float = option(
+        0.5,
+        "--near",
+        "X",
+        help="tests that show the same and begin within X m and m/s are duplicates (default: 0.5)",
+        read=float,
+        rare=True,
+    )
+    drivers: Iterable[str] | None = option(
+        None,
+        "--drivers",
+        "MODELS",
+        help="driver models that drive each test: careful,r157, or none (default: all)",
+        read=driver_models_or_none("--drivers"),
+    )
+    effort: float = effort_for("a drive", 60.0)
+    out: str | Path | None = folder_for("matrix, JUnit, picture, evidence")
+    pictures: bool = pictures_of("picture", command_line_only=True)
+    complete: Path | None = option(
+        None,
+        "--complete",
+        "DIR",
+        help="write a drive for each scenario and class without a test",
+        group="output",
+        read=Path,
+        keyword=False,
+    )
+    objective: Objective | None = with_complete(
+        "--objective",
+        None,
+        "what the drives should be like (default: smooth)",
+        choices=("any", "smooth", "margin", "mild", "severe", "short"),
+    )
+    spread: int | None = with_complete(
+        "--spread",
+        "K",
+        "write drives far from the tests until each class has K tests",
+        read=whole("--spread", 1),
+    )
+    formats: Sequence[str] | None = with_complete(
+        "--format",
+        "FORMAT",
+        "also write openscenario, commonroad, highd, csv or opendrive",
+        gather=list,
+    )
