@@ -42,7 +42,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """Show data as tables, name files outside docs/ instead of linking to them, give blocks of files titles."""
+    """Show data as tables, name files outside docs/ instead of linking to them, title blocks of files."""
     here = Path(config.docs_dir, page.file.src_uri).parent
     if here.name == "adr" or page.file.name in _FOR_DEVELOPERS:
         page.meta["search"] = {"boost": 0.2}  # the search lists guides for users first
