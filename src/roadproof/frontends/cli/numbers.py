@@ -1,37 +1,12 @@
-"""Numbers on the command line: how much work, how long, how many processes; one meaning everywhere."""
+"""Executors of long questions, by the flags that say who does the work."""
 
 import argparse
 from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
-from roadproof.frontends.settings.flags import mark_rare
-from roadproof.frontends.settings.readers import decimal
 
 if TYPE_CHECKING:
     from roadproof.runtime.executors import Executor
-
-
-def add_effort_options(
-    parser: argparse.ArgumentParser, units: float = 60.0, each: str = "a question"
-) -> None:
-    """``--effort`` and ``--timeout``, which ``read_effort`` understands; ``each``: what they are given to."""
-    parser.add_argument(
-        "--effort",
-        type=decimal("--effort"),
-        default=units,
-        metavar="N",
-        help=f"about N solver seconds for {each} (default: {units:g}); counted, so the answer is the same on "
-        "every machine",
-    )
-    mark_rare(
-        parser.add_argument(
-            "--timeout",
-            type=decimal("--timeout"),
-            metavar="S",
-            help="seconds after which the clock ends a search, whatever work is left; the answer then says "
-            "so (default: 60 for each unit of --effort, at least 600)",
-        )
-    )
 
 
 def read_hands(args: argparse.Namespace) -> "Executor":

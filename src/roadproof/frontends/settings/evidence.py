@@ -34,8 +34,7 @@ class Check(Budget, Workers):
     effort: float = effort_for("a query", 60.0)
     write: Path | None = option(
         None,
-        "--write",
-        "DIR",
+        "--write DIR",
         help="only write the files for Coq, with --kernel",
         group="output",
         read=Path,
@@ -48,7 +47,7 @@ class Check(Budget, Workers):
 class Page(Workers):
     """Options of ``report``, which is ``page`` in Python."""
 
-    title: str | None = option(None, "--title", "TEXT", help="title of the page", group="output")
+    title: str | None = option(None, "--title TEXT", help="title of the page", group="output")
     solver: Solver = checker_of("solver that checks certificates")
     specs: Iterable[str | Path] = specifications_of("the results")
     progress: Progress | None = option(None)

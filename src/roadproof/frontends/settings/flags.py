@@ -1,8 +1,11 @@
 """Flags of the command line, made from settings classes."""
 
 import argparse
+import functools
+from collections.abc import Callable
 from typing import Any
 
+from roadproof.errors import UsageError
 from roadproof.frontends.settings.option import Group, Option, Settings
 
 TITLES: dict[Group, str] = {
@@ -49,11 +52,32 @@ def _rules(settings: type[Settings], name: str, option: Option) -> dict[str, Any
     default = getattr(settings, name)
     if isinstance(default, bool):
         return {"action": "store_false" if default else "store_true"}
-    rules = {"metavar": option.metavar, "type": option.read, "choices": option.choices, "default": default}
+    rules = {
+        "metavar": option.metavar,
+        "type": _reader(option),
+        "choices": option.choices,
+        "default": default,
+    }
     rules |= {"required": option.required or None}
     if option.gather is not None:
         rules |= {"action": "append", "default": None}
     return {key: value for key, value in rules.items() if value is not None}
+
+
+def _reader(option: Option) -> Callable[[str], object] | None:
+    """The reader of an option; its ``UsageError`` begins with the flag."""
+    if option.read is None:
+        return None
+    made = option.read
+
+    @functools.wraps(made)
+    def read(text: str) -> object:
+        try:
+            return made(text)
+        except UsageError as error:
+            raise UsageError(f"{option.flag} {error}") from None
+
+    return read
 
 
 def read_keywords(args: argparse.Namespace, settings: type[Settings]) -> Any:

@@ -25,19 +25,19 @@ def effort_for(what: str, units: float) -> Any:
     """``effort`` of a question that gives so many units of work to each ``what``."""
     text = f"about N solver seconds for {what} (default: {units:g}); counted, so the answer is the same on "
     text += "every machine"
-    return option(units, "--effort", "N", help=text, group="effort", read=decimal("--effort"))
+    return option(units, "--effort N", help=text, group="effort", read=decimal)
 
 
 def folder_for(what: str, command_line_only: bool = False, required: bool = False) -> Any:
     """``out`` of a question that writes ``what``."""
     rules: dict[str, Any] = {"keyword": not command_line_only, "required": required}
-    return option(None, "--out", "DIR", help=f"write {what}", group="output", read=Path, **rules)
+    return option(None, "--out DIR", help=f"write {what}", group="output", read=Path, **rules)
 
 
 def specifications_of(what: str) -> Any:
     """``specs``, the specification files that ``what`` were made with."""
     text = f"specification file of {what}; may be repeated"
-    return option((), "--spec", "FILE", help=text, group="definitions", read=Path, gather=tuple)
+    return option((), "--spec FILE", help=text, group="definitions", read=Path, gather=tuple)
 
 
 def pictures_of(what: str = "pictures", command_line_only: bool = False) -> Any:
@@ -54,12 +54,12 @@ def checker_of(what: str) -> Any:
 def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
     """A driver model that restricts ``what`` to those whose first collision it prevents, or cannot."""
     text = f"only {what} whose first collision a driver model (careful) {does}"
-    return option(None, f"--{side}", "MODEL", help=text, rare=True)
+    return option(None, f"--{side} MODEL", help=text, rare=True)
 
 
 def scenarios_such_as(example: str = "1,3-8", keyword: bool = False) -> Any:
     """``--among``, which is the first argument in Python where it is no ``keyword``."""
-    return option(None, "--among", "N-M", help=f"only these scenarios, such as {example}", keyword=keyword)
+    return option(None, "--among N-M", help=f"only these scenarios, such as {example}", keyword=keyword)
 
 
 def same_or_any(flag: str, what: str) -> Any:
@@ -73,9 +73,9 @@ def fixed_or_any(flag: str, what: str) -> Any:
     return option("fixed", flag, help=text, choices=("fixed", "any"))
 
 
-def with_complete(flag: str, metavar: str | None, what: str, **more: Any) -> Any:
+def with_complete(flag: str, what: str, **more: Any) -> Any:
     """An option of the drives that ``--complete`` writes."""
-    return option(None, flag, metavar, help=f"with --complete: {what}", group="output", keyword=False, **more)
+    return option(None, flag, help=f"with --complete: {what}", group="output", keyword=False, **more)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,8 +84,7 @@ class Models(Settings):
 
     vehicles: Vehicles = option(
         None,
-        "--vehicle",
-        "[NAME=]MODEL",
+        "--vehicle [NAME=]MODEL",
         help="vehicle model, or .toml file (default: car)",
         group="search",
         read=named(""),
@@ -98,45 +97,33 @@ class SearchPlace(Models):
     """Where, with whom and for how long drives are looked for."""
 
     road: RoadLike | None = option(
-        None,
-        "--road",
-        "R",
-        help="road, or .toml or .xodr file (default: by formula)",
-        group="search",
+        None, "--road R", help="road, or .toml or .xodr file (default: by formula)", group="search"
     )
     lanes: Mapping[str, str] | None = option(
         None,
-        "--lane",
-        "[L=]LANE",
+        "--lane [L=]LANE",
         help="lane that L means (default: any, from the right)",
         group="search",
         read=named("L"),
         gather=dict,
     )
     horizon: Number = option(
-        Fraction(6),
-        "--horizon",
-        "S",
-        help="seconds to search (default: 6)",
-        group="search",
-        read=seconds("--horizon"),
+        Fraction(6), "--horizon S", help="seconds to search (default: 6)", group="search", read=seconds
     )
     dt: Number | None = option(
         None,
-        "--dt",
-        "S",
+        "--dt S",
         help="seconds between samples (default: the coarsest that fits, at most 3/5)",
         group="search",
-        read=seconds("--dt"),
+        read=seconds,
         rare=True,
     )
     reach: Number = option(
         Fraction(80),
-        "--reach",
-        "M",
+        "--reach M",
         help="largest distance of vehicles at the start in metres (default: 80)",
         group="search",
-        read=seconds("--reach"),
+        read=seconds,
         rare=True,
     )
     collisions: bool = option(
@@ -150,8 +137,7 @@ class Traces(Settings):
 
     end: Convention = option(
         "truncated",
-        "--end",
-        "KIND",
+        "--end KIND",
         help="end of a trace: truncated (default) asks for every continuation, clip cuts windows there",
         choices=("truncated", "clip"),
     )
@@ -171,8 +157,7 @@ class Solver(Settings):
     )
     solver: str = option(
         "highs",
-        "--solver",
-        "NAME",
+        "--solver NAME",
         help="mixed-integer solver of --engine milp (default: highs)",
         group="search",
         rare=True,
@@ -186,12 +171,11 @@ class Budget(Settings):
     effort: float = effort_for("a question", 60.0)
     timeout: float | None = option(
         None,
-        "--timeout",
-        "S",
+        "--timeout S",
         help="seconds after which the clock ends a search, whatever work is left; the answer then says so "
         "(default: 60 for each unit of --effort, at least 600)",
         group="effort",
-        read=decimal("--timeout"),
+        read=decimal,
         rare=True,
     )
 
@@ -201,12 +185,7 @@ class Workers(Settings):
     """How many processes do the work."""
 
     jobs: Jobs = option(
-        None,
-        "--jobs",
-        "N",
-        help="number of processes (default: one per core)",
-        group="work",
-        read=whole("--jobs", 1),
+        None, "--jobs N", help="number of processes (default: one per core)", group="work", read=whole(1)
     )
     quiet: bool = option(False, "--quiet", help="suppress progress output", group="output", keyword=False)
 
@@ -232,8 +211,7 @@ class Sharing(Workers):
 
     shard: str | None = option(
         None,
-        "--shard",
-        "K/N",
+        "--shard K/N",
         help="process shard K of N: start N runs with the same --out, then run once without --shard to merge",
         group="work",
         keyword=False,
@@ -241,8 +219,7 @@ class Sharing(Workers):
     )
     cluster: str | None = option(
         None,
-        "--cluster",
-        "SCHEDULER|local:N",
+        "--cluster SCHEDULER|local:N",
         help="work on a Dask cluster, such as tcp://host:8786, or on a local one of N processes",
         group="work",
         keyword=False,
@@ -250,8 +227,7 @@ class Sharing(Workers):
     )
     tls_ca: str | None = option(
         None,
-        "--tls-ca",
-        "FILE",
+        "--tls-ca FILE",
         help="certificate of the authority (CA) that signed the certificate of the scheduler",
         group="work",
         keyword=False,
@@ -259,21 +235,14 @@ class Sharing(Workers):
     )
     tls_cert: str | None = option(
         None,
-        "--tls-cert",
-        "FILE",
+        "--tls-cert FILE",
         help="certificate of this client, if the scheduler asks for one",
         group="work",
         keyword=False,
         rare=True,
     )
     tls_key: str | None = option(
-        None,
-        "--tls-key",
-        "FILE",
-        help="private key of --tls-cert",
-        group="work",
-        keyword=False,
-        rare=True,
+        None, "--tls-key FILE", help="private key of --tls-cert", group="work", keyword=False, rare=True
     )
 
 

@@ -31,13 +31,11 @@ if TYPE_CHECKING:
     from roadproof.semantics.sampled.answers import Convention
 
 
-class CompareKeywords(TypedDict, total=False):
-    jobs: Jobs
-    effort: float
-    timeout: float | None
-    engine: Engine
-    solver: str
+class ModelsKeywords(TypedDict, total=False):
     vehicles: Vehicles
+
+
+class SearchPlaceKeywords(ModelsKeywords, total=False):
     road: RoadLike | None
     lanes: Mapping[str, str] | None
     horizon: Number
@@ -46,47 +44,73 @@ class CompareKeywords(TypedDict, total=False):
     collisions: bool
 
 
-class WitnessKeywords(TypedDict, total=False):
+class TracesKeywords(TypedDict, total=False):
+    end: Convention
+
+
+class SolverKeywords(TypedDict, total=False):
+    engine: Engine
+    solver: str
+
+
+class BudgetKeywords(TypedDict, total=False):
+    effort: float
+    timeout: float | None
+
+
+class WorkersKeywords(TypedDict, total=False):
+    jobs: Jobs
+
+
+class ListenersKeywords(TypedDict, total=False):
     progress: Progress | None
     say: Say | None
-    jobs: Jobs
+
+
+class RunKeywords(WorkersKeywords, ListenersKeywords, total=False):
     out: str | Path | None
-    effort: float
-    timeout: float | None
+
+
+class SharingKeywords(WorkersKeywords, total=False):
+    pass
+
+
+class PreventionKeywords(TypedDict, total=False):
     preventable: str | None
     unpreventable: str | None
-    engine: Engine
-    solver: str
-    vehicles: Vehicles
-    road: RoadLike | None
-    lanes: Mapping[str, str] | None
-    horizon: Number
-    dt: Number | None
-    reach: Number
-    collisions: bool
+
+
+class SurveyKeywords(ModelsKeywords, BudgetKeywords, SharingKeywords, RunKeywords, total=False):
+    pass
+
+
+class CompareKeywords(SearchPlaceKeywords, SolverKeywords, BudgetKeywords, WorkersKeywords, total=False):
+    pass
+
+
+class WitnessKeywords(
+    SearchPlaceKeywords,
+    SolverKeywords,
+    PreventionKeywords,
+    BudgetKeywords,
+    SharingKeywords,
+    RunKeywords,
+    total=False,
+):
     objective: Objective
     count: int
     pictures: bool
 
 
-class ExploreKeywords(TypedDict, total=False):
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    preventable: str | None
-    unpreventable: str | None
-    engine: Engine
-    solver: str
-    vehicles: Vehicles
-    road: RoadLike | None
-    lanes: Mapping[str, str] | None
-    horizon: Number
-    dt: Number | None
-    reach: Number
-    collisions: bool
+class ExploreKeywords(
+    SearchPlaceKeywords,
+    SolverKeywords,
+    PreventionKeywords,
+    BudgetKeywords,
+    SharingKeywords,
+    RunKeywords,
+    total=False,
+):
     vary: Mapping[str, tuple[Number, Number]] | None
     steps: int | None
     least: Term | None
@@ -95,14 +119,7 @@ class ExploreKeywords(TypedDict, total=False):
     precision: Number | None
 
 
-class ProveKeywords(TypedDict, total=False):
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class ProveKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, total=False):
     declared: bool
     expect: Expected
     assume: Assumed | None
@@ -114,90 +131,38 @@ class ProveKeywords(TypedDict, total=False):
     kernel: Kernel | None
 
 
-class AskKeywords(TypedDict, total=False):
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class AskKeywords(SurveyKeywords, total=False):
+    pass
 
 
-class OverlapKeywords(TypedDict, total=False):
-    preventable: str | None
-    unpreventable: str | None
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class OverlapKeywords(SurveyKeywords, PreventionKeywords, total=False):
     lanes: Same
     roles: Same
     start: Same
     horizon: Number | None
 
 
-class OrderKeywords(TypedDict, total=False):
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class OrderKeywords(SurveyKeywords, total=False):
+    pass
 
 
-class RedundancyKeywords(TypedDict, total=False):
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class RedundancyKeywords(SurveyKeywords, total=False):
     whole: bool
 
 
-class CoverageKeywords(TypedDict, total=False):
-    preventable: str | None
-    unpreventable: str | None
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class CoverageKeywords(SurveyKeywords, PreventionKeywords, total=False):
     wider: str | None
     roads: Iterable[RoadLike] | None
     needed: bool
     on: str | Path | None
 
 
-class ClassifyKeywords(TypedDict, total=False):
-    preventable: str | None
-    unpreventable: str | None
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class ClassifyKeywords(SurveyKeywords, PreventionKeywords, total=False):
     on: str | Path | None
     shares: bool
 
 
-class PreventableKeywords(TypedDict, total=False):
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
+class PreventableKeywords(BudgetKeywords, SharingKeywords, RunKeywords, total=False):
     at: Mapping[str, Number | Sequence[Number]] | None
     along: tuple[Number, Number] | None
     across: tuple[Number, Number] | None
@@ -205,16 +170,7 @@ class PreventableKeywords(TypedDict, total=False):
     lemmas: bool
 
 
-class CatalogueKeywords(TypedDict, total=False):
-    preventable: str | None
-    unpreventable: str | None
-    progress: Progress | None
-    say: Say | None
-    jobs: Jobs
-    out: str | Path | None
-    effort: float
-    timeout: float | None
-    vehicles: Vehicles
+class CatalogueKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, PreventionKeywords, total=False):
     among: Among
     classes: bool
     gaps: bool
@@ -226,8 +182,7 @@ class CatalogueKeywords(TypedDict, total=False):
     drivers: Iterable[str] | None
 
 
-class MonitorKeywords(TypedDict, total=False):
-    end: Convention
+class MonitorKeywords(TracesKeywords, total=False):
     lanes: Mapping[str, str] | None
     road: RoadLike | None
     view: View | None
@@ -235,9 +190,7 @@ class MonitorKeywords(TypedDict, total=False):
     frames: tuple[int | None, int | None]
 
 
-class EvaluateKeywords(TypedDict, total=False):
-    end: Convention
-    jobs: Jobs
+class EvaluateKeywords(SharingKeywords, TracesKeywords, total=False):
     among: Among
     min_danger: Iterable[Number]
     classes: Iterable[str]
@@ -249,8 +202,7 @@ class EvaluateKeywords(TypedDict, total=False):
     tell: Say | None
 
 
-class SimulateKeywords(TypedDict, total=False):
-    jobs: Jobs
+class SimulateKeywords(WorkersKeywords, total=False):
     recordings: int
     seconds: float
     seed: int
@@ -269,10 +221,7 @@ class ExportKeywords(TypedDict, total=False):
     specs: Iterable[str | Path]
 
 
-class CheckKeywords(TypedDict, total=False):
-    jobs: Jobs
-    effort: float
-    timeout: float | None
+class CheckKeywords(BudgetKeywords, WorkersKeywords, total=False):
     solver: Solver
     specs: Iterable[str | Path]
     kernel: Kernel | None
@@ -280,8 +229,7 @@ class CheckKeywords(TypedDict, total=False):
     progress: Progress | None
 
 
-class PageKeywords(TypedDict, total=False):
-    jobs: Jobs
+class PageKeywords(WorkersKeywords, total=False):
     title: str | None
     solver: Solver
     specs: Iterable[str | Path]

@@ -15,18 +15,18 @@ class Option:
     """One option. Without ``flag`` it exists in Python only, without ``keyword`` on the command line only."""
 
     flag: str | None
-    help: str
     metavar: str | None
-    group: Group
-    read: Callable[[str], object] | None
+    help: str = ""
+    group: Group = "question"
+    read: Callable[[str], object] | None = None
     """Makes the value out of the text behind the flag."""
-    gather: Callable[[list[Any]], object] | None
+    gather: Callable[[list[Any]], object] | None = None
     """The flag may be repeated, and this makes the value out of what was read."""
-    choices: tuple[str, ...] | None
-    least: int | None
-    keyword: bool
-    required: bool
-    rare: bool
+    choices: tuple[str, ...] | None = None
+    least: int | None = None
+    keyword: bool = True
+    required: bool = False
+    rare: bool = False
     """Only ``--help-all`` shows the flag."""
 
     def check(self, name: str, value: object) -> None:
@@ -37,21 +37,12 @@ class Option:
             raise UsageError(f"{name}={value}: write a whole number greater than {self.least - 1}")
 
 
-def option(
-    default: object,
-    flag: str | None = None,
-    metavar: str | None = None,
-    *,
-    help: str = "",
-    group: Group = "question",
-    read: Callable[[str], object] | None = None,
-    gather: Callable[[list[Any]], object] | None = None,
-    **more: Any,
-) -> Any:
-    """A field of a settings class; ``more``: other fields of its ``Option``."""
-    rules = {"choices": None, "least": None, "keyword": True, "required": False, "rare": False, **more}
-    found = Option(flag, help, metavar, group, read, gather, **rules)
-    return dataclasses.field(default=default, metadata={"option": found})
+def option(default: object, flag: str = "", **rules: Any) -> Any:
+    """A field of settings. ``flag`` has its metavar: "--out DIR"; ``rules``: the rest of ``Option``."""
+    name, _, metavar = flag.partition(" ")
+    return dataclasses.field(
+        default=default, metadata={"option": Option(name or None, metavar or None, **rules)}
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

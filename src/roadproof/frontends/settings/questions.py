@@ -21,12 +21,7 @@ from roadproof.frontends.settings.groups import (
     pictures_of,
 )
 from roadproof.frontends.settings.option import option
-from roadproof.frontends.settings.readers import (
-    named,
-    seconds,
-    text_or_none,
-    whole,
-)
+from roadproof.frontends.settings.readers import named, seconds, text_or_none, whole
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -35,13 +30,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.checking import Kernel
     from roadproof.frontends.api.definitions import What
     from roadproof.frontends.api.phrases import Term
-    from roadproof.frontends.settings.value_types import (
-        Assumed,
-        Expected,
-        ProofEngine,
-        RoadLike,
-        Vehicles,
-    )
+    from roadproof.frontends.settings.value_types import Assumed, Expected, ProofEngine, RoadLike, Vehicles
     from roadproof.library.values import Number
 
 
@@ -58,18 +47,12 @@ class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
 
     objective: Objective = option(
         "smooth",
-        "--objective",
-        "KIND",
+        "--objective KIND",
         help="any, smooth (default), margin, mild, severe or short",
         choices=("any", "smooth", "margin", "mild", "severe", "short"),
     )
     count: int = option(
-        1,
-        "--count",
-        "K",
-        help="find K clearly different drives (default: 1)",
-        read=whole("--count", 1),
-        least=1,
+        1, "--count K", help="find K clearly different drives (default: 1)", read=whole(1), least=1
     )
     out: str | Path | None = folder_for("drive files, CSV and pictures")
     pictures: bool = pictures_of()
@@ -81,32 +64,24 @@ class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
 
     vary: Mapping[str, tuple[Number, Number]] | None = option(
         None,
-        "--vary",
-        "NAME=LOW:HIGH",
+        "--vary NAME=LOW:HIGH",
         help="vary a parameter, or a limit such as POV.a_lon.min; may be given twice",
         gather=list,
     )
     steps: int | None = option(
-        None,
-        "--steps",
-        "K",
-        help="number of values (default: 11; 6 for each of two)",
-        read=whole("--steps", 2),
+        None, "--steps K", help="number of values (default: 11; 6 for each of two)", read=whole(2)
     )
     least: Term | None = option(
-        None, "--least", "TERM", help="find the least value of a term", read=text_or_none
+        None, "--least TERM", help="find the least value of a term", read=text_or_none
     )
     greatest: Term | None = option(
-        None, "--greatest", "TERM", help="find the greatest value of a term", read=text_or_none
+        None, "--greatest TERM", help="find the greatest value of a term", read=text_or_none
     )
     when: What | None = option(
-        None, "--when", "FORMULA", help="measure the term when FORMULA holds, not at time 0"
+        None, "--when FORMULA", help="measure the term when FORMULA holds, not at time 0"
     )
     precision: Number | None = option(
-        None,
-        "--precision",
-        "P",
-        help="width of a bracket in SI units (default: range/60; 0.1 for a term)",
+        None, "--precision P", help="width of a bracket in SI units (default: range/60; 0.1 for a term)"
     )
     effort: float = effort_for("a question", 6.0)
     out: str | Path | None = folder_for("drives, certificates, JSON, pictures")
@@ -118,7 +93,7 @@ class Prove(Models, Budget, Run):
     """Options of ``prove``."""
 
     file: Path | None = option(
-        None, "--claims", "FILE", help="read claims from a file, one a paragraph", read=Path, keyword=False
+        None, "--claims FILE", help="read claims from a file, one a paragraph", read=Path, keyword=False
     )
     declared: bool = option(
         False, "--declared", help="use the declared values of all other parameters, not all values"
@@ -138,8 +113,7 @@ class Prove(Models, Budget, Run):
     )
     vehicles: Vehicles = option(
         None,
-        "--vehicle",
-        "[NAME=]MODEL",
+        "--vehicle [NAME=]MODEL",
         help="with --assume motion, smt or milp: limits of a model, for all vehicles or for NAME",
         group="search",
         read=named(""),
@@ -153,23 +127,21 @@ class Prove(Models, Budget, Run):
         choices=("dense", "smt", "milp"),
     )
     road: RoadLike | None = option(
-        None, "--road", "R", help="with smt, milp: reference road, .toml or .xodr file", group="search"
+        None, "--road R", help="with smt, milp: reference road, .toml or .xodr file", group="search"
     )
     horizon: Number = option(
         Fraction(6),
-        "--horizon",
-        "S",
+        "--horizon S",
         help="with smt, milp: seconds to search (default: 6)",
         group="search",
-        read=seconds("--horizon"),
+        read=seconds,
     )
     dt: Number | None = option(
         None,
-        "--dt",
-        "S",
+        "--dt S",
         help="with smt, milp: seconds between samples (default: the coarsest that fits)",
         group="search",
-        read=seconds("--dt"),
+        read=seconds,
         rare=True,
     )
     drive: bool = option(

@@ -1,4 +1,4 @@
-"""Readers of the texts behind flags; each raises ``UsageError`` by the name of its option."""
+"""Readers of the texts behind flags; ``flags.py`` puts the flag before the ``UsageError`` that they raise."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -14,48 +14,49 @@ MOST = 1_000_000
 LARGEST_SEED = 2**64 - 1
 
 
-def decimal(option: str) -> Callable[[str], float]:
-    """A reader of numbers greater than 0."""
-
-    def read(text: str) -> float:
-        value = float(text) if _DECIMAL.fullmatch(text) else 0.0
-        if not 0 < value <= MOST:
-            raise UsageError(
-                f"{option} {text[:40]}: write a decimal number greater than 0 and at most {MOST}, such as 20"
-            )
-        return value
-
-    return read
+def decimal(text: str) -> float:
+    """A number greater than 0."""
+    value = float(text) if _DECIMAL.fullmatch(text) else 0.0
+    if not 0 < value <= MOST:
+        rule = f"write a decimal number greater than 0 and at most {MOST}, such as 20"
+        raise UsageError(f"{text[:40]}: {rule}")
+    return value
 
 
-def whole(option: str, least: int, most: int = MOST) -> Callable[[str], int]:
+def whole(least: int, most: int = MOST) -> Callable[[str], int]:
     """A reader of whole numbers from ``least`` to ``most``."""
 
     def read(text: str) -> int:
         value = int(text) if _WHOLE.fullmatch(text) else least - 1
         if not least <= value <= most:
             rule = "greater than 0" if least == 1 else f"not below {least}"
-            raise UsageError(f"{option} {text[:40]}: write a whole number {rule} and at most {most}")
+            raise UsageError(f"{text[:40]}: write a whole number {rule} and at most {most}")
         return value
 
     return read
 
 
-def seconds(option: str, or_zero: bool = False) -> Callable[[str], Fraction]:
-    """A reader of numbers greater than 0 (or 0 too), such as 6, 0.6 or 3/5."""
-    return lambda text: read_seconds(option, text, or_zero)
-
-
-def read_seconds(option: str, text: str, or_zero: bool = False) -> Fraction:
-    """A time in seconds, greater than 0 (or 0 too). Raises ``UsageError``."""
-    try:
-        value = Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
-    except (ValueError, ZeroDivisionError):
-        value = None
-    if value is None or value < 0 or (value == 0 and not or_zero):
-        least = "seconds, 0 or more" if or_zero else "a number greater than 0"
-        raise UsageError(f"{option} {text[:40]}: write {least}, such as 6, 0.6 or 3/5")
+def seconds(text: str) -> Fraction:
+    """A number greater than 0, such as 6, 0.6 or 3/5."""
+    value = _fraction(text)
+    if value is None or value <= 0:
+        raise UsageError(f"{text[:40]}: write a number greater than 0, such as 6, 0.6 or 3/5")
     return value
+
+
+def seconds_or_zero(text: str) -> Fraction:
+    """A number of 0 or more."""
+    value = _fraction(text)
+    if value is None or value < 0:
+        raise UsageError(f"{text[:40]}: write seconds, 0 or more, such as 6, 0.6 or 3/5")
+    return value
+
+
+def _fraction(text: str) -> Fraction | None:
+    try:
+        return Fraction(text) if len(text) <= 40 and "e" not in text.lower() else None
+    except (ValueError, ZeroDivisionError):
+        return None
 
 
 def named(usual: str) -> Callable[[str], tuple[str, str]]:
@@ -69,29 +70,25 @@ def named(usual: str) -> Callable[[str], tuple[str, str]]:
 
 
 def items_of(
-    option: str, what: str, example: str = "", read: Callable[[str], Any] = str
+    what: str, example: str = "", read: Callable[[str], Any] = str
 ) -> Callable[[str], tuple[Any, ...]]:
     """A reader of items with commas between them; ``what`` are they?"""
 
     def read_items(text: str) -> tuple[Any, ...]:
         items = [item.strip() for item in text.split(",")]
         if not all(items):
-            raise UsageError(f"{option} {text}: write {what} separated by commas{example}")
+            raise UsageError(f"{text}: write {what} separated by commas{example}")
         return tuple(map(read, items))
 
     return read_items
 
 
-def frame_range(option: str) -> Callable[[str], tuple[int, int]]:
-    """A reader of a first and a last frame, such as 100-400."""
-
-    def read(text: str) -> tuple[int, int]:
-        found = _FRAMES.fullmatch(text)
-        if found is None:
-            raise UsageError(f"{option} {text[:40]}: write the first and the last frame, such as 100-400")
-        return int(found[1]), int(found[2])
-
-    return read
+def frame_range(text: str) -> tuple[int, int]:
+    """A first and a last frame, such as 100-400."""
+    found = _FRAMES.fullmatch(text)
+    if found is None:
+        raise UsageError(f"{text[:40]}: write the first and the last frame, such as 100-400")
+    return int(found[1]), int(found[2])
 
 
 def text_or_none(text: str) -> str | None:
@@ -99,22 +96,18 @@ def text_or_none(text: str) -> str | None:
     return text or None
 
 
-def several(option: str, example: str) -> Callable[[str], tuple[str, list[str]]]:
-    """A reader of ``NAME=VALUE`` with one value or several, as a pair."""
-
-    def read(text: str) -> tuple[str, list[str]]:
-        name, equals, value = text.partition("=")
-        if not equals or not value.strip():
-            raise UsageError(f"{option} {text}: write NAME=VALUE, or several with commas, such as {example}")
-        return name.strip(), [x.strip() for x in value.split(",")]
-
-    return read
+def initial_values(text: str) -> tuple[str, list[str]]:
+    """``NAME=VALUE`` with one value or several, as a pair."""
+    name, equals, value = text.partition("=")
+    if not equals or not value.strip():
+        example = "Ve0=60km/h,90km/h"
+        raise UsageError(f"{text}: write NAME=VALUE, or several with commas, such as {example}")
+    return name.strip(), [x.strip() for x in value.split(",")]
 
 
-def driver_models_or_none(option: str) -> Callable[[str], tuple[str, ...]]:
-    """A reader of names of driver models with commas between them; none stands for no model."""
-    read = items_of(option, "names", ", such as careful,r157, or none")
-    return lambda text: () if text == "none" else read(text)
+def driver_models_or_none(text: str) -> tuple[str, ...]:
+    """Names of driver models with commas between them; none stands for no model."""
+    return () if text == "none" else items_of("names", ", such as careful,r157, or none")(text)
 
 
 def flat(lists: Iterable[Iterable[str]]) -> list[str]:

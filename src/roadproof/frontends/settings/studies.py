@@ -26,9 +26,9 @@ from roadproof.frontends.settings.option import option
 from roadproof.frontends.settings.readers import (
     driver_models_or_none,
     flat,
+    initial_values,
     items_of,
     seconds,
-    several,
     whole,
 )
 
@@ -59,11 +59,10 @@ class Overlap(Survey, Prevention):
     start: Same = same_or_any("--start", "both start at time 0, or one at any later time")
     horizon: Number | None = option(
         None,
-        "--horizon",
-        "S",
+        "--horizon S",
         help="seconds to search (default: 6; 9 with --start any)",
         group="search",
-        read=seconds("--horizon"),
+        read=seconds,
     )
     effort: float = effort_for("a drive", 60.0)
     out: str | Path | None = folder_for("evidence, CSV, JSON and heat map")
@@ -96,15 +95,11 @@ class Coverage(Survey, Prevention):
     preventable: str | None = driver_model("preventable", "prevents", "drives")
     unpreventable: str | None = driver_model("unpreventable", "cannot prevent", "drives")
     wider: str | None = option(
-        None,
-        "--wider",
-        "S",
-        help="set that misses nothing (default: complete, if it extends the set)",
+        None, "--wider S", help="set that misses nothing (default: complete, if it extends the set)"
     )
     roads: Iterable[RoadLike] | None = option(
         None,
-        "--road",
-        "R",
+        "--road R",
         help="road to search; may be repeated (default: main-2, then main-3)",
         group="search",
         gather=list,
@@ -113,11 +108,7 @@ class Coverage(Survey, Prevention):
         False, "--needed", help="if the set has no gap: find a drive for each definition that it needs"
     )
     on: str | Path | None = option(
-        None,
-        "--on",
-        "DIR",
-        help="count the classes of gaps in these recordings",
-        read=Path,
+        None, "--on DIR", help="count the classes of gaps in these recordings", read=Path
     )
     effort: float = effort_for("a search", 10.0)
     out: str | Path | None = folder_for("certificates, drives and pictures")
@@ -130,7 +121,7 @@ class Classify(Survey, Prevention):
 
     among: str | None = scenarios_such_as("1-8")
     on: str | Path | None = option(
-        None, "--on", "DIR", help="recordings for the shares (default: simulated traffic)", read=Path
+        None, "--on DIR", help="recordings for the shares (default: simulated traffic)", read=Path
     )
     shares: bool = option(True, "--no-shares", help="compute no shares")
     effort: float = effort_for("a drive or a proof", 60.0)
@@ -144,28 +135,26 @@ class Preventable(Budget, Sharing, Run):
 
     models: Sequence[str] = option(
         (),
-        "--model",
-        "NAME",
+        "--model NAME",
         help="driver model: careful, r157, eu1426, rss or fsm (default: all but fsm)",
-        read=items_of("--model", "names", ", such as careful,r157"),
+        read=items_of("names", ", such as careful,r157"),
         gather=flat,
         keyword=False,
     )
     at: Mapping[str, Number | Sequence[Number]] | None = option(
         None,
-        "--at",
-        "NAME=VALUE[,…]",
+        "--at NAME=VALUE[,…]",
         help="fix an initial value; several values make several plates",
-        read=several("--at", "Ve0=60km/h,90km/h"),
+        read=initial_values,
         gather=dict,
     )
     along: tuple[Number, Number] | None = option(
-        None, "--along", "NAME=LOW:HIGH", help="range of the value along each line"
+        None, "--along NAME=LOW:HIGH", help="range of the value along each line"
     )
     across: tuple[Number, Number] | None = option(
-        None, "--across", "NAME=LOW:HIGH", help="range of the value across the lines"
+        None, "--across NAME=LOW:HIGH", help="range of the value across the lines"
     )
-    lines: int = option(100, "--lines", "K", help="lines of a plate (default: 100)", read=whole("--lines", 2))
+    lines: int = option(100, "--lines K", help="lines of a plate (default: 100)", read=whole(2))
     lemmas: bool = option(True, "--no-lemmas", help="prove no lemmas")
     effort: float = effort_for("a lemma", 60.0)
     out: str | Path | None = folder_for("drives, certificates, CSV, pictures")
@@ -189,26 +178,23 @@ class Catalogue(Models, Budget, Run, Prevention):
     start: Look = fixed_or_any("--start", "instants")
     near: float = option(
         0.5,
-        "--near",
-        "X",
+        "--near X",
         help="tests that show the same and begin within X m and m/s are duplicates (default: 0.5)",
         read=float,
         rare=True,
     )
     drivers: Iterable[str] | None = option(
         None,
-        "--drivers",
-        "MODELS",
+        "--drivers MODELS",
         help="driver models that drive each test: careful,r157, or none (default: all)",
-        read=driver_models_or_none("--drivers"),
+        read=driver_models_or_none,
     )
     effort: float = effort_for("a drive", 60.0)
     out: str | Path | None = folder_for("matrix, JUnit, picture, evidence")
     pictures: bool = pictures_of("picture", command_line_only=True)
     complete: Path | None = option(
         None,
-        "--complete",
-        "DIR",
+        "--complete DIR",
         help="write a drive for each scenario and class without a test",
         group="output",
         read=Path,
@@ -216,19 +202,12 @@ class Catalogue(Models, Budget, Run, Prevention):
     )
     objective: Objective | None = with_complete(
         "--objective",
-        None,
         "what the drives should be like (default: smooth)",
         choices=("any", "smooth", "margin", "mild", "severe", "short"),
     )
     spread: int | None = with_complete(
-        "--spread",
-        "K",
-        "write drives far from the tests until each class has K tests",
-        read=whole("--spread", 1),
+        "--spread K", "write drives far from the tests until each class has K tests", read=whole(1)
     )
     formats: Sequence[str] | None = with_complete(
-        "--format",
-        "FORMAT",
-        "also write openscenario, commonroad, highd, csv or opendrive",
-        gather=list,
+        "--format FORMAT", "also write openscenario, commonroad, highd, csv or opendrive", gather=list
     )
